@@ -1,0 +1,26 @@
+//! Tables in and out: tracks, points and truth as CSV with a header line, one row a sample.
+//!
+//! Columns are found by name, in any order; unknown ones are ignored. Numbers are written in the shortest
+//! form that reads back to the same bits. A table is written beside its place and renamed when complete, so
+//! what stands under its name is never half a table.
+//!
+//! ```
+//! use honami_exchange::{PointRow, read, Writer};
+//! # let folder = tempfile::tempdir()?;
+//! # let path = folder.path().join("points.csv");
+//! let mut table = Writer::create(&path)?;
+//! table.write(&PointRow { id: 7, x: 12.25, y: 3.0, frame: Some(4) })?;
+//! table.finish()?;
+//! for row in read::<PointRow>(&path)? {
+//!     assert_eq!(row?.x, 12.25);
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub mod rows;
+pub mod spans;
+pub mod table;
+
+pub use rows::{PointRow, TrackRow, TruthRow, trust};
+pub use spans::spans;
+pub use table::{Reader, Row, TableError, Writer, read};

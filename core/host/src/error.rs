@@ -1,0 +1,104 @@
+//! What can go wrong between the workbench and a plugin, in sentences for the user.
+
+use crate::manifest::Kind;
+use honami_abi::code;
+use std::path::PathBuf;
+
+/// Why a plugin could not be found, loaded or used.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum HostError {
+    /// No plugin of that kind has that name.
+    #[error("there is no {kind} {name:?}; there are: {known}")]
+    NotFound {
+        /// What was asked for.
+        kind: Kind,
+        /// As it was asked for.
+        name: String,
+        /// The names that exist, comma-separated.
+        known: String,
+    },
+    /// A short name that several plugins share.
+    #[error("{name:?} may be any of {ids}: say the full id")]
+    Ambiguous {
+        /// As it was asked for.
+        name: String,
+        /// The candidates, comma-separated.
+        ids: String,
+    },
+    /// A plugin that nobody has vouched for.
+    #[error("{} is not trusted: {why}", path.display())]
+    NotTrusted {
+        /// The library.
+        path: PathBuf,
+        /// What to do about it.
+        why: String,
+    },
+    /// A file that is no usable plugin library.
+    #[error("{}: {why}", path.display())]
+    File {
+        /// The library.
+        path: PathBuf,
+        /// What is wrong with it.
+        why: String,
+    },
+    /// A parameter value that the plugin does not take.
+    #[error(transparent)]
+    Value(#[from] crate::values::ValueError),
+    /// The plugin could not do it and says why.
+    #[error("{plugin}: {function}: {text} ({code})")]
+    Failed {
+        /// Its id.
+        plugin: String,
+        /// The function of the ABI.
+        function: &'static str,
+        /// What kind of failure.
+        code: Code,
+        /// In the plugin's words.
+        text: String,
+    },
+    /// The user stopped it.
+    #[error("{plugin}: stopped")]
+    Cancelled {
+        /// Its id.
+        plugin: String,
+    },
+    /// The plugin broke the contract; nothing of its answer was used.
+    #[error("{plugin} misbehaves in {function}: {what}")]
+    Misbehaved {
+        /// Its id.
+        plugin: String,
+        /// The function of the ABI.
+        function: &'static str,
+        /// What it did.
+        what: String,
+    },
+    /// The caller asked for what is not possible now.
+    #[error("{plugin}: {what}")]
+    Usage {
+        /// Its id.
+        plugin: String,
+        /// What was asked, and what is possible.
+        what: String,
+    },
+}
+
+/// A failure code of the ABI, shown as a word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Code(pub i32);
+
+impl std::fmt::Display for Code {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self.0 {
+            code::UNSUPPORTED => "unsupported",
+            code::ARGUMENT => "wrong argument",
+            code::STATE => "not now",
+            code::DATA => "unusable data",
+            code::MEMORY => "no memory",
+            code::IO => "file trouble",
+            code::CANCELLED => "cancelled",
+            code::INTERNAL => "a fault in the plugin",
+            other => return write!(f, "failed, code {other}"),
+        })
+    }
+}

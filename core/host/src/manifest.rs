@@ -1,0 +1,272 @@
+//! What a library says of itself before any of its code runs: plugins, parameters, abilities.
+
+use crate::values::{Value, Values};
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// What a plugin does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Kind {
+    /// Follows points through frames.
+    Tracker,
+    /// Groups tracks.
+    Clusterer,
+    /// Grows skeletons (draft).
+    Structure,
+    /// Moves plants (draft).
+    Simulator,
+}
+
+impl std::fmt::Display for Kind {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Tracker => "tracker",
+            Self::Clusterer => "clusterer",
+            Self::Structure => "structure",
+            Self::Simulator => "simulator",
+        })
+    }
+}
+
+/// The JSON document in a library's note. Unknown members are ignored.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Manifest {
+    /// Version of this document's form; 1.
+    pub honami: u32,
+    /// Major and minor of the ABI that it was built for.
+    pub abi: (u32, u32),
+    /// Of the library as a whole.
+    pub library: LibraryInfo,
+    /// What is in it.
+    pub plugins: Vec<PluginManifest>,
+}
+
+/// Of a library as a whole.
+#[derive(Clone, Debug, Deserialize)]
+pub struct LibraryInfo {
+    /// Reverse-DNS.
+    pub id: String,
+    /// Version of all its plugins.
+    pub version: String,
+    /// SPDX expression.
+    #[serde(default)]
+    pub license: String,
+}
+
+/// Of one plugin.
+#[derive(Clone, Debug, Deserialize)]
+pub struct PluginManifest {
+    /// Reverse-DNS; the last component is its short name.
+    pub id: String,
+    /// What it does; as text, so that a library may also hold kinds of tomorrow.
+    pub kind: String,
+    /// For people, a few words.
+    pub name: String,
+    /// Markdown.
+    #[serde(default)]
+    pub doc: String,
+    /// Where the method comes from.
+    #[serde(default)]
+    pub cite: Vec<String>,
+    /// Interface ids.
+    #[serde(default)]
+    pub interfaces: Vec<String>,
+    /// Abilities.
+    #[serde(default)]
+    pub caps: Caps,
+    #[serde(default)]
+    params: Vec<serde_json::Value>,
+}
+
+/// Abilities of a plugin.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Caps {
+    /// By how many frames a tracker's results lag behind.
+    pub latency: u32,
+    /// Whether the same input gives the same bits.
+    pub deterministic: bool,
+    /// Whether two instances may work at once.
+    pub parallel_instances: bool,
+    /// Pixel formats that it takes.
+    pub pixels: Vec<String>,
+}
+
+impl Default for Caps {
+    fn default() -> Self {
+        Self { latency: 0, deterministic: false, parallel_instances: false, pixels: vec!["gray8".into()] }
+    }
+}
+
+/// One parameter.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Param {
+    /// Its name for machines and for `--set`.
+    pub id: String,
+    /// Its name for people; the id where the plugin gives none.
+    #[serde(default)]
+    pub label: String,
+    /// Heading that it belongs under.
+    #[serde(default)]
+    pub group: String,
+    /// What it does.
+    #[serde(default)]
+    pub doc: String,
+    /// Unit of its numbers.
+    #[serde(default)]
+    pub unit: String,
+    /// What a change makes stale: `seed`, `track`, `all`.
+    #[serde(default)]
+    pub affects: String,
+    /// Whether most people never need it.
+    #[serde(default)]
+    pub advanced: bool,
+    /// Values of other parameters under which it counts; all must hold.
+    #[serde(default)]
+    pub when: BTreeMap<String, Value>,
+    /// Type, default and range.
+    #[serde(flatten)]
+    pub kind: ParamKind,
+}
+
+/// Type of a parameter, with its default and range.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "type", rename_all = "lowercase")]
+pub enum ParamKind {
+    /// Yes or no.
+    Bool {
+        /// Unless set.
+        default: bool,
+    },
+    /// A whole number.
+    Int(Numeric<i64>),
+    /// A number.
+    Float(Numeric<f64>),
+    /// One of several.
+    Enum {
+        /// Unless set; an entry's id.
+        default: String,
+        /// The choices.
+        entries: Vec<Entry>,
+    },
+    /// A text.
+    String {
+        /// Unless set.
+        default: String,
+    },
+    /// A file or folder.
+    Path {
+        /// Unless set.
+        default: String,
+        /// `open`, `save` or `dir`.
+        #[serde(default)]
+        mode: String,
+        /// Which files, as `*.png`.
+        #[serde(default)]
+        glob: String,
+    },
+    /// x, y.
+    Vec2 {
+        /// Unless set.
+        default: [f64; 2],
+    },
+    /// x, y, width, height.
+    Rect {
+        /// Unless set.
+        default: [f64; 4],
+    },
+    /// A seed of random choices.
+    Seed {
+        /// Unless set.
+        default: i64,
+    },
+}
+
+/// Range of a number: hard ends, softer ones for sliders.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Numeric<T> {
+    /// Unless set.
+    pub default: T,
+    /// Smallest value.
+    pub min: Option<T>,
+    /// Largest value.
+    pub max: Option<T>,
+    /// Where a slider begins.
+    pub soft_min: Option<T>,
+    /// Where a slider ends.
+    pub soft_max: Option<T>,
+    /// What an arrow key adds.
+    pub step: Option<T>,
+    /// `lin` or `log`.
+    #[serde(default)]
+    pub scale: String,
+}
+
+/// One choice of an enum.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Entry {
+    /// Its name for machines, kept in projects.
+    pub id: String,
+    /// Its name for people.
+    #[serde(default)]
+    pub label: String,
+    /// What it does.
+    #[serde(default)]
+    pub doc: String,
+}
+
+impl Manifest {
+    /// Reads the document of a note.
+    ///
+    /// # Errors
+    /// A sentence, when it is no such document or says what cannot be.
+    pub fn parse(json: &[u8]) -> Result<Self, String> {
+        let manifest: Self = serde_json::from_slice(json).map_err(|e| format!("its manifest is broken: {e}"))?;
+        if manifest.abi.0 != honami_abi::ABI_MAJOR {
+            let (major, known) = (manifest.abi.0, honami_abi::ABI_MAJOR);
+            return Err(format!("built for ABI {major}, this honami knows ABI {known}"));
+        }
+        let mut ids = BTreeSet::new();
+        for plugin in &manifest.plugins {
+            if plugin.id.is_empty() || !ids.insert(&plugin.id) {
+                return Err(format!("its manifest has two plugins, or a nameless one: {:?}", plugin.id));
+            }
+            plugin.params().map_err(|e| format!("manifest of {}: {e}", plugin.id))?;
+        }
+        Ok(manifest)
+    }
+}
+
+impl PluginManifest {
+    /// The parameters, and the new ids of renamed ones.
+    ///
+    /// # Errors
+    /// A sentence, when one is declared wrongly.
+    pub fn params(&self) -> Result<(Vec<Param>, BTreeMap<String, String>), String> {
+        let mut params: Vec<Param> = Vec::new();
+        let mut renamed = BTreeMap::new();
+        for json in &self.params {
+            let text = |key: &str| json.get(key).and_then(serde_json::Value::as_str).unwrap_or("").to_owned();
+            let (id, new) = (text("id"), text("renamed_to"));
+            if !new.is_empty() {
+                renamed.insert(id, new);
+                continue;
+            }
+            let mut param: Param =
+                serde_json::from_value(json.clone()).map_err(|e| format!("parameter {id:?}: {e}"))?;
+            if param.id.is_empty() || params.iter().any(|other| other.id == param.id) {
+                return Err(format!("two parameters, or a nameless one: {id:?}"));
+            }
+            if param.label.is_empty() {
+                param.label.clone_from(&param.id);
+            }
+            params.push(param);
+        }
+        Values::defaults(&params).validate(&params).map_err(|e| format!("default out of range: {e}"))?;
+        Ok((params, renamed))
+    }
+}
+
+#[cfg(test)]
+mod tests;

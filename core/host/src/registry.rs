@@ -1,0 +1,264 @@
+//! Finds plugin libraries along the search path and says what is in them, and whether they may be loaded.
+
+use crate::error::HostError;
+use crate::manifest::{Caps, Kind, Manifest, Param};
+use crate::{note, store};
+use std::collections::BTreeMap;
+use std::fs;
+use std::os::unix::fs::MetadataExt;
+use std::path::{Path, PathBuf};
+
+/// Where plugins are looked for; the first of two with the same id wins.
+#[derive(Clone, Debug, Default)]
+pub struct SearchPath {
+    /// Files and folders that the user named: `--plugin`, then `$HONAMI_PLUGIN_PATH`. Trusted.
+    pub named: Vec<PathBuf>,
+    /// The executable. Plugins beside it, or in `../lib/honami/plugins`, are the shipped ones.
+    pub executable: Option<PathBuf>,
+    /// Folders of third parties' plugins.
+    pub installed: Vec<PathBuf>,
+}
+
+impl SearchPath {
+    /// The search path of this process, with the `--plugin` arguments first.
+    #[must_use]
+    pub fn of_process(extra: &[PathBuf]) -> Self {
+        let mut named = extra.to_vec();
+        if let Some(paths) = std::env::var_os("HONAMI_PLUGIN_PATH") {
+            named.extend(std::env::split_paths(&paths).filter(|path| !path.as_os_str().is_empty()));
+        }
+        let absolute = |name| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
+        let data = absolute("XDG_DATA_HOME").or_else(|| absolute("HOME").map(|home| home.join(".local/share")));
+        let installed = data
+            .into_iter()
+            .map(|data| data.join("honami/plugins"))
+            .chain(["/usr/local/lib/honami/plugins", "/usr/lib/honami/plugins"].map(PathBuf::from))
+            .collect();
+        let executable = std::env::current_exe().ok().and_then(|path| path.canonicalize().ok());
+        Self { named, executable, installed }
+    }
+}
+
+/// Whether a plugin may be loaded.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Trust {
+    /// Came with this honami.
+    Shipped,
+    /// The user named it.
+    Named,
+    /// Nobody has vouched for it; says what to do.
+    No(String),
+}
+
+/// A plugin as its manifest describes it. None of its code has run.
+#[derive(Clone, Debug)]
+pub struct PluginInfo {
+    /// Full id.
+    pub id: String,
+    /// Last component of the id.
+    pub short_name: String,
+    /// What it does.
+    pub kind: Kind,
+    /// For people.
+    pub name: String,
+    /// Markdown.
+    pub doc: String,
+    /// Where the method comes from.
+    pub cite: Vec<String>,
+    /// Of its library.
+    pub version: String,
+    /// Of its library, SPDX.
+    pub license: String,
+    /// ABI that it was built for.
+    pub abi: (u32, u32),
+    /// The library's file.
+    pub library: PathBuf,
+    /// Whether it may be loaded.
+    pub trust: Trust,
+    /// Interface ids.
+    pub interfaces: Vec<String>,
+    /// Abilities.
+    pub caps: Caps,
+    /// The form that a user fills in.
+    pub params: Vec<Param>,
+    /// New ids of renamed parameters.
+    pub renamed: BTreeMap<String, String>,
+}
+
+impl PluginInfo {
+    /// Whether it has an interface, as `honami.detect/1`.
+    #[must_use]
+    pub fn offers(&self, interface: &str) -> bool {
+        self.interfaces.iter().any(|id| id == interface)
+    }
+
+    /// Hash of its library's file as it is now, lower-case hexadecimal.
+    ///
+    /// # Errors
+    /// When the file cannot be read.
+    pub fn sha256(&self) -> Result<String, HostError> {
+        store::sha256_of(&self.library)
+    }
+}
+
+/// The plugins that there are.
+#[derive(Debug, Default)]
+pub struct Registry {
+    plugins: Vec<PluginInfo>,
+    shadowed: Vec<PluginInfo>,
+    problems: Vec<HostError>,
+}
+
+impl Registry {
+    /// Looks along the search path of this process, the given files and folders first.
+    #[must_use]
+    pub fn scan(extra: &[PathBuf]) -> Self {
+        Self::scan_path(&SearchPath::of_process(extra))
+    }
+
+    /// Looks along a search path.
+    #[must_use]
+    pub fn scan_path(path: &SearchPath) -> Self {
+        let mut registry = Self::default();
+        for named in &path.named {
+            if named.is_dir() {
+                registry.scan_folder(named, |_| Trust::Named);
+            } else {
+                registry.add_file(named, Trust::Named, true);
+            }
+        }
+        if let Some((executable, folder)) = path.executable.as_deref().and_then(|exe| Some((exe, exe.parent()?))) {
+            for folder in [folder.to_owned(), folder.join("../lib/honami/plugins")] {
+                registry.scan_folder(&folder, |file| shipped(executable, &folder, file));
+            }
+        }
+        let third_party =
+            "it is a third party's; name it with --plugin PATH or in $HONAMI_PLUGIN_PATH if you trust it";
+        for folder in &path.installed {
+            registry.scan_folder(folder, |_| Trust::No(third_party.into()));
+        }
+        registry
+    }
+
+    /// The plugins, in the order of the search path.
+    #[must_use]
+    pub fn plugins(&self) -> &[PluginInfo] {
+        &self.plugins
+    }
+
+    /// Plugins hidden by one with the same id that was found first.
+    #[must_use]
+    pub fn shadowed(&self) -> &[PluginInfo] {
+        &self.shadowed
+    }
+
+    /// Files that look like plugins and cannot be used.
+    #[must_use]
+    pub fn problems(&self) -> &[HostError] {
+        &self.problems
+    }
+
+    /// The plugin with this full id or short name.
+    ///
+    /// # Errors
+    /// [`HostError::NotFound`], or [`HostError::Ambiguous`] for a short name that several share.
+    pub fn find(&self, kind: Kind, name: &str) -> Result<&PluginInfo, HostError> {
+        let of_kind = || self.plugins.iter().filter(|plugin| plugin.kind == kind);
+        if let Some(plugin) = of_kind().find(|plugin| plugin.id == name) {
+            return Ok(plugin);
+        }
+        let named: Vec<_> = of_kind().filter(|plugin| plugin.short_name == name).collect();
+        let list = |plugins: &mut dyn Iterator<Item = &str>| plugins.collect::<Vec<_>>().join(", ");
+        match named.as_slice() {
+            [plugin] => Ok(plugin),
+            [] => {
+                let known = list(&mut of_kind().map(|plugin| plugin.short_name.as_str()));
+                let known = if known.is_empty() { "none; see honami plugin list".into() } else { known };
+                Err(HostError::NotFound { kind, name: name.to_owned(), known })
+            }
+            several => {
+                let ids = list(&mut several.iter().map(|plugin| plugin.id.as_str()));
+                Err(HostError::Ambiguous { name: name.to_owned(), ids })
+            }
+        }
+    }
+
+    fn scan_folder(&mut self, folder: &Path, trust: impl Fn(&Path) -> Trust) {
+        let mut files: Vec<PathBuf> = fs::read_dir(folder)
+            .into_iter()
+            .flatten()
+            .flatten()
+            .map(|entry| entry.path())
+            .filter(|path| path.extension().is_some_and(|extension| extension == "so"))
+            .collect();
+        files.sort();
+        for file in files {
+            let trust = trust(&file);
+            self.add_file(&file, trust, false);
+        }
+    }
+
+    /// Adds the plugins of a library. One that carries no manifest is no plugin, which is a problem if it was named.
+    fn add_file(&mut self, file: &Path, trust: Trust, named: bool) {
+        match note::read(file) {
+            Ok(Some((manifest, _))) => self.add_manifest(file, &trust, manifest),
+            Ok(None) if named => self.problems.push(HostError::File {
+                path: file.to_owned(),
+                why: "is no honami plugin: it carries no manifest (.note.honami)".into(),
+            }),
+            Ok(None) => {}
+            Err(problem) => self.problems.push(problem),
+        }
+    }
+
+    fn add_manifest(&mut self, file: &Path, trust: &Trust, manifest: Manifest) {
+        for plugin in manifest.plugins {
+            let kind = serde_json::from_value(plugin.kind.clone().into());
+            let (Ok(kind), Ok((params, renamed))) = (kind, plugin.params()) else {
+                let why = format!("{} is a {}, which this honami does not know", plugin.id, plugin.kind);
+                self.problems.push(HostError::File { path: file.to_owned(), why });
+                continue;
+            };
+            let info = PluginInfo {
+                short_name: plugin.id.rsplit('.').next().unwrap_or(&plugin.id).to_owned(),
+                id: plugin.id,
+                kind,
+                name: plugin.name,
+                doc: plugin.doc,
+                cite: plugin.cite,
+                version: manifest.library.version.clone(),
+                license: manifest.library.license.clone(),
+                abi: manifest.abi,
+                library: file.to_owned(),
+                trust: trust.clone(),
+                interfaces: plugin.interfaces,
+                caps: plugin.caps,
+                params,
+                renamed,
+            };
+            let hidden = self.plugins.iter().any(|other| other.id == info.id);
+            if hidden { self.shadowed.push(info) } else { self.plugins.push(info) }
+        }
+    }
+}
+
+/// Beside the executable, with its owner and no other writer.
+fn shipped(executable: &Path, folder: &Path, file: &Path) -> Trust {
+    let Ok(owner) = fs::metadata(executable).map(|meta| meta.uid()) else {
+        return Trust::No("the owner of the executable cannot be told".into());
+    };
+    for path in [folder, file] {
+        match fs::metadata(path) {
+            Err(error) => return Trust::No(format!("{}: {error}", path.display())),
+            Ok(meta) if meta.uid() != owner => {
+                return Trust::No(format!("{} has another owner than the executable", path.display()));
+            }
+            // Where every user has a group of their own (number as the user's), its members are that user.
+            Ok(meta) if meta.mode() & 0o002 != 0 || (meta.mode() & 0o020 != 0 && meta.gid() != owner) => {
+                return Trust::No(format!("others may write it: chmod go-w {}", path.display()));
+            }
+            Ok(_) => {}
+        }
+    }
+    Trust::Shipped
+}

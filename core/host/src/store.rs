@@ -1,0 +1,112 @@
+//! The store of loaded libraries: copies named by content, so that what was hashed is what runs.
+//!
+//! The dynamic linker knows libraries by path and maps them from the file: a rebuilt plugin at the same path would be the
+//! old one, and an overwritten file kills the process. Copies that never change cure both.
+
+use crate::error::HostError;
+use rustix::process::geteuid;
+use sha2::{Digest, Sha256};
+use std::fs::{self, DirBuilder, File, OpenOptions, Permissions};
+use std::io::{self, Read, Write};
+use std::os::unix::fs::{DirBuilderExt, MetadataExt, OpenOptionsExt, PermissionsExt};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// Copies that nobody has made anew for so long are removed when another comes.
+const AGE_MAX: Duration = Duration::from_secs(30 * 24 * 3600);
+
+/// A copy in the store.
+#[derive(Clone, Debug)]
+pub struct Stored {
+    /// The copy.
+    pub path: PathBuf,
+    /// Of its content, lower-case hexadecimal.
+    pub sha256: String,
+}
+
+/// The hash of a file's content, lower-case hexadecimal.
+///
+/// # Errors
+/// When it cannot be read.
+pub fn sha256_of(path: &Path) -> Result<String, HostError> {
+    read(path).map(|bytes| hex(&bytes))
+}
+
+/// Reads a library once and keeps that content in the store.
+///
+/// # Errors
+/// When it cannot be read, or the store cannot be written.
+pub(crate) fn keep(path: &Path) -> Result<Stored, HostError> {
+    let bytes = read(path)?;
+    let sha256 = hex(&bytes);
+    let folder = folder();
+    let copy = folder.join(format!("{sha256}.so"));
+    keep_bytes(&folder, &copy, &bytes).map_err(|e| HostError::File {
+        path: copy.clone(),
+        why: format!("cannot keep a copy of {} here: {e}", path.display()),
+    })?;
+    Ok(Stored { path: copy, sha256 })
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, HostError> {
+    let why = |e: io::Error| HostError::File { path: path.to_owned(), why: format!("cannot be read: {e}") };
+    let mut bytes = Vec::new();
+    File::open(path).and_then(|mut file| file.read_to_end(&mut bytes)).map_err(why)?;
+    Ok(bytes)
+}
+
+fn hex(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// `$XDG_CACHE_HOME/honami/store`.
+fn folder() -> PathBuf {
+    let absolute = |name| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
+    let cache = absolute("XDG_CACHE_HOME").or_else(|| absolute("HOME").map(|home| home.join(".cache")));
+    let fallback = || std::env::temp_dir().join(format!("honami-{}", geteuid().as_raw()));
+    cache.unwrap_or_else(fallback).join("honami/store")
+}
+
+fn keep_bytes(folder: &Path, copy: &Path, bytes: &[u8]) -> io::Result<()> {
+    DirBuilder::new().recursive(true).mode(0o700).create(folder)?;
+    let owner = fs::symlink_metadata(folder)?;
+    if !owner.is_dir() || owner.uid() != geteuid().as_raw() {
+        return Err(io::Error::other("the folder is not yours"));
+    }
+    if owner.mode() & 0o077 != 0 {
+        fs::set_permissions(folder, Permissions::from_mode(0o700))?;
+    }
+    if fs::read(copy).is_ok_and(|kept| kept == bytes) {
+        return Ok(());
+    }
+    forget_old(folder);
+    // A name of our own until it is whole: two programs may come to keep the same library.
+    let half = folder.join(format!("half-{}-{}", std::process::id(), thread_number()));
+    let mut file = OpenOptions::new().write(true).create(true).truncate(true).mode(0o600).open(&half)?;
+    let written = file
+        .write_all(bytes)
+        .and_then(|()| file.set_permissions(Permissions::from_mode(0o400)))
+        .and_then(|()| fs::rename(&half, copy));
+    if written.is_err() {
+        fs::remove_file(&half)?;
+    }
+    written
+}
+
+/// A number that no other thread of this process has now.
+fn thread_number() -> u64 {
+    use std::hash::{DefaultHasher, Hash, Hasher};
+    let mut hasher = DefaultHasher::new();
+    std::thread::current().id().hash(&mut hasher);
+    hasher.finish()
+}
+
+/// Best effort: a copy that cannot be removed is only in the way. Copies in use stay mapped.
+fn forget_old(folder: &Path) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let age = entry.metadata().and_then(|meta| meta.modified()).ok().and_then(|time| time.elapsed().ok());
+        if age.is_some_and(|age| age > AGE_MAX) {
+            drop(fs::remove_file(entry.path()));
+        }
+    }
+}

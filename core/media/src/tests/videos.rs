@@ -1,0 +1,193 @@
+//! Videos that ffmpeg makes here: samples against known planes, odd containers, both decoders alike.
+
+use honami_model::picture::Range;
+
+use super::*;
+use crate::write::{Format, Mp4, Movie, Y4m};
+
+const SIZE: (u32, u32) = (18, 10);
+
+/// A lossless 4:4:4 source of `n` frames; the planes of each.
+fn source(place: &Place, n: u32) -> Vec<[Vec<u8>; 3]> {
+    let (width, height) = SIZE;
+    let mut file = format!("YUV4MPEG2 W{width} H{height} F25:1 Ip C444\n").into_bytes();
+    let mut frames = Vec::new();
+    for k in 0..n {
+        // Within the limited range, so that no step has a reason to clip.
+        let planes = [k, k + 50, k + 90].map(|seed| {
+            gray(width, height, seed).into_raw().iter().map(|v| 16 + v % 200).collect::<Vec<u8>>()
+        });
+        file.extend(b"FRAME\n");
+        file.extend(planes.concat());
+        frames.push(planes);
+    }
+    std::fs::write(place.path("source.y4m"), file).unwrap();
+    frames
+}
+
+#[test]
+fn luma_is_untouched_in_every_sampling_and_depth() {
+    let place = Place::new();
+    let frames = source(&place, 3);
+    for (format, colour, range) in [
+        ("yuv420p", true, Range::Limited),
+        ("yuv422p", true, Range::Limited),
+        ("yuv444p", true, Range::Limited),
+        ("yuv420p10le", true, Range::Limited),
+        ("yuv422p10le", true, Range::Limited),
+        ("yuv444p12le", true, Range::Limited),
+    ] {
+        let name = format!("{format}.mkv");
+        let make = format!("-i source.y4m -c:v ffv1 -pix_fmt {format} -sws_dither none -sws_flags accurate_rnd {name}");
+        if !ffmpeg(place.dir.path(), &make) {
+            return;
+        }
+        let media = place.open(&name);
+        assert_eq!(media.has_colour(), colour, "{format}");
+        for (n, want) in (0..).zip(&frames) {
+            let frame = media.frame(n).unwrap();
+            assert_eq!(frame.planes().range, range, "{format}");
+            assert_eq!(frame.planes().y.data, want[0], "{format}, frame {n}");
+        }
+    }
+}
+
+#[test]
+fn rgb_and_gray_video_is_what_images_are() {
+    let place = Place::new();
+    let folder = place.path("frames");
+    std::fs::create_dir(&folder).unwrap();
+    for k in 0..3 {
+        rgb(18, 10, k).save(folder.join(format!("{k}.png"))).unwrap();
+    }
+    let gray_folder = place.png_folder("gray", 3, 18, 10);
+    assert!(gray_folder.is_dir());
+    for (input, make) in [
+        ("frames", "-i frames/%d.png -c:v png out.mkv"),
+        ("frames", "-i frames/%d.png -c:v ffv1 -pix_fmt bgr0 out.mkv"),
+        ("gray", "-i gray/f%d.png -c:v ffv1 -pix_fmt gray out.mkv"),
+        ("gray", "-i gray/f%d.png -c:v ffv1 -pix_fmt gray16le out.mkv"),
+    ] {
+        if !ffmpeg(place.dir.path(), make) {
+            return;
+        }
+        let (video, images) = (place.open("out.mkv"), place.open(input));
+        assert_eq!(video.frame(0).unwrap().planes().range, Range::Full, "{make}");
+        assert_eq!(bytes_of(&video), bytes_of(&images), "{make}");
+    }
+}
+
+#[test]
+fn both_decoders_agree_on_h264() {
+    let place = Place::new();
+    let test = "-f lavfi -i testsrc2=s=66x50:r=30:d=2 -pix_fmt yuv420p -c:v libx264";
+    for (name, make, range, note) in [
+        ("b-frames", format!("{test} -bf 3 -x264-params b-pyramid=normal:ref=4"), Range::Limited, None),
+        ("baseline", format!("{test} -profile:v baseline"), Range::Limited, None),
+        ("intra", format!("{test} -g 1"), Range::Limited, None),
+        ("full range", test.replace("yuv420p", "yuvj420p"), Range::Full, None),
+        ("variable rate", format!("{test} -vf select=not(mod(n\\,5))+eq(n\\,7) -fps_mode vfr"), Range::Limited, Some("irregular")),
+        ("faststart", format!("{test} -movflags +faststart -bf 2"), Range::Limited, None),
+        ("not square", format!("{test} -vf setsar=4/3"), Range::Limited, Some("square")),
+    ] {
+        let make = format!("{make} out.mp4");
+        if !ffmpeg(place.dir.path(), &make) {
+            return;
+        }
+        agree(&place, "out.mp4", name, range, note);
+    }
+    // Cut within a group of pictures without decoding: an edit list hides the frames before.
+    ffmpeg(place.dir.path(), &format!("{test} -bf 2 -g 60 long.mp4"));
+    ffmpeg(place.dir.path(), "-ss 0.7 -i long.mp4 -c copy cut.mp4");
+    agree(&place, "cut.mp4", "edit list", Range::Limited, None);
+    for (degrees, note) in [("90", "turned"), ("180", "turned"), ("270", "turned")] {
+        ffmpeg(place.dir.path(), &format!("-i long.mp4 -c copy -metadata:s:v:0 rotate={degrees} turned.mp4"));
+        agree(&place, "turned.mp4", degrees, Range::Limited, Some(note));
+    }
+}
+
+fn agree(place: &Place, file: &str, name: &str, range: Range, note: Option<&str>) {
+    let [one, other] = [Decoder::Ffmpeg, Decoder::Builtin]
+        .map(|decoder| open(&place.path(file), &OpenOptions { decoder, ..place.options() }).unwrap());
+    assert_eq!(one.clip(), other.clip(), "{name}");
+    assert_eq!(bytes_of(&one), bytes_of(&other), "{name}");
+    assert_eq!(one.notes().len(), other.notes().len(), "{name}: {:?} {:?}", one.notes(), other.notes());
+    for media in [&one, &other] {
+        assert_eq!(media.frame(0).unwrap().planes().range, range, "{name}");
+        assert_eq!(media.clip().times.get(0), Some(0.0), "{name}");
+        let said = note.is_none_or(|note| media.notes().iter().any(|said| said.contains(note)));
+        assert!(said, "{name}: {:?}", media.notes());
+    }
+}
+
+#[test]
+fn rotation_makes_upright() {
+    let place = Place::new();
+    // White in the upper left corner of a lying picture; turned clockwise it is in the upper right one.
+    let make = "-f lavfi -i color=black:s=64x32:d=0.2 -vf drawbox=w=16:h=16:c=white:t=fill -pix_fmt yuv420p -c:v libx264";
+    if !ffmpeg(place.dir.path(), &format!("{make} lying.mp4")) {
+        return;
+    }
+    let lying = place.open("lying.mp4");
+    assert_eq!((lying.clip().width, lying.clip().height), (64, 32));
+    ffmpeg(place.dir.path(), "-i lying.mp4 -c copy -metadata:s:v:0 rotate=90 upright.mp4");
+    let upright = place.open("upright.mp4");
+    assert_eq!((upright.clip().width, upright.clip().height), (32, 64));
+    let frame = upright.frame(0).unwrap();
+    let corners = [(4, 4), (28, 4), (4, 60), (28, 60)].map(|(x, y)| frame.planes().y.row(y)[x] > 128);
+    assert_eq!(corners, [false, true, false, false]);
+}
+
+#[test]
+fn a_miscounted_stream_is_counted_the_next_time() {
+    let place = Place::new();
+    // Joining two streams by their bytes gives packets that never become frames.
+    let test = "-f lavfi -i testsrc=s=64x48:r=10:d=1 -c:v libx264";
+    if !ffmpeg(place.dir.path(), &format!("{test} -f h264 a.h264")) {
+        return;
+    }
+    let stream = std::fs::read(place.path("a.h264")).unwrap();
+    std::fs::write(place.path("b.h264"), [stream.clone(), stream].concat()).unwrap();
+    ffmpeg(place.dir.path(), "-r 10 -i b.h264 -c copy b.mp4");
+    let media = place.open("b.mp4");
+    let n = media.clip().n_frames();
+    if let Err(error) = media.frame(n - 1) {
+        assert!(error.to_string().contains("open it again"), "{error}");
+        drop(media);
+        let again = place.open("b.mp4");
+        assert!(again.clip().n_frames() < n);
+        assert_exact(&again);
+    }
+}
+
+#[test]
+fn movies_come_back() {
+    let place = Place::new();
+    for (colour, range) in [(false, Range::Full), (true, Range::Full), (true, Range::Limited)] {
+        let (width, height) = (36, 20);
+        let format = Format { width, height, fps: 30_000.0 / 1001.0, colour, range };
+        let shape = crate::source::Shape { width, height, colour, range };
+        // Smooth, so that compression keeps it close.
+        let frames: Vec<Vec<u8>> =
+            (0..5).map(|k| (0..shape.frame_len()).map(|at| 60 + (at % 36) as u8 + 4 * k).collect()).collect();
+        let mut movies: Vec<(&str, Box<dyn Movie>)> =
+            vec![("out.y4m", Box::new(Y4m::create(&place.path("out.y4m"), &format).unwrap()))];
+        match Mp4::create(&place.path("out.mp4"), &format) {
+            Ok(movie) => movies.push(("out.mp4", Box::new(movie))),
+            Err(error) => assert!(error.to_string().contains("apt install ffmpeg"), "{error}"),
+        }
+        for (name, mut movie) in movies {
+            frames.iter().for_each(|frame| movie.push(&shape.planes(frame)).unwrap());
+            movie.finish().unwrap();
+            let media = place.open(name);
+            assert_eq!(media.frame(0).unwrap().planes().range, range, "{name}");
+            assert!((media.clip().times.nominal_fps().unwrap() - format.fps).abs() < 1e-6, "{name}");
+            assert_eq!(media.clip().n_frames(), 5, "{name}");
+            for (got, want) in bytes_of(&media).iter().zip(&frames) {
+                let luma = || got[..720].iter().zip(&want[..720]);
+                let worst = luma().map(|(a, b)| a.abs_diff(*b)).max().unwrap();
+                assert!(worst <= if name == "out.y4m" { 0 } else { 6 }, "{name} {colour} {range:?}: {worst}");
+            }
+        }
+    }
+}

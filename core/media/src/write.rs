@@ -1,0 +1,122 @@
+//! Movies out: Y4M, folders of PNG, and H.264 through ffmpeg.
+//!
+//! Each is written under a temporary name beside its own and renamed when it is finished; one that is dropped
+//! before leaves nothing behind.
+
+use std::path::{Path, PathBuf};
+
+use honami_model::picture::{Planes, Range};
+
+use crate::error::MediaError;
+
+mod mp4;
+mod png;
+mod y4m;
+
+pub use mp4::Mp4;
+pub use png::PngFolder;
+pub use y4m::Y4m;
+
+/// What every frame of a movie is like.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Format {
+    /// Width, pixels.
+    pub width: u32,
+    /// Height, pixels.
+    pub height: u32,
+    /// Frames per second, positive.
+    pub fps: f64,
+    /// Whether frames have chroma.
+    pub colour: bool,
+    /// Meaning of the luma bytes.
+    pub range: Range,
+}
+
+/// A movie that is being written.
+pub trait Movie: Send {
+    /// Appends a frame.
+    ///
+    /// # Errors
+    /// [`MediaError::WrongFrame`] when it differs from the format, [`MediaError::Io`] when it cannot be written.
+    fn push(&mut self, frame: &Planes<'_>) -> Result<(), MediaError>;
+
+    /// Completes the movie and gives it its name.
+    ///
+    /// # Errors
+    /// [`MediaError::Io`], or [`MediaError::Program`] with what ffmpeg said.
+    fn finish(self: Box<Self>) -> Result<(), MediaError>;
+}
+
+/// Starts a movie whose kind the name tells: `.y4m`, `.mp4` (needs ffmpeg), else a folder of PNG images.
+///
+/// # Errors
+/// As the kinds' own `create`; [`MediaError::Unsupported`] for other extensions.
+pub fn create(path: &Path, format: &Format) -> Result<Box<dyn Movie>, MediaError> {
+    let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+    match extension.as_deref() {
+        None => Ok(Box::new(PngFolder::create(path, format)?)),
+        Some("y4m") => Ok(Box::new(Y4m::create(path, format)?)),
+        Some("mp4") => Ok(Box::new(Mp4::create(path, format)?)),
+        Some(_) if path.is_dir() => Ok(Box::new(PngFolder::create(path, format)?)),
+        Some(other) => {
+            let what = format!("movies are written as .mp4, .y4m or a folder of PNG images, not .{other}");
+            Err(MediaError::Unsupported { path: path.to_path_buf(), what })
+        }
+    }
+}
+
+impl Format {
+    fn check(&self) -> Result<(), MediaError> {
+        if self.fps.is_finite() && self.fps > 0.0 {
+            return Ok(());
+        }
+        Err(MediaError::Rate { fps: self.fps })
+    }
+
+    fn admit(&self, frame: &Planes<'_>) -> Result<(), MediaError> {
+        let found = (frame.y.width, frame.y.height, frame.uv.is_some(), frame.range);
+        let wanted = (self.width, self.height, self.colour, self.range);
+        if found == wanted {
+            return Ok(());
+        }
+        let text = |(width, height, colour, range): (u32, u32, bool, Range)| {
+            format!("{width}x{height} {} {range:?} range", if colour { "colour" } else { "gray" })
+        };
+        Err(MediaError::WrongFrame { found: text(found), wanted: text(wanted) })
+    }
+}
+
+/// A file or folder under its temporary name; removed unless it got its own.
+#[derive(Debug)]
+struct Unfinished {
+    temporary: PathBuf,
+    path: PathBuf,
+}
+
+impl Unfinished {
+    fn beside(path: &Path) -> Self {
+        let mut name = std::ffi::OsString::from(".");
+        name.push(path.file_name().unwrap_or_default());
+        name.push(format!(".{}.part", std::process::id()));
+        Self { temporary: path.with_file_name(name), path: path.to_path_buf() }
+    }
+
+    fn finish(&self) -> Result<(), MediaError> {
+        std::fs::rename(&self.temporary, &self.path).map_err(|e| self.fail("write", e))
+    }
+
+    /// A missing folder is an error of writing here, not a missing clip.
+    fn fail(&self, doing: &'static str, source: std::io::Error) -> MediaError {
+        MediaError::Io { doing, path: self.path.clone(), source: std::sync::Arc::new(source) }
+    }
+}
+
+impl Drop for Unfinished {
+    fn drop(&mut self) {
+        if self.temporary.is_dir() {
+            std::fs::remove_dir_all(&self.temporary).unwrap_or_default();
+        } else {
+            std::fs::remove_file(&self.temporary).unwrap_or_default();
+        }
+    }
+}

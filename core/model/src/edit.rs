@@ -1,0 +1,381 @@
+//! Edits: everything a person can do to a document, each with its inverse.
+//!
+//! A [`Transaction`] is what one key press did. [`apply`] either does all of it and returns the transaction
+//! that takes it back, or changes nothing. Edits are written to the project file as JSON: a variant may gain
+//! fields with a default, but is never renamed.
+
+use serde::{Deserialize, Serialize};
+
+use crate::document::{ClusteringId, Document, Key, Origin, RunId, ShownClustering, ShownRun, Track};
+use crate::track::{TrackId, TrackSet};
+
+mod label;
+
+/// One change of a document.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Edit {
+    /// A person places a new track; its number must be new.
+    AddTrack {
+        /// The new track.
+        track: TrackId,
+    },
+    /// Takes [`Edit::AddTrack`] back; a track with hand work is deleted instead.
+    RemoveTrack {
+        /// The track, without hand work.
+        track: TrackId,
+    },
+    /// Tracks vanish; their work is kept.
+    DeleteTracks {
+        /// The tracks, none of them deleted.
+        tracks: TrackSet,
+    },
+    /// Deleted tracks come back.
+    RestoreTracks {
+        /// The tracks, all of them deleted.
+        tracks: TrackSet,
+    },
+    /// A track gets a name, or loses it.
+    NameTrack {
+        /// The track.
+        track: TrackId,
+        /// The name, not empty.
+        name: Option<String>,
+    },
+    /// A person sets or confirms a sample.
+    SetKey {
+        /// The track.
+        track: TrackId,
+        /// Its frame, in the clip.
+        frame: u32,
+        /// What it becomes.
+        key: Key,
+    },
+    /// A key-frame is given back to the runs below it.
+    ClearKey {
+        /// The track.
+        track: TrackId,
+        /// The key-frame's frame.
+        frame: u32,
+    },
+    /// A run is shown; tracks not known before are born.
+    ShowRun {
+        /// The run, not shown yet.
+        run: RunId,
+        /// The tracks it has samples of.
+        tracks: TrackSet,
+        /// How many shown runs lie below it; `None`: all.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        above: Option<u32>,
+    },
+    /// A run is hidden; hand work on its tracks stays.
+    HideRun {
+        /// The run, shown.
+        run: RunId,
+        /// Tracks without hand work that are forgotten with it: those whose birth this takes back.
+        #[serde(default, skip_serializing_if = "TrackSet::is_empty")]
+        forget: TrackSet,
+    },
+    /// A clustering is shown, or none.
+    ShowClustering {
+        /// The clustering and its cut.
+        clustering: Option<ShownClustering>,
+    },
+    /// The shown clustering is cut into k groups.
+    SetCut {
+        /// Number of groups, at least 1.
+        k: u32,
+    },
+    /// A group gets a name, or loses it.
+    NameGroup {
+        /// The clustering the group belongs to.
+        clustering: ClusteringId,
+        /// The node of its dendrogram.
+        node: u32,
+        /// The name, not empty.
+        name: Option<String>,
+    },
+}
+
+/// Edits that are done and undone together, and one line that says what happened.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Transaction {
+    /// What happened, in the user's words: `track 42: key-frame at 187 (moved 6.3 px)`.
+    pub label: String,
+    /// The changes, in order.
+    pub edits: Vec<Edit>,
+}
+
+/// Why an edit cannot be done.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum EditError {
+    /// The document knows no such track.
+    #[error("there is no track {0}")]
+    NoSuchTrack(TrackId),
+    /// The track is deleted.
+    #[error("track {0} is deleted; restore it first")]
+    Deleted(TrackId),
+    /// A track that is not deleted cannot be restored.
+    #[error("track {0} is not deleted")]
+    NotDeleted(TrackId),
+    /// The number is taken.
+    #[error("track {0} exists already; reserve a new number")]
+    TrackExists(TrackId),
+    /// Forgetting the track would lose hand work.
+    #[error("track {0} has hand work; delete it instead")]
+    HasWork(TrackId),
+    /// The frame is not in the clip.
+    #[error("frame {frame} is beyond the clip, whose last frame is {}", n_frames.saturating_sub(1))]
+    BeyondClip {
+        /// The frame asked for.
+        frame: u32,
+        /// Frames of the clip.
+        n_frames: u32,
+    },
+    /// A position is NaN or infinite.
+    #[error("track {track}: the position at frame {frame} is not finite")]
+    NotFinite {
+        /// The track.
+        track: TrackId,
+        /// The frame.
+        frame: u32,
+    },
+    /// There is no key-frame to clear.
+    #[error("track {track} has no key-frame at {frame}")]
+    NoKey {
+        /// The track.
+        track: TrackId,
+        /// The frame.
+        frame: u32,
+    },
+    /// The run is shown already.
+    #[error("run {0} is shown already")]
+    RunShown(RunId),
+    /// The run is not shown.
+    #[error("run {0} is not shown")]
+    RunHidden(RunId),
+    /// Only what was born in a run, and is in no other, is forgotten with it.
+    #[error("track {track} is not run {run}'s own; it cannot be forgotten with it")]
+    NotItsOwn {
+        /// The run.
+        run: RunId,
+        /// The track.
+        track: TrackId,
+    },
+    /// There is nothing to cut.
+    #[error("no clustering is shown; show one before cutting it")]
+    NoClustering,
+    /// A cut makes at least one group.
+    #[error("a cut makes at least 1 group, not 0")]
+    NoGroups,
+    /// A name must have letters; `None` takes it away.
+    #[error("a name cannot be empty")]
+    EmptyName,
+    /// The transaction holds no edit.
+    #[error("there is nothing to do")]
+    Empty,
+}
+
+impl Edit {
+    /// The tracks whose samples this edit may change.
+    #[must_use]
+    pub fn touched(&self) -> TrackSet {
+        match self {
+            Self::AddTrack { track } | Self::RemoveTrack { track } => (*track).into(),
+            Self::SetKey { track, .. } | Self::ClearKey { track, .. } => (*track).into(),
+            Self::DeleteTracks { tracks } | Self::RestoreTracks { tracks } | Self::ShowRun { tracks, .. } => {
+                tracks.clone()
+            }
+            Self::HideRun { forget, .. } => forget.clone(),
+            Self::NameTrack { .. }
+            | Self::ShowClustering { .. }
+            | Self::SetCut { .. }
+            | Self::NameGroup { .. } => TrackSet::default(),
+        }
+    }
+}
+
+/// Does all edits of a transaction and returns the one that takes them back; its label is the same.
+///
+/// # Errors
+/// [`EditError`] names the first edit that cannot be done; then the document is as before.
+pub fn apply(document: &mut Document, transaction: &Transaction) -> Result<Transaction, EditError> {
+    if transaction.edits.is_empty() {
+        return Err(EditError::Empty);
+    }
+    let mut inverse = Vec::with_capacity(transaction.edits.len());
+    for edit in &transaction.edits {
+        match document.edit(edit) {
+            Ok(back) => inverse.push(back),
+            Err(error) => {
+                for back in inverse.iter().rev() {
+                    let undone = document.edit(back);
+                    debug_assert!(undone.is_ok(), "{back:?} takes back what was just done: {undone:?}");
+                }
+                return Err(error);
+            }
+        }
+    }
+    inverse.reverse();
+    Ok(Transaction { label: transaction.label.clone(), edits: inverse })
+}
+
+impl Document {
+    /// Does one edit and returns its inverse; an edit that fails has changed nothing.
+    fn edit(&mut self, edit: &Edit) -> Result<Edit, EditError> {
+        match edit {
+            Edit::AddTrack { track } => self.add_track(*track),
+            Edit::RemoveTrack { track } => {
+                self.forget(*track)?;
+                Ok(Edit::AddTrack { track: *track })
+            }
+            Edit::DeleteTracks { tracks } => {
+                self.mark_deleted(tracks, true)?;
+                Ok(Edit::RestoreTracks { tracks: tracks.clone() })
+            }
+            Edit::RestoreTracks { tracks } => {
+                self.mark_deleted(tracks, false)?;
+                Ok(Edit::DeleteTracks { tracks: tracks.clone() })
+            }
+            Edit::NameTrack { track, name } => {
+                check_name(name.as_deref())?;
+                let old = std::mem::replace(&mut self.live(*track)?.name, name.clone());
+                Ok(Edit::NameTrack { track: *track, name: old })
+            }
+            Edit::SetKey { track, frame, key } => self.set_key(*track, *frame, *key),
+            Edit::ClearKey { track, frame } => self.clear_key(*track, *frame),
+            Edit::ShowRun { run, tracks, above } => self.show_run(*run, tracks, *above),
+            Edit::HideRun { run, forget } => self.hide_run(*run, forget),
+            Edit::ShowClustering { clustering } => {
+                check_cut(clustering.map(|shown| shown.k))?;
+                let clustering = std::mem::replace(&mut self.clustering, *clustering);
+                Ok(Edit::ShowClustering { clustering })
+            }
+            Edit::SetCut { k } => {
+                check_cut(Some(*k))?;
+                let shown = self.clustering.as_mut().ok_or(EditError::NoClustering)?;
+                Ok(Edit::SetCut { k: std::mem::replace(&mut shown.k, *k) })
+            }
+            Edit::NameGroup { clustering, node, name } => {
+                check_name(name.as_deref())?;
+                let at = (*clustering, *node);
+                let old = match name {
+                    Some(name) => self.group_names.insert(at, name.clone()),
+                    None => self.group_names.remove(&at),
+                };
+                Ok(Edit::NameGroup { clustering: *clustering, node: *node, name: old })
+            }
+        }
+    }
+
+    fn live(&mut self, track: TrackId) -> Result<&mut Track, EditError> {
+        match self.tracks.get_mut(&track) {
+            None => Err(EditError::NoSuchTrack(track)),
+            Some(known) if known.deleted => Err(EditError::Deleted(track)),
+            Some(known) => Ok(known),
+        }
+    }
+
+    fn add_track(&mut self, track: TrackId) -> Result<Edit, EditError> {
+        if self.tracks.contains_key(&track) {
+            return Err(EditError::TrackExists(track));
+        }
+        self.tracks.insert(track, Track::new(Origin::Hand));
+        Ok(Edit::RemoveTrack { track })
+    }
+
+    fn forget(&mut self, track: TrackId) -> Result<(), EditError> {
+        let known = self.tracks.get(&track).ok_or(EditError::NoSuchTrack(track))?;
+        if known.origin != Origin::Hand {
+            return Err(EditError::NoSuchTrack(track));
+        }
+        if known.has_work() {
+            return Err(EditError::HasWork(track));
+        }
+        self.tracks.remove(&track);
+        Ok(())
+    }
+
+    fn mark_deleted(&mut self, tracks: &TrackSet, deleted: bool) -> Result<(), EditError> {
+        for track in tracks.iter() {
+            match self.tracks.get(&track) {
+                None => return Err(EditError::NoSuchTrack(track)),
+                Some(known) if known.deleted == deleted => {
+                    return Err(if deleted {
+                        EditError::Deleted(track)
+                    } else {
+                        EditError::NotDeleted(track)
+                    });
+                }
+                Some(_) => {}
+            }
+        }
+        for track in tracks.iter() {
+            if let Some(known) = self.tracks.get_mut(&track) {
+                known.deleted = deleted;
+            }
+        }
+        Ok(())
+    }
+
+    fn set_key(&mut self, track: TrackId, frame: u32, key: Key) -> Result<Edit, EditError> {
+        let n_frames = self.n_frames;
+        let known = self.live(track)?;
+        if frame >= n_frames {
+            return Err(EditError::BeyondClip { frame, n_frames });
+        }
+        if !(key.x.is_finite() && key.y.is_finite()) {
+            return Err(EditError::NotFinite { track, frame });
+        }
+        Ok(match known.keys.insert(frame, key) {
+            Some(key) => Edit::SetKey { track, frame, key },
+            None => Edit::ClearKey { track, frame },
+        })
+    }
+
+    fn clear_key(&mut self, track: TrackId, frame: u32) -> Result<Edit, EditError> {
+        let key = self.live(track)?.keys.remove(&frame).ok_or(EditError::NoKey { track, frame })?;
+        Ok(Edit::SetKey { track, frame, key })
+    }
+
+    fn show_run(&mut self, run: RunId, tracks: &TrackSet, above: Option<u32>) -> Result<Edit, EditError> {
+        if self.runs.iter().any(|shown| shown.run == run) {
+            return Err(EditError::RunShown(run));
+        }
+        let at = above.map_or(self.runs.len(), |n| self.runs.len().min(n as usize));
+        self.runs.insert(at, ShownRun { run, tracks: tracks.clone() });
+        let born = |track: &TrackId| !self.tracks.contains_key(track);
+        let forget: TrackSet = tracks.iter().filter(born).collect();
+        self.tracks.extend(forget.iter().map(|track| (track, Track::new(Origin::Run(run)))));
+        Ok(Edit::HideRun { run, forget })
+    }
+
+    fn hide_run(&mut self, run: RunId, forget: &TrackSet) -> Result<Edit, EditError> {
+        let at = self.runs.iter().position(|shown| shown.run == run).ok_or(EditError::RunHidden(run))?;
+        for track in forget.iter() {
+            let known = self.tracks.get(&track).ok_or(EditError::NoSuchTrack(track))?;
+            if known.origin != Origin::Run(run) || !self.runs_of(track).eq([run]) {
+                return Err(EditError::NotItsOwn { run, track });
+            }
+            if known.has_work() {
+                return Err(EditError::HasWork(track));
+            }
+        }
+        self.tracks.retain(|&track, _| !forget.contains(track));
+        let above = (at + 1 < self.runs.len()).then(|| u32::try_from(at).unwrap_or(u32::MAX));
+        let ShownRun { tracks, .. } = self.runs.remove(at);
+        Ok(Edit::ShowRun { run, tracks, above })
+    }
+}
+
+fn check_name(name: Option<&str>) -> Result<(), EditError> {
+    if name.is_some_and(|name| name.trim().is_empty()) { Err(EditError::EmptyName) } else { Ok(()) }
+}
+
+fn check_cut(k: Option<u32>) -> Result<(), EditError> {
+    if k == Some(0) { Err(EditError::NoGroups) } else { Ok(()) }
+}
+
+#[cfg(test)]
+mod tests;

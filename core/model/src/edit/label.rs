@@ -1,0 +1,128 @@
+//! Transactions with their line: what happened, in the user's words, with numbers.
+
+use super::{Edit, Transaction};
+use crate::document::{ClusteringId, Key, Made, RunId, ShownClustering};
+use crate::track::{TrackId, TrackSet};
+
+impl Transaction {
+    /// One edit under a line.
+    #[must_use]
+    pub fn new(label: impl Into<String>, edits: Vec<Edit>) -> Self {
+        Self { label: label.into(), edits }
+    }
+
+    /// A person places a new track, with its first key-frame.
+    #[must_use]
+    pub fn add_track(track: TrackId, frame: u32, x: f32, y: f32) -> Self {
+        let key = Key { x, y, made: Made::Set };
+        let edits = vec![Edit::AddTrack { track }, Edit::SetKey { track, frame, key }];
+        Self::new(format!("track {track}: placed at frame {frame} ({x:.1}, {y:.1})"), edits)
+    }
+
+    /// A person moves a sample, or places one; `from` is where it was shown before, pixels.
+    #[must_use]
+    pub fn set_key(track: TrackId, frame: u32, to: [f32; 2], from: Option<[f32; 2]>) -> Self {
+        let [x, y] = to;
+        let how = from.map_or_else(
+            || format!("placed at {x:.1}, {y:.1}"),
+            |was| format!("moved {:.1} px", (x - was[0]).hypot(y - was[1])),
+        );
+        let key = Key { x, y, made: Made::Set };
+        Self::new(
+            format!("track {track}: key-frame at {frame} ({how})"),
+            vec![Edit::SetKey { track, frame, key }],
+        )
+    }
+
+    /// A person finds the sample shown there right.
+    #[must_use]
+    pub fn confirm_key(track: TrackId, frame: u32, at: [f32; 2]) -> Self {
+        let key = Key { x: at[0], y: at[1], made: Made::Confirmed };
+        Self::new(
+            format!("track {track}: key-frame at {frame} (confirmed)"),
+            vec![Edit::SetKey { track, frame, key }],
+        )
+    }
+
+    /// A key-frame is given back to the runs.
+    #[must_use]
+    pub fn clear_key(track: TrackId, frame: u32) -> Self {
+        Self::new(
+            format!("track {track}: key-frame at {frame} cleared"),
+            vec![Edit::ClearKey { track, frame }],
+        )
+    }
+
+    /// Tracks are deleted.
+    #[must_use]
+    pub fn delete_tracks(tracks: TrackSet) -> Self {
+        Self::new(format!("{tracks} deleted"), vec![Edit::DeleteTracks { tracks }])
+    }
+
+    /// Deleted tracks come back.
+    #[must_use]
+    pub fn restore_tracks(tracks: TrackSet) -> Self {
+        Self::new(format!("{tracks} restored"), vec![Edit::RestoreTracks { tracks }])
+    }
+
+    /// A track gets a name, or loses it.
+    #[must_use]
+    pub fn name_track(track: TrackId, name: Option<String>) -> Self {
+        let label = named(&format!("track {track}"), name.as_deref());
+        Self::new(label, vec![Edit::NameTrack { track, name }])
+    }
+
+    /// A run is laid over those shown.
+    #[must_use]
+    pub fn show_run(run: RunId, tracks: TrackSet) -> Self {
+        Self::new(format!("run {run} shown: {tracks}"), vec![Edit::ShowRun { run, tracks, above: None }])
+    }
+
+    /// A run is hidden; hand work on its tracks stays.
+    #[must_use]
+    pub fn hide_run(run: RunId) -> Self {
+        Self::new(format!("run {run} hidden"), vec![Edit::HideRun { run, forget: TrackSet::default() }])
+    }
+
+    /// A clustering is shown, cut into k groups.
+    #[must_use]
+    pub fn show_clustering(id: ClusteringId, k: u32) -> Self {
+        Self::new(
+            format!("clustering {id} shown: {}", groups(k)),
+            vec![Edit::ShowClustering { clustering: Some(ShownClustering { id, k }) }],
+        )
+    }
+
+    /// No clustering is shown any more.
+    #[must_use]
+    pub fn hide_clustering() -> Self {
+        Self::new("groups hidden", vec![Edit::ShowClustering { clustering: None }])
+    }
+
+    /// The shown clustering is cut elsewhere.
+    #[must_use]
+    pub fn set_cut(k: u32) -> Self {
+        Self::new(format!("cut into {}", groups(k)), vec![Edit::SetCut { k }])
+    }
+
+    /// A group, a node of the clustering's dendrogram, gets a name or loses it.
+    #[must_use]
+    pub fn name_group(clustering: ClusteringId, node: u32, name: Option<String>) -> Self {
+        let label = named("group", name.as_deref());
+        Self::new(label, vec![Edit::NameGroup { clustering, node, name }])
+    }
+
+    /// The tracks whose samples this transaction may change.
+    #[must_use]
+    pub fn touched(&self) -> TrackSet {
+        self.edits.iter().flat_map(|edit| Vec::<(u32, u32)>::from(edit.touched())).collect::<Vec<_>>().into()
+    }
+}
+
+fn named(what: &str, name: Option<&str>) -> String {
+    name.map_or_else(|| format!("{what}: name removed"), |name| format!("{what} named {name}"))
+}
+
+fn groups(k: u32) -> String {
+    if k == 1 { "1 group".to_owned() } else { format!("{k} groups") }
+}

@@ -1,0 +1,128 @@
+//! Hierarchies of groups: a dendrogram where they came from merging, and its cuts.
+
+use serde::{Deserialize, Serialize};
+
+/// One merge of a dendrogram: two clusters become one at a height.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Merge {
+    /// First cluster: leaf k is k, the result of merge r is n + r.
+    pub a: u32,
+    /// Second cluster, numbered alike.
+    pub b: u32,
+    /// Dissimilarity at which they merge, finite.
+    pub height: f64,
+    /// Leaves below, at least 2.
+    pub size: u32,
+}
+
+/// A binary merge tree over n leaves in SciPy's linkage convention.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Dendrogram {
+    n_leaves: u32,
+    merges: Vec<Merge>,
+}
+
+/// Why rows are no dendrogram.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("merge {row}: {why}")]
+pub struct DendrogramError {
+    /// Index of the offending merge.
+    pub row: usize,
+    /// What is wrong with it.
+    pub why: &'static str,
+}
+
+impl Dendrogram {
+    /// Checks that the merges form one tree: n - 1 rows, each cluster used once and after it was made.
+    ///
+    /// # Errors
+    /// [`DendrogramError`] with the first row that breaks the rule.
+    pub fn new(n_leaves: u32, merges: Vec<Merge>) -> Result<Self, DendrogramError> {
+        let n = n_leaves as usize;
+        let fail = |row, why| Err(DendrogramError { row, why });
+        if merges.len() != n.saturating_sub(1) {
+            return fail(merges.len(), "n leaves need n - 1 merges");
+        }
+        let mut size_of = vec![1_u32; n];
+        let mut used = vec![false; n + merges.len()];
+        for (row, merge) in merges.iter().enumerate() {
+            let (a, b) = (merge.a as usize, merge.b as usize);
+            if a >= size_of.len() || b >= size_of.len() || a == b {
+                return fail(row, "merges clusters that do not exist yet");
+            }
+            if std::mem::replace(&mut used[a], true) || std::mem::replace(&mut used[b], true) {
+                return fail(row, "merges a cluster a second time");
+            }
+            if !merge.height.is_finite() {
+                return fail(row, "height is not finite");
+            }
+            size_of.push(size_of[a] + size_of[b]);
+            if merge.size != size_of[n + row] {
+                return fail(row, "size is not the number of leaves below");
+            }
+        }
+        Ok(Self { n_leaves, merges })
+    }
+
+    /// Number of leaves n.
+    #[must_use]
+    pub fn n_leaves(&self) -> u32 {
+        self.n_leaves
+    }
+
+    /// The n - 1 merges.
+    #[must_use]
+    pub fn merges(&self) -> &[Merge] {
+        &self.merges
+    }
+
+    /// The group of every leaf when the last `k - 1` merges are undone: k groups, fewer only if n < k.
+    ///
+    /// Groups are numbered from 0 in the order in which their first leaf appears.
+    #[must_use]
+    pub fn cut(&self, k: u32) -> Vec<u32> {
+        let mut number_of = std::collections::BTreeMap::new();
+        self.roots(k)
+            .into_iter()
+            .map(|root| {
+                let next = u32::try_from(number_of.len()).unwrap_or(u32::MAX);
+                *number_of.entry(root).or_insert(next)
+            })
+            .collect()
+    }
+
+    /// The cluster that each group of [`cut`](Self::cut) is, numbered as in [`Merge`]: unlike a group's
+    /// number it stays the same when the cut moves.
+    #[must_use]
+    pub fn nodes(&self, k: u32) -> Vec<u32> {
+        let mut seen = std::collections::BTreeSet::new();
+        self.roots(k).into_iter().filter(|&root| seen.insert(root)).collect()
+    }
+
+    /// The cluster of every leaf when the last `k - 1` merges are undone.
+    fn roots(&self, k: u32) -> Vec<u32> {
+        let n = self.n_leaves as usize;
+        let keep = n.saturating_sub(k.max(1) as usize);
+        let mut parent: Vec<u32> = (0..).take(n + self.merges.len()).collect();
+        // By height, not by row: a dendrogram with inversions is cut where its merges are highest.
+        let mut order: Vec<usize> = (0..self.merges.len()).collect();
+        order.sort_by(|&i, &j| self.merges[i].height.total_cmp(&self.merges[j].height).then(i.cmp(&j)));
+        for &row in order.iter().take(keep) {
+            let merge = self.merges[row];
+            let made = self.n_leaves + u32::try_from(row).unwrap_or(u32::MAX);
+            parent[merge.a as usize] = made;
+            parent[merge.b as usize] = made;
+        }
+        (0..self.n_leaves)
+            .map(|mut root| {
+                while parent[root as usize] != root {
+                    root = parent[root as usize];
+                }
+                root
+            })
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests;

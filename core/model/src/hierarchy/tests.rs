@@ -1,0 +1,44 @@
+//! Dendrograms: what is refused, what a cut gives.
+
+use super::{Dendrogram, Merge};
+
+fn merge(a: u32, b: u32, height: f64, size: u32) -> Merge {
+    Merge { a, b, height, size }
+}
+
+#[test]
+fn cut_undoes_the_highest_merges() {
+    let tree =
+        Dendrogram::new(4, vec![merge(0, 2, 1.0, 2), merge(1, 3, 2.0, 2), merge(4, 5, 5.0, 4)]).unwrap();
+    let cases = [
+        (0, vec![0, 0, 0, 0]),
+        (1, vec![0, 0, 0, 0]),
+        (2, vec![0, 1, 0, 1]),
+        (3, vec![0, 1, 0, 2]),
+        (4, vec![0, 1, 2, 3]),
+        (9, vec![0, 1, 2, 3]),
+    ];
+    for (k, want) in cases {
+        assert_eq!(tree.cut(k), want, "cut at {k}");
+    }
+    let nodes = [(1, vec![6]), (2, vec![4, 5]), (3, vec![4, 1, 3]), (9, vec![0, 1, 2, 3])];
+    for (k, want) in nodes {
+        assert_eq!(tree.nodes(k), want, "clusters of the groups at {k}");
+    }
+}
+
+#[test]
+fn refuses_rows_that_are_no_tree() {
+    let cases = [
+        (3, vec![merge(0, 1, 1.0, 2)], "n leaves"),
+        (2, vec![merge(0, 2, 1.0, 2)], "exist"),
+        (3, vec![merge(0, 1, 1.0, 2), merge(0, 2, 2.0, 2)], "second time"),
+        (2, vec![merge(0, 1, f64::NAN, 2)], "finite"),
+        (2, vec![merge(0, 1, 1.0, 3)], "size"),
+    ];
+    for (n, rows, want) in cases {
+        let error = Dendrogram::new(n, rows).unwrap_err();
+        assert!(error.why.contains(want), "{error}");
+    }
+    assert!(Dendrogram::new(0, vec![]).is_ok() && Dendrogram::new(1, vec![]).is_ok());
+}

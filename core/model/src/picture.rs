@@ -1,0 +1,86 @@
+//! Pictures as trackers and the screen need them: 8-bit luma, with half-size chroma where there is colour.
+
+/// A borrowed 8-bit luma picture; rows are `stride` bytes apart.
+#[derive(Clone, Copy, Debug)]
+pub struct Gray<'a> {
+    /// Pixels, row-major; at least `(height - 1) * stride + width` bytes.
+    pub data: &'a [u8],
+    /// Width, pixels.
+    pub width: u32,
+    /// Height, pixels.
+    pub height: u32,
+    /// Bytes from one row to the next, at least `width`.
+    pub stride: usize,
+}
+
+impl<'a> Gray<'a> {
+    /// A view on tightly packed rows.
+    ///
+    /// # Panics
+    /// When `data` is not `width * height` bytes.
+    #[must_use]
+    #[track_caller]
+    pub fn packed(data: &'a [u8], width: u32, height: u32) -> Self {
+        assert_eq!(data.len(), width as usize * height as usize, "luma plane of {width}x{height}");
+        Self { data, width, height, stride: width as usize }
+    }
+
+    /// One row, `width` bytes.
+    ///
+    /// # Panics
+    /// When `y` is not a row of the picture.
+    #[must_use]
+    #[track_caller]
+    pub fn row(&self, y: u32) -> &'a [u8] {
+        assert!(y < self.height, "row {y} of {}", self.height);
+        let start = y as usize * self.stride;
+        &self.data[start..start + self.width as usize]
+    }
+}
+
+/// Which bytes mean black and white in the luma plane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Range {
+    /// 16 is black, 235 white (most video).
+    Limited,
+    /// 0 is black, 255 white (images).
+    #[default]
+    Full,
+}
+
+/// The borrowed planes of a frame: luma, and chroma at half size (4:2:0, rounded up) where there is colour.
+#[derive(Clone, Copy, Debug)]
+pub struct Planes<'a> {
+    /// Luma as coded, `(height, width)`; what trackers see.
+    pub y: Gray<'a>,
+    /// Blue and red difference, each `(ceil(height/2), ceil(width/2))`, packed; `None` for gray clips.
+    pub uv: Option<(&'a [u8], &'a [u8])>,
+    /// Meaning of the luma bytes.
+    pub range: Range,
+}
+
+impl Planes<'_> {
+    /// Colour of a pixel as RGB (BT.601, the convention of SD video and JPEG).
+    ///
+    /// # Panics
+    /// When (x, y) lies outside the picture.
+    #[must_use]
+    #[track_caller]
+    pub fn rgb(&self, x: u32, y: u32) -> [u8; 3] {
+        assert!(x < self.y.width && y < self.y.height, "pixel ({x}, {y})");
+        let luma = f32::from(self.y.data[y as usize * self.y.stride + x as usize]);
+        let half_width = self.y.width.div_ceil(2) as usize;
+        let chroma_at = (y / 2) as usize * half_width + (x / 2) as usize;
+        let (cb, cr) = self
+            .uv
+            .map_or((0.0, 0.0), |(u, v)| (f32::from(u[chroma_at]) - 128.0, f32::from(v[chroma_at]) - 128.0));
+        let (luma, chroma_gain) = match self.range {
+            Range::Full => (luma, 1.0),
+            Range::Limited => ((luma - 16.0) * (255.0 / 219.0), 255.0 / 224.0),
+        };
+        let (cb, cr) = (cb * chroma_gain, cr * chroma_gain);
+        [luma + 1.402 * cr, luma - 0.344_136 * cb - 0.714_136 * cr, luma + 1.772 * cb]
+            .map(|c| c.round().clamp(0.0, 255.0) as u8)
+    }
+}

@@ -1,0 +1,356 @@
+//! All pairs of tracks, sixteen by sixteen: the loops that take the time.
+//!
+//! A block holds 16 tracks, step after step, so the inner loops run over plain arrays of 16 numbers, which
+//! compile to whatever vectors the processor has (chosen at run time). Every sum has one fixed order: the
+//! bits depend neither on the vectors nor on the threads.
+
+use std::marker::PhantomData;
+
+use rayon::prelude::*;
+
+use super::Moments;
+use crate::{MotionError, Positions};
+
+const LANES: usize = 16;
+/// One number of 16 tracks, where a vector register can take it whole.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+pub(super) struct Lanes([f32; LANES]);
+const ZERO: Lanes = Lanes([0.0; LANES]);
+/// Rows of a block that are compared with another block at once: their sums fit in registers.
+const ROWS: usize = 4;
+/// Steps after which f32 sums move to f64: they keep their seven digits.
+const RUN: usize = 64;
+/// Blocks of rows between two calls for progress.
+const BATCH: usize = 16;
+
+/// A track over one step, from a frame to the next.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Step {
+    /// Position in the first of the two frames, pixels; `None` unless seen in both.
+    place: Option<[f32; 2]>,
+    /// Direction of the velocity, radians; `None` where it is zero (errata E14).
+    heading: Option<f32>,
+}
+
+impl Step {
+    pub(super) fn is_seen(&self) -> bool {
+        self.place.is_some()
+    }
+
+    pub(super) fn is_moving(&self) -> bool {
+        self.heading.is_some()
+    }
+}
+
+/// The steps of all tracks: (n_steps, n_tracks), row-major.
+pub(super) struct Steps {
+    n_tracks: usize,
+    steps: Vec<Step>,
+}
+
+/// Three numbers of 16 tracks over the steps; the last is 1 where the first two mean something, else 0.
+pub(super) type Block = Vec<[Lanes; 3]>;
+
+/// A distance between two tracks in one step.
+pub(super) trait Distance: Copy {
+    /// The numbers it is computed from, if they are there.
+    fn parts(step: &Step) -> Option<[f32; 2]>;
+    /// The distance.
+    fn between(a: [f32; 2], b: [f32; 2]) -> f32;
+    /// Whether the sums over the pairs of each step are wanted.
+    const SUM_STEPS: bool;
+}
+
+/// Distance between positions, pixels.
+#[derive(Clone, Copy)]
+pub(super) struct Place;
+
+impl Distance for Place {
+    const SUM_STEPS: bool = true;
+
+    fn parts(step: &Step) -> Option<[f32; 2]> {
+        step.place
+    }
+
+    #[inline(always)]
+    fn between(a: [f32; 2], b: [f32; 2]) -> f32 {
+        let (dx, dy) = (a[0] - b[0], a[1] - b[1]);
+        (dx * dx + dy * dy).sqrt()
+    }
+}
+
+/// Angle between velocities, radians, 0..=π (eq. 4.2).
+#[derive(Clone, Copy)]
+pub(super) struct Movement;
+
+impl Distance for Movement {
+    const SUM_STEPS: bool = false;
+
+    fn parts(step: &Step) -> Option<[f32; 2]> {
+        step.heading.map(|heading| [heading, 0.0])
+    }
+
+    #[inline(always)]
+    fn between(a: [f32; 2], b: [f32; 2]) -> f32 {
+        let turn = (a[0] - b[0]).abs();
+        let other_way = std::f32::consts::TAU - turn;
+        // Not f32::min: its care for NaN costs three instructions, and there is none here.
+        if turn < other_way { turn } else { other_way }
+    }
+}
+
+impl Steps {
+    pub(super) fn of(positions: &Positions) -> Self {
+        let (n_tracks, n_steps) = (positions.n_tracks(), positions.n_frames() - 1);
+        let mut steps = vec![Step::default(); n_tracks * n_steps];
+        for track in 0..n_tracks {
+            for frame in 0..n_steps {
+                let (Some(here), Some(there)) = (positions.get(track, frame), positions.get(track, frame + 1))
+                else {
+                    continue;
+                };
+                let (u, v) = (f64::from(there[0]) - f64::from(here[0]), f64::from(there[1]) - f64::from(here[1]));
+                let moves = u != 0.0 || v != 0.0;
+                let heading = moves.then(|| v.atan2(u) as f32);
+                steps[frame * n_tracks + track] = Step { place: Some(here), heading };
+            }
+        }
+        Self { n_tracks, steps }
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.steps.len() / self.n_tracks
+    }
+
+    fn row(&self, step: usize) -> &[Step] {
+        &self.steps[step * self.n_tracks..][..self.n_tracks]
+    }
+
+    /// The headings there are in a step.
+    pub(super) fn headings(&self, step: usize) -> Vec<f64> {
+        self.row(step).iter().filter_map(|s| s.heading.map(f64::from)).collect()
+    }
+
+    /// Moments of the distances between positions, given their sums over pairs.
+    ///
+    /// The sum of squares needs no pairs: over i < j, Σ |pi - pj|² = n Σ |p - mean|².
+    pub(super) fn place_moments(&self, sums: &[f64]) -> Vec<Moments> {
+        let of_step = |(step, &sum): (usize, &f64)| {
+            let places: Vec<[f64; 2]> =
+                self.row(step).iter().filter_map(|s| s.place.map(|p| p.map(f64::from))).collect();
+            let n = places.len() as f64;
+            let squares = [0, 1].map(|axis| {
+                let mean = places.iter().map(|p| p[axis]).sum::<f64>() / n;
+                n * places.iter().map(|p| (p[axis] - mean).powi(2)).sum::<f64>()
+            });
+            match places.len() {
+                0 => Moments::default(),
+                _ => Moments { n_pairs: n * (n - 1.0) / 2.0, sum, squares: squares[0] + squares[1] },
+            }
+        };
+        sums.iter().enumerate().map(of_step).collect()
+    }
+
+    /// The chosen steps in blocks of 16 tracks, the last filled up with tracks that are never there.
+    pub(super) fn blocks<D: Distance>(&self, _distance: D, chosen: &[usize]) -> Vec<Block> {
+        let mut blocks = vec![vec![[ZERO; 3]; chosen.len()]; self.n_tracks.div_ceil(LANES)];
+        for (k, &step) in chosen.iter().enumerate() {
+            for (track, step) in self.row(step).iter().enumerate() {
+                if let Some([a, b]) = D::parts(step) {
+                    let lanes = &mut blocks[track / LANES][k];
+                    let lane = track % LANES;
+                    (lanes[0].0[lane], lanes[1].0[lane], lanes[2].0[lane]) = (a, b, 1.0);
+                }
+            }
+        }
+        blocks
+    }
+
+    /// Which of the chosen steps have a property, for counting those that two tracks share.
+    pub(super) fn counts(&self, chosen: &[usize], has: impl Fn(&Step) -> bool) -> Counts {
+        let n_words = chosen.len().div_ceil(64);
+        let mut bits = vec![0_u64; self.n_tracks * n_words];
+        for (k, &step) in chosen.iter().enumerate() {
+            for (track, step) in self.row(step).iter().enumerate() {
+                bits[track * n_words + k / 64] |= u64::from(has(step)) << (k % 64);
+            }
+        }
+        let row = |track: usize| &bits[track * n_words..][..n_words];
+        let totals = (0..self.n_tracks).map(|track| row(track).iter().map(|w| w.count_ones()).sum()).collect();
+        Counts { n_words, n_steps: chosen.len(), bits, totals }
+    }
+}
+
+/// For every track a bit a step.
+pub(super) struct Counts {
+    n_words: usize,
+    n_steps: usize,
+    bits: Vec<u64>,
+    totals: Vec<u32>,
+}
+
+impl Counts {
+    /// Number of steps that both tracks have.
+    pub(super) fn common(&self, i: usize, j: usize) -> u32 {
+        // Most tracks have every step.
+        if self.totals[i] as usize == self.n_steps {
+            return self.totals[j];
+        }
+        let row = |track: usize| &self.bits[track * self.n_words..][..self.n_words];
+        row(i).iter().zip(row(j)).map(|(a, b)| (a & b).count_ones()).sum()
+    }
+}
+
+/// Sums a distance over the steps for every pair, and hands each pair's element and sum to `put`.
+///
+/// Returns the sum over all pairs for every step (zeros where the distance does not ask for it).
+pub(super) fn add<D: Distance>(
+    blocks: &[Block],
+    n_tracks: usize,
+    condensed: &mut [f64],
+    put: impl Fn(&mut f64, usize, usize, f64) + Sync,
+    keep_going: &mut dyn FnMut(f64) -> bool,
+) -> Result<Vec<f64>, MotionError> {
+    let n_steps = blocks.first().map_or(0, Vec::len);
+    let mut rows = rows_by_block(condensed, n_tracks);
+    let mut step_sums = vec![0.0; n_steps];
+    let n_pairs = (n_tracks * (n_tracks - 1) / 2) as f64;
+    let mut n_done = 0;
+    for batch in rows.chunks_mut(BATCH) {
+        let sums: Vec<Vec<f64>> = batch
+            .par_iter_mut()
+            .map(|(block, rows)| {
+                let job = BlockRow::<D, _> { blocks, first: *block, n_tracks, rows, put: &put, distance: PhantomData };
+                pulp::Arch::new().dispatch(job)
+            })
+            .collect();
+        sums.iter().for_each(|sums| step_sums.iter_mut().zip(sums).for_each(|(total, sum)| *total += sum));
+        n_done += batch.iter().map(|(_, rows)| rows.len()).sum::<usize>();
+        if !keep_going(n_done as f64 / n_pairs) {
+            return Err(MotionError::Stopped);
+        }
+    }
+    Ok(step_sums)
+}
+
+/// Splits the condensed matrix where a new block of 16 rows starts.
+fn rows_by_block(mut condensed: &mut [f64], n_tracks: usize) -> Vec<(usize, &mut [f64])> {
+    let mut rows = Vec::new();
+    for block in 0..n_tracks.div_ceil(LANES) {
+        let tracks = block * LANES..n_tracks.min((block + 1) * LANES);
+        let len = tracks.map(|i| n_tracks - 1 - i).sum();
+        let (these, rest) = condensed.split_at_mut(len);
+        rows.push((block, these));
+        condensed = rest;
+    }
+    rows
+}
+
+/// One block of rows against itself and all later blocks; returns the sums of each step.
+///
+/// A type and not a closure: a closure's body is not inlined into the function that has the vectors.
+struct BlockRow<'a, D, P> {
+    blocks: &'a [Block],
+    first: usize,
+    n_tracks: usize,
+    rows: &'a mut [f64],
+    put: &'a P,
+    distance: PhantomData<D>,
+}
+
+impl<D: Distance, P: Fn(&mut f64, usize, usize, f64)> pulp::NullaryFnOnce for BlockRow<'_, D, P> {
+    type Output = Vec<f64>;
+
+    #[inline(always)]
+    fn call(self) -> Vec<f64> {
+        let Self { blocks, first, n_tracks, rows, put, .. } = self;
+        block_row::<D>(blocks, first, n_tracks, rows, put)
+    }
+}
+
+#[inline(always)]
+fn block_row<D: Distance>(
+    blocks: &[Block],
+    first: usize,
+    n_tracks: usize,
+    rows: &mut [f64],
+    put: &impl Fn(&mut f64, usize, usize, f64),
+) -> Vec<f64> {
+    let n_steps = blocks[first].len();
+    let mut totals = vec![0.0_f64; n_steps];
+    let mut lanes = vec![ZERO; if D::SUM_STEPS { n_steps } else { 0 }];
+    for second in first..blocks.len() {
+        for group in 0..LANES / ROWS {
+            let tile = tile::<D>(&blocks[first], group * ROWS, &blocks[second], &mut lanes);
+            for (r, sums) in tile.iter().enumerate() {
+                let i = first * LANES + group * ROWS + r;
+                // Start of row i within these rows, less the i + 1 columns it does not have.
+                let row = (first * LANES..i).map(|k| n_tracks - 1 - k).sum::<usize>();
+                for (lane, &sum) in sums.iter().enumerate() {
+                    let j = second * LANES + lane;
+                    if i < j && j < n_tracks {
+                        put(&mut rows[row + j - i - 1], i, j, sum);
+                    }
+                }
+            }
+        }
+        // A block against itself counts every pair twice. Sums of few blocks at a time keep f32 exact enough.
+        if second == first || (second - first) % 16 == 0 || second + 1 == blocks.len() {
+            let share = if second == first { 0.5 } else { 1.0 };
+            for (total, lanes) in totals.iter_mut().zip(&mut lanes) {
+                *total += share * lanes.0.iter().map(|&sum| f64::from(sum)).sum::<f64>();
+                *lanes = ZERO;
+            }
+        }
+    }
+    totals
+}
+
+/// Four tracks of a block against the 16 of another: sums over the steps, and onto the sums of each step.
+#[inline(always)]
+fn tile<D: Distance>(a: &Block, row: usize, b: &Block, step_sums: &mut [Lanes]) -> [[f64; LANES]; ROWS] {
+    let mut totals = [[0.0_f64; LANES]; ROWS];
+    let n_steps = a.len().min(b.len());
+    for start in (0..n_steps).step_by(RUN) {
+        let run = start..n_steps.min(start + RUN);
+        // Four variables and not an array of them, so that they stay in registers.
+        let (mut s0, mut s1, mut s2, mut s3) = (ZERO, ZERO, ZERO, ZERO);
+        let (a, b) = (&a[run.clone()], &b[run.clone()]);
+        let step_sums = if D::SUM_STEPS { &mut step_sums[run] } else { &mut [] };
+        let mut step_sums = step_sums.iter_mut();
+        for (a, b) in a.iter().zip(b) {
+            let [u, v, w] = a.each_ref().map(|lanes| lanes.0[row..row + ROWS].try_into().unwrap_or([0.0; ROWS]));
+            let d0 = distances::<D>([u[0], v[0]], w[0], b);
+            let d1 = distances::<D>([u[1], v[1]], w[1], b);
+            let d2 = distances::<D>([u[2], v[2]], w[2], b);
+            let d3 = distances::<D>([u[3], v[3]], w[3], b);
+            (s0, s1, s2, s3) = (plus(s0, d0), plus(s1, d1), plus(s2, d2), plus(s3, d3));
+            if D::SUM_STEPS && let Some(sum) = step_sums.next() {
+                *sum = plus(*sum, plus(plus(d0, d1), plus(d2, d3)));
+            }
+        }
+        for (totals, sums) in totals.iter_mut().zip([s0, s1, s2, s3]) {
+            totals.iter_mut().zip(sums.0).for_each(|(total, sum)| *total += f64::from(sum));
+        }
+    }
+    totals
+}
+
+/// From one track to the 16 of a block.
+#[inline(always)]
+fn distances<D: Distance>(own: [f32; 2], weight: f32, b: &[Lanes; 3]) -> Lanes {
+    let mut out = ZERO;
+    for lane in 0..LANES {
+        out.0[lane] = D::between(own, [b[0].0[lane], b[1].0[lane]]) * (weight * b[2].0[lane]);
+    }
+    out
+}
+
+#[inline(always)]
+fn plus(mut a: Lanes, b: Lanes) -> Lanes {
+    for lane in 0..LANES {
+        a.0[lane] += b.0[lane];
+    }
+    a
+}

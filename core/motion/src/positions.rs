@@ -1,0 +1,68 @@
+//! Positions of several tracks over the same frames, with gaps.
+
+use honami_model::track::Span;
+
+/// Where n tracks are in T frames; a position is there only where the feature was seen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Positions {
+    n_tracks: usize,
+    n_frames: usize,
+    /// (n_tracks, n_frames), row-major.
+    at: Vec<Option<[f32; 2]>>,
+}
+
+impl Positions {
+    /// n tracks over T frames, none seen yet.
+    #[must_use]
+    pub fn new(n_tracks: usize, n_frames: usize) -> Self {
+        Self { n_tracks, n_frames, at: vec![None; n_tracks * n_frames] }
+    }
+
+    /// The seen samples (tracked or newborn) of spans, frame 0 to the last one that any covers.
+    #[must_use]
+    pub fn of_spans(spans: &[&Span]) -> Self {
+        let n_frames = spans.iter().map(|span| span.frames().end as usize).max().unwrap_or(0);
+        let mut positions = Self::new(spans.len(), n_frames);
+        for (track, span) in spans.iter().enumerate() {
+            for (sample, frame) in span.samples.iter().zip(span.first_frame as usize..) {
+                if sample.status.is_seen() {
+                    positions.set(track, frame, [sample.x, sample.y]);
+                }
+            }
+        }
+        positions
+    }
+
+    /// Marks a track as seen at a position, pixels; one that is not finite counts as not seen.
+    ///
+    /// # Panics
+    /// When there is no such track or frame.
+    #[track_caller]
+    pub fn set(&mut self, track: usize, frame: usize, [x, y]: [f32; 2]) {
+        assert!(track < self.n_tracks && frame < self.n_frames, "track {track}, frame {frame}");
+        self.at[track * self.n_frames + frame] = (x.is_finite() && y.is_finite()).then_some([x, y]);
+    }
+
+    /// Position of a track in a frame, where it was seen.
+    ///
+    /// # Panics
+    /// When there is no such track or frame.
+    #[must_use]
+    #[track_caller]
+    pub fn get(&self, track: usize, frame: usize) -> Option<[f32; 2]> {
+        assert!(track < self.n_tracks && frame < self.n_frames, "track {track}, frame {frame}");
+        self.at[track * self.n_frames + frame]
+    }
+
+    /// Number of tracks n.
+    #[must_use]
+    pub fn n_tracks(&self) -> usize {
+        self.n_tracks
+    }
+
+    /// Number of frames T.
+    #[must_use]
+    pub fn n_frames(&self) -> usize {
+        self.n_frames
+    }
+}

@@ -1,0 +1,145 @@
+//! Runs: what was appended is what is read, whoever died in between.
+
+use std::collections::BTreeMap;
+
+use honami_model::edit::Transaction;
+use honami_model::track::{Sample, TrackId};
+use proptest::prelude::*;
+
+use super::{RunInfo, RunState};
+use crate::testing::{Bench, N_FRAMES, head, rows, sample, tracks};
+use crate::{Access, Project, StoreError};
+
+/// All samples of a run by track and frame, as the project gives them track by track and all together.
+fn samples_of(project: &Project, run: &RunInfo) -> BTreeMap<(u32, u32), Sample> {
+    let all = project.run_tracks(run.id).expect("readable");
+    let mut one_by_one = Vec::new();
+    for track in (0..20).map(TrackId) {
+        one_by_one
+            .extend(project.run_spans(run.id, track).expect("readable").into_iter().map(|s| (track, s)));
+    }
+    assert_eq!(one_by_one, all);
+    all.iter()
+        .flat_map(|(track, span)| span.frames().map(|frame| (track.0, frame)).zip(span.samples.clone()))
+        .collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+    /// Chunks in any order, with gaps and repetitions, read while the run works, after it was interrupted
+    /// or ended, and after reopening; in several passes, for tests hold few samples at once.
+    #[test]
+    fn reads_what_was_written_last(
+        pieces in prop::collection::vec((0_u32..20, 1_u32..6, 0_u32..120, 0_u32..80), 0..12),
+        end in 0..3,
+    ) {
+        let bench = Bench::new();
+        let mut project = bench.create();
+        let mut writer = project.begin_run(&head(0..20)).unwrap();
+        let id = writer.run();
+        let mut want = BTreeMap::new();
+        for (k, (track, n_tracks, frame, n_frames)) in (0_u8..).zip(pieces) {
+            let (numbers, frames) = (track..(track + n_tracks).min(20), frame..frame + n_frames);
+            let mut frames_of_samples = rows(numbers, frames);
+            for (frame, row) in (frame..).zip(&mut frames_of_samples) {
+                for (track, sample) in row {
+                    sample.x = f32::from(k);
+                    want.insert((track.0, frame), *sample);
+                }
+            }
+            writer.append(frame, &frames_of_samples).unwrap();
+        }
+        let working = project.run(id).unwrap();
+        prop_assert_eq!(&working.state, &RunState::Running);
+        prop_assert_eq!(&samples_of(&project, &working), &want);
+        let state = match end {
+            0 => { writer.finish().unwrap(); RunState::Complete }
+            1 => { writer.abandon("by hand").unwrap(); RunState::Stopped { reason: "by hand".to_owned() } }
+            _ => { drop(writer); RunState::Interrupted }
+        };
+        drop(project);
+        for access in [Access::Read, Access::Write, Access::Read] {
+            let project = Project::open(&bench.path(), access).unwrap();
+            let ended = project.run(id).unwrap();
+            prop_assert_eq!((&ended.state, &ended.head), (&state, &head(0..20)));
+            prop_assert_eq!(&samples_of(&project, &ended), &want);
+            if access == Access::Write {
+                let used: Vec<u32> = ended.tracks.iter().map(|track| track.0).collect();
+                let mut want_used: Vec<u32> = want.keys().map(|key| key.0).collect();
+                want_used.dedup();
+                prop_assert_eq!(used, want_used);
+                let last = want.keys().map(|key| key.1 + 1).max().unwrap_or(0);
+                prop_assert_eq!(ended.found.end, last);
+            }
+        }
+    }
+}
+
+#[test]
+fn edits_go_on_while_a_run_writes() {
+    let bench = Bench::new();
+    let mut project = bench.create();
+    let numbers = project.reserve_tracks(10).unwrap();
+    let mut writer = project.begin_run(&head(numbers.clone())).unwrap();
+    let run = writer.run();
+    let work = std::thread::Builder::new().name("run".to_owned()).spawn(move || {
+        for frame in (0..N_FRAMES).step_by(4) {
+            writer.append(frame, &rows(0..10, frame..frame + 4))?;
+        }
+        writer.finish()
+    });
+    let mine = project.reserve_tracks(1).unwrap().start;
+    project.commit(Transaction::add_track(TrackId(mine), 0, 1.0, 1.0)).unwrap();
+    for frame in 1..60 {
+        project.commit(Transaction::set_key(TrackId(mine), frame, [2.0, 2.0], None)).unwrap();
+        assert!(project.shown(TrackId(mine)).unwrap().is_some());
+    }
+    assert_eq!(work.unwrap().join().unwrap().unwrap(), run);
+    project.commit(Transaction::show_run(run, project.run(run).unwrap().tracks)).unwrap();
+    assert_eq!(project.shown_all().unwrap().len(), 11);
+    assert_eq!(project.history().entries().len(), 62);
+    assert_eq!(project.integrity().unwrap(), Vec::<String>::new());
+}
+
+#[test]
+fn a_working_run_keeps_the_lock() {
+    let bench = Bench::new();
+    let mut project = bench.create();
+    let mut writer = project.begin_run(&head(0..2)).unwrap();
+    drop(project);
+    let refused = Project::open(&bench.path(), Access::Write);
+    assert!(matches!(refused, Err(StoreError::Locked { .. })));
+    writer.append(0, &rows(0..2, 0..3)).unwrap();
+    let reader = Project::open(&bench.path(), Access::Read).unwrap();
+    assert_eq!(reader.run(writer.run()).unwrap().state, RunState::Running);
+    let run = writer.finish().unwrap();
+    assert_eq!(reader.run(run).unwrap().state, RunState::Complete, "a reader sees results that end");
+    assert!(Project::open(&bench.path(), Access::Write).is_ok());
+}
+
+#[test]
+fn only_what_exists_and_has_ended_is_shown() {
+    let bench = Bench::new();
+    let mut project = bench.create();
+    let mut writer = project.begin_run(&head(0..2)).unwrap();
+    let run = writer.run();
+    let show = |numbers| Transaction::show_run(run, tracks(numbers));
+    assert!(matches!(project.commit(show(0..2)), Err(StoreError::RunWorks(_))));
+    let nan = vec![vec![(TrackId(1), Sample { x: f32::NAN, ..sample(1, 5) })]];
+    assert_eq!(
+        writer.append(5, &nan).unwrap_err().to_string(),
+        "track 1: the position at frame 5 is not finite; the tracker must not return it"
+    );
+    writer.append(0, &rows(0..2, 0..9)).unwrap();
+    writer.finish().unwrap();
+    assert!(matches!(project.commit(show(0..3)), Err(StoreError::NotInRun { track: TrackId(2), .. })));
+    let other = honami_model::document::RunId(9);
+    assert!(matches!(
+        project.commit(Transaction::show_run(other, tracks(0..1))),
+        Err(StoreError::NoSuchRun(_))
+    ));
+    assert_eq!(project.revision().0, 0, "nothing happened");
+    project.commit(show(0..2)).unwrap();
+    assert_eq!(project.run_at(TrackId(1), 3).unwrap(), Some(run));
+    assert_eq!(project.run_at(TrackId(1), 9).unwrap(), None);
+}

@@ -1,0 +1,135 @@
+//! The database's shape, and how older shapes become this one.
+
+use std::path::Path;
+use std::time::Duration;
+
+use rusqlite::{Connection, ErrorCode, OpenFlags, TransactionBehavior};
+
+use crate::error::StoreError;
+
+/// `HONA`: what `file` and SQLite see in the header.
+const APPLICATION_ID: u32 = 0x484F_4E41;
+
+/// How long a session waits for another one's short transaction.
+pub(crate) const BUSY_TIMEOUT: Duration = Duration::from_secs(20);
+
+/// Step n brings schema n to n + 1; a step is never changed once it was released.
+const MIGRATIONS: [&str; 1] = ["
+    CREATE TABLE state (            -- one row: what changes with every edit
+        id          INTEGER PRIMARY KEY CHECK (id = 1),
+        head        INTEGER NOT NULL REFERENCES entry,
+        next_track  INTEGER NOT NULL
+    );
+    CREATE TABLE clip (             -- one row
+        id          INTEGER PRIMARY KEY CHECK (id = 1),
+        path        BLOB NOT NULL,  -- relative to the project where possible
+        sha256      TEXT NOT NULL,
+        fps         REAL,           -- the user's override
+        width       INTEGER NOT NULL,
+        height      INTEGER NOT NULL,
+        times       BLOB NOT NULL   -- f64, seconds
+    );
+    CREATE TABLE entry (            -- the undo tree; 0 is its root
+        id          INTEGER PRIMARY KEY,
+        parent      INTEGER REFERENCES entry,
+        next        INTEGER REFERENCES entry,  -- the child visited last
+        label       TEXT NOT NULL,
+        author      TEXT NOT NULL,
+        time        TEXT NOT NULL,
+        command     TEXT NOT NULL,  -- edits, JSON
+        inverse     TEXT NOT NULL
+    );
+    CREATE TABLE run (
+        id          INTEGER PRIMARY KEY,
+        state       TEXT NOT NULL,  -- running, complete, stopped, interrupted
+        reason      TEXT,           -- why it was stopped
+        first_frame INTEGER NOT NULL,
+        end_frame   INTEGER NOT NULL,
+        seeds       TEXT NOT NULL,  -- ranges of tracks it began with, JSON
+        provenance  TEXT NOT NULL   -- JSON
+    );
+    CREATE TABLE chunk (            -- frames x all tracks, while a run works
+        id          INTEGER PRIMARY KEY,
+        run         INTEGER NOT NULL REFERENCES run,
+        data        BLOB NOT NULL
+    );
+    CREATE INDEX chunk_of_run ON chunk (run);
+    CREATE TABLE span (             -- consecutive samples of a track, when a run has ended
+        id          INTEGER PRIMARY KEY,
+        run         INTEGER NOT NULL REFERENCES run,
+        track       INTEGER NOT NULL,
+        first_frame INTEGER NOT NULL,
+        n_frames    INTEGER NOT NULL,
+        data        BLOB NOT NULL
+    );
+    CREATE UNIQUE INDEX span_of_run ON span (run, track, first_frame, n_frames);
+    CREATE TABLE clustering (
+        id          INTEGER PRIMARY KEY,
+        tracks      TEXT NOT NULL,  -- JSON, leaf k is the k-th
+        merges      BLOB NOT NULL,  -- a u32, b u32, height f64, size u32
+        cut         INTEGER NOT NULL,
+        outliers    TEXT NOT NULL,  -- frames, JSON
+        notes       TEXT NOT NULL,  -- JSON
+        provenance  TEXT NOT NULL   -- JSON
+    );
+"];
+
+/// The schema this program writes.
+pub(crate) const SCHEMA: u32 = MIGRATIONS.len() as u32;
+
+/// A connection to an existing or new database file.
+pub(crate) fn connect(path: &Path, write: bool) -> Result<Connection, StoreError> {
+    let conn = match open(path, OpenFlags::SQLITE_OPEN_READ_WRITE) {
+        // A reader may lack the right to write; with it, it can roll a dead writer's journal back.
+        Err(_) if !write => open(path, OpenFlags::SQLITE_OPEN_READ_ONLY)?,
+        other => other?,
+    };
+    conn.pragma_update(None, "query_only", !write)?;
+    Ok(conn)
+}
+
+fn open(path: &Path, access: OpenFlags) -> rusqlite::Result<Connection> {
+    let conn = Connection::open_with_flags(path, access | OpenFlags::SQLITE_OPEN_NO_MUTEX)?;
+    conn.busy_timeout(BUSY_TIMEOUT)?;
+    // EXTRA is FULL plus a sync of the folder after the journal is unlinked: without it a commit that was
+    // acknowledged could be rolled back by a power cut.
+    conn.pragma_update(None, "synchronous", "EXTRA")?;
+    conn.pragma_update(None, "foreign_keys", true)?;
+    conn.set_prepared_statement_cache_capacity(64);
+    Ok(conn)
+}
+
+/// Makes a database in an empty file.
+pub(crate) fn create(path: &Path) -> Result<Connection, StoreError> {
+    let mut conn = open(path, OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_CREATE)?;
+    conn.pragma_update(None, "application_id", APPLICATION_ID)?;
+    migrate(&mut conn, 0)?;
+    Ok(conn)
+}
+
+/// Whether the database is a project of a schema known here; brings an older one up when writing.
+pub(crate) fn check(conn: &mut Connection, write: bool, path: &Path) -> Result<(), StoreError> {
+    let pragma = |name| conn.pragma_query_value(None, name, |row| row.get::<_, u32>(0));
+    let application_id = match pragma("application_id") {
+        Err(error) if error.sqlite_error_code() == Some(ErrorCode::NotADatabase) => 0,
+        other => other?,
+    };
+    if application_id != APPLICATION_ID {
+        return Err(StoreError::NotAProject(path.to_owned()));
+    }
+    match pragma("user_version")? {
+        SCHEMA => Ok(()),
+        came if came > SCHEMA => Err(StoreError::Newer { came, known: SCHEMA, path: path.to_owned() }),
+        _ if !write => Err(StoreError::ReadOnly),
+        older => migrate(conn, older),
+    }
+}
+
+fn migrate(conn: &mut Connection, from: u32) -> Result<(), StoreError> {
+    let tx = conn.transaction_with_behavior(TransactionBehavior::Immediate)?;
+    for step in &MIGRATIONS[from as usize..] {
+        tx.execute_batch(step)?;
+    }
+    tx.pragma_update(None, "user_version", SCHEMA)?;
+    Ok(tx.commit()?)
+}

@@ -1,0 +1,114 @@
+//! The shown tracks: hand work over runs, composed when asked for and kept until an edit touches them.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use honami_model::compose::compose;
+use honami_model::document::RunId;
+use honami_model::track::{Source, Span, TrackId, TrackSet};
+
+use crate::error::StoreError;
+use crate::project::Project;
+
+/// Composed tracks; those an edit touched are missing.
+#[derive(Debug, Default)]
+pub(crate) struct Shown(RefCell<BTreeMap<TrackId, Arc<Span>>>);
+
+impl Shown {
+    pub(crate) fn forget(&self, tracks: &TrackSet) {
+        let mut known = self.0.borrow_mut();
+        if tracks.len() < known.len() / 4 {
+            tracks.iter().for_each(|track| drop(known.remove(&track)));
+        } else {
+            known.retain(|&track, _| !tracks.contains(track));
+        }
+    }
+}
+
+/// Missing tracks from which on whole runs are read instead of one track after the other.
+const MANY: usize = 16;
+
+impl Project {
+    /// A track as a person sees it; `None` when it is not shown or has no samples.
+    ///
+    /// # Errors
+    /// What SQLite met.
+    pub fn shown(&self, track: TrackId) -> Result<Option<Arc<Span>>, StoreError> {
+        let document = self.document();
+        let Some(known) = document.track(track).filter(|_| document.shows(track)) else { return Ok(None) };
+        if let Some(span) = self.shown.0.borrow().get(&track) {
+            return Ok(Some(Arc::clone(span)).filter(|span| !span.samples.is_empty()));
+        }
+        let mut spans = Vec::new();
+        for run in document.runs_of(track) {
+            spans.extend(self.run_spans(run, track)?);
+        }
+        let span = Arc::new(compose(known, &spans.iter().collect::<Vec<_>>(), &self.clip().clip.times));
+        self.shown.0.borrow_mut().insert(track, Arc::clone(&span));
+        Ok(Some(span).filter(|span| !span.samples.is_empty()))
+    }
+
+    /// All tracks as a person sees them, in order of their numbers. Composed once, then kept until edits
+    /// touch them: asking again costs little.
+    ///
+    /// # Errors
+    /// What SQLite met.
+    pub fn shown_all(&self) -> Result<Vec<(TrackId, Arc<Span>)>, StoreError> {
+        let document = self.document();
+        let missing: TrackSet = {
+            let known = self.shown.0.borrow();
+            document.tracks().map(|(id, _)| id).filter(|id| !known.contains_key(id)).collect()
+        };
+        if missing.len() >= MANY {
+            self.compose_many(&missing)?;
+        }
+        let ids: Vec<TrackId> = document.tracks().map(|(id, _)| id).collect();
+        ids.into_iter()
+            .filter_map(|id| self.shown(id).transpose().map(|span| span.map(|span| (id, span))))
+            .collect()
+    }
+
+    /// The run that a shown sample comes from; `None` for hand work and interpolation.
+    ///
+    /// # Errors
+    /// What SQLite met.
+    pub fn run_at(&self, track: TrackId, frame: u32) -> Result<Option<RunId>, StoreError> {
+        let by_hand = self
+            .shown(track)?
+            .and_then(|span| span.get(frame).map(|sample| sample.source))
+            .is_none_or(|source| matches!(source, Source::Key | Source::Sketch | Source::Interpolated));
+        if by_hand {
+            return Ok(None);
+        }
+        let sql = "SELECT EXISTS (SELECT 1 FROM span
+                   WHERE run = ?1 AND track = ?2 AND first_frame <= ?3 AND first_frame + n_frames > ?3)";
+        let mut statement = self.conn.prepare_cached(sql)?;
+        for run in self.document().runs_of(track).rev() {
+            if statement.query_row([run.0, track.0, frame], |row| row.get(0))? {
+                return Ok(Some(run));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Composes tracks in one pass over each shown run.
+    fn compose_many(&self, tracks: &TrackSet) -> Result<(), StoreError> {
+        let document = self.document();
+        let mut spans: BTreeMap<TrackId, Vec<Span>> = BTreeMap::new();
+        for shown in document.runs() {
+            self.each_span(
+                shown.run,
+                |track| tracks.contains(track) && shown.tracks.contains(track),
+                |track, span| spans.entry(track).or_default().push(span),
+            )?;
+        }
+        let mut known = self.shown.0.borrow_mut();
+        for (id, track) in document.tracks().filter(|&(id, _)| tracks.contains(id)) {
+            let spans = spans.remove(&id).unwrap_or_default();
+            let span = compose(track, &spans.iter().collect::<Vec<_>>(), &self.clip().clip.times);
+            known.insert(id, Arc::new(span));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,19 @@
+//! Pyramids, sub-pixel sampling, corners, correlation and optical flow on 8-bit luma.
+//!
+//! Pixel convention, here and everywhere in honami: x right, y down, `(0, 0)` is the **centre** of the
+//! top-left pixel, so a picture covers `-0.5..width - 0.5` by `-0.5..height - 0.5`. Positions are `[x, y]` in
+//! pixels. Windows are given by radius; their side is `2 * radius + 1`.
+//!
+//! Nothing here does input or output, keeps a clock or draws a random number; results are the same bits for
+//! any number of threads and at every SIMD level.
+
+pub mod detect;
+pub mod klt;
+pub mod ncc;
+pub mod pyramid;
+pub mod sample;
+pub mod simd;
+pub mod texture;
+
+/// A position in a picture, `[x, y]`, pixels.
+pub type Point = [f32; 2];

@@ -1,0 +1,122 @@
+//! Normalised cross-correlation of two windows at sub-pixel positions.
+
+use honami_model::picture::Gray;
+
+use crate::{Point, sample};
+
+/// A window whose brightness varies less than this (standard deviation, gray levels) has nothing to correlate:
+/// below it rounding to 8 bits alone makes the pattern.
+const FLAT_GRAY: f32 = 0.3;
+
+/// Compares windows of one radius; keeps its buffers between calls.
+#[derive(Debug)]
+pub struct Ncc {
+    radius_px: u32,
+    first: Vec<f32>,
+    second: Vec<f32>,
+}
+
+impl Ncc {
+    /// For windows of this radius.
+    #[must_use]
+    pub fn new(radius_px: u32) -> Self {
+        Self { radius_px, first: Vec::new(), second: Vec::new() }
+    }
+
+    /// Correlation of the window around `at` in `a` with that around `to` in `b`, -1..=1, 1 for the same pattern
+    /// whatever its brightness and contrast: `Σ(p-p̄)(q-q̄) / √(Σ(p-p̄)² Σ(q-q̄)²)`.
+    ///
+    /// `None` where either window is flat. Beyond the border a picture goes on as its outermost pixels.
+    ///
+    /// # Panics
+    /// When a picture has no pixels.
+    #[must_use]
+    #[track_caller]
+    pub fn compare(&mut self, a: &Gray<'_>, at: Point, b: &Gray<'_>, to: Point) -> Option<f32> {
+        sample::patch(a, at, self.radius_px, &mut self.first);
+        sample::patch(b, to, self.radius_px, &mut self.second);
+        let n = self.first.len() as f32;
+        let mean_first = sum(&self.first, &self.first, |p, _| p) / n;
+        let mean_second = sum(&self.second, &self.second, |q, _| q) / n;
+        for p in &mut self.first {
+            *p -= mean_first;
+        }
+        for q in &mut self.second {
+            *q -= mean_second;
+        }
+        let power_first = sum(&self.first, &self.first, |p, q| p * q);
+        let power_second = sum(&self.second, &self.second, |p, q| p * q);
+        if power_first.min(power_second) < n * FLAT_GRAY * FLAT_GRAY {
+            return None;
+        }
+        let together = sum(&self.first, &self.second, |p, q| p * q);
+        Some((together / (power_first * power_second).sqrt()).clamp(-1.0, 1.0))
+    }
+}
+
+/// Sum of `f(p, q)` in sixteen fixed lanes: the same order, hence the same bits, however it is compiled.
+fn sum(p: &[f32], q: &[f32], f: impl Fn(f32, f32) -> f32) -> f32 {
+    const LANES: usize = 16;
+    let mut lanes = [0.0_f32; LANES];
+    let (p, q) = (p.chunks_exact(LANES), q.chunks_exact(LANES));
+    let tail: f32 = p.remainder().iter().zip(q.remainder()).map(|(&p, &q)| f(p, q)).sum();
+    for (p, q) in p.zip(q) {
+        for lane in 0..LANES {
+            lanes[lane] += f(p[lane], q[lane]);
+        }
+    }
+    lanes.iter().sum::<f32>() + tail
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::texture;
+
+    const SIZE: u32 = 64;
+
+    fn picture(shift: Point, gain: f64, offset: f64) -> Vec<u8> {
+        texture::render(SIZE, SIZE, |x, y| {
+            offset + gain * texture::value(3, x - f64::from(shift[0]), y - f64::from(shift[1]))
+        })
+    }
+
+    #[test]
+    fn same_pattern_is_one_whatever_gain_offset_and_shift() {
+        let a = picture([0.0, 0.0], 1.0, 0.0);
+        let gray_a = Gray::packed(&a, SIZE, SIZE);
+        for (shift, gain, offset, want) in [
+            ([0.0, 0.0], 1.0, 0.0, 0.9999),
+            ([0.0, 0.0], 0.5, 60.0, 0.997),
+            ([1.5, -0.75], 1.0, 0.0, 0.998),
+            ([1.5, -0.75], 0.6, 40.0, 0.998),
+        ] {
+            let b = picture(shift, gain, offset);
+            let to = [32.0 + shift[0], 32.0 + shift[1]];
+            let ncc = Ncc::new(7).compare(&gray_a, [32.0, 32.0], &Gray::packed(&b, SIZE, SIZE), to);
+            assert!(ncc.is_some_and(|c| c >= want), "{shift:?} {gain} {offset}: {ncc:?}");
+        }
+        let negative: Vec<u8> = a.iter().map(|p| 255 - p).collect();
+        let ncc =
+            Ncc::new(7).compare(&gray_a, [32.0, 32.0], &Gray::packed(&negative, SIZE, SIZE), [32.0, 32.0]);
+        assert!(ncc.is_some_and(|c| c < -0.9999), "{ncc:?}");
+    }
+
+    #[test]
+    fn two_by_two_by_hand() {
+        // Windows of radius 0 have one pixel: no variance, no correlation.
+        let picture = Gray::packed(&[0, 255, 255, 0], 2, 2);
+        assert_eq!(Ncc::new(0).compare(&picture, [0.0, 0.0], &picture, [1.0, 0.0]), None);
+    }
+
+    #[test]
+    fn flat_windows_have_none() {
+        let (flat, textured) = (vec![90; 64 * 64], picture([0.0, 0.0], 1.0, 0.0));
+        let (flat, textured) = (Gray::packed(&flat, SIZE, SIZE), Gray::packed(&textured, SIZE, SIZE));
+        for (a, b) in [(&flat, &textured), (&textured, &flat), (&flat, &flat)] {
+            assert_eq!(Ncc::new(5).compare(a, [30.0, 30.0], b, [30.0, 30.0]), None);
+        }
+        let dot = Gray::packed(&[7], 1, 1);
+        assert_eq!(Ncc::new(3).compare(&dot, [0.0, 0.0], &dot, [0.0, 0.0]), None);
+    }
+}

@@ -1,0 +1,70 @@
+//! What this machine has, what each missing piece would add, and how to install it.
+
+use honami_host::Registry;
+use serde::Serialize;
+
+/// One piece of the machine.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Finding {
+    /// What was looked for.
+    pub what: &'static str,
+    /// Whether it is there.
+    pub there: bool,
+    /// What was found, or that nothing was.
+    pub found: String,
+    /// What it adds.
+    pub adds: &'static str,
+    /// The command that installs it, or what else helps.
+    pub advice: Option<String>,
+}
+
+/// Looks at everything honami can make use of.
+#[must_use]
+pub fn examine(registry: &Registry) -> Vec<Finding> {
+    vec![trackers(registry), ffmpeg(), cache(), threads()]
+}
+
+fn trackers(registry: &Registry) -> Finding {
+    let names: Vec<&str> = registry.plugins().iter().map(|plugin| plugin.short_name.as_str()).collect();
+    Finding {
+        what: "plugins",
+        there: !names.is_empty(),
+        found: if names.is_empty() { "none found".to_owned() } else { names.join(", ") },
+        adds: "trackers and clusterers",
+        advice: Some("cargo build --release builds the shipped ones beside the program".to_owned()),
+    }
+}
+
+fn ffmpeg() -> Finding {
+    let version = honami_media::ffmpeg_version();
+    Finding {
+        what: "ffmpeg",
+        there: version.is_some(),
+        found: version.unwrap_or_else(|| "not found".to_owned()),
+        adds: "every video format; without it H.264 in MP4, Y4M and image sequences are read",
+        advice: Some("sudo apt-get install ffmpeg".to_owned()),
+    }
+}
+
+/// Decoded frames are kept in a file under the cache folder: it must be writable and have room.
+fn cache() -> Finding {
+    let folder = honami_media::default_cache_folder();
+    let made = folder.as_ref().is_some_and(|folder| std::fs::create_dir_all(folder).is_ok());
+    Finding {
+        what: "frame cache",
+        there: made,
+        found: match &folder {
+            Some(folder) if made => folder.display().to_string(),
+            Some(folder) => format!("cannot be made: {}", folder.display()),
+            None => "no home folder".to_owned(),
+        },
+        adds: "quick steps backward and jumps",
+        advice: Some("set XDG_CACHE_HOME to a folder on a local disk".to_owned()),
+    }
+}
+
+fn threads() -> Finding {
+    let n = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    let found = if n == 1 { "1 core".to_owned() } else { format!("{n} cores") };
+    Finding { what: "processor", there: true, found, adds: "speed", advice: None }
+}

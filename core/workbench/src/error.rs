@@ -1,0 +1,93 @@
+//! What can keep a job from its end.
+
+use std::path::PathBuf;
+
+/// Why a use-case failed: what was wanted, what came, what to do, in one line.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum WorkbenchError {
+    /// The clip could not be read.
+    #[error(transparent)]
+    Media(#[from] honami_media::MediaError),
+    /// The project could not be read or written.
+    #[error(transparent)]
+    Store(#[from] honami_store::StoreError),
+    /// A plugin could not be found, loaded or used.
+    #[error(transparent)]
+    Plugin(#[from] honami_host::HostError),
+    /// A table could not be read or written.
+    #[error(transparent)]
+    Table(#[from] honami_exchange::TableError),
+    /// Tracks could not be compared.
+    #[error(transparent)]
+    Motion(#[from] honami_motion::MotionError),
+    /// A clip could not be generated.
+    #[error(transparent)]
+    Synth(#[from] honami_synth::SynthError),
+    /// A file could not be read or written.
+    #[error("{what}: {source}: {}", path.display())]
+    Io {
+        /// What was being done.
+        what: &'static str,
+        /// What the system said.
+        source: std::io::Error,
+        /// The file.
+        path: PathBuf,
+    },
+    /// There is nothing to track.
+    #[error("there are no features to track: place some, give --points, or let a tracker --detect them")]
+    NoFeatures,
+    /// The tracker does not choose features.
+    #[error("{plugin} does not choose features itself: give --points, or --detect with another tracker")]
+    CannotDetect {
+        /// Its name.
+        plugin: String,
+    },
+    /// Frames outside the clip were asked for.
+    #[error("frames {start}..{end} were asked for, but the clip has frames 0..{n_frames}")]
+    Frames {
+        /// First frame asked for.
+        start: u32,
+        /// One past the last.
+        end: u32,
+        /// Frames of the clip.
+        n_frames: u32,
+    },
+    /// A point lies outside the clip.
+    #[error("point {id} at ({x}, {y}) in frame {frame} is not in the clip of {width}x{height} and {n_frames} frames")]
+    Point {
+        /// Its number.
+        id: u32,
+        /// Pixels, right.
+        x: f32,
+        /// Pixels, down.
+        y: f32,
+        /// Frame it was given in.
+        frame: u32,
+        /// Width of the clip.
+        width: u32,
+        /// Height of the clip.
+        height: u32,
+        /// Frames of the clip.
+        n_frames: u32,
+    },
+    /// The mask is not as large as the clip.
+    #[error("the mask is {came:?} pixels, the clip {wanted:?}: {}", path.display())]
+    MaskSize {
+        /// Width and height of the clip.
+        wanted: (u32, u32),
+        /// Width and height of the mask.
+        came: (u32, u32),
+        /// The mask.
+        path: PathBuf,
+    },
+    /// There are no tracks.
+    #[error("the project has no tracks yet: run `honami track` first")]
+    NoTracks,
+    /// The truth names no point that was tracked.
+    #[error("the truth shows none of the tracked points after their first frame")]
+    NoTruth,
+    /// The caller stopped a job that keeps nothing.
+    #[error("stopped")]
+    Stopped,
+}

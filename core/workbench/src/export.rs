@@ -1,0 +1,40 @@
+//! What was measured, for other programs.
+
+use std::path::Path;
+
+use honami_exchange::{TrackRow, Writer};
+
+use crate::error::WorkbenchError;
+use crate::session::Session;
+
+/// What was written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Exported {
+    /// Tracks.
+    pub n_tracks: usize,
+    /// Rows, one a sample.
+    pub n_rows: u64,
+}
+
+/// Writes the shown tracks as one long table; nothing is left behind when it fails.
+///
+/// # Errors
+/// [`WorkbenchError::NoTracks`], and what the project or the disk met.
+pub fn tracks(session: &Session, out: &Path) -> Result<Exported, WorkbenchError> {
+    let shown = session.project.shown_all()?;
+    if shown.is_empty() {
+        return Err(WorkbenchError::NoTracks);
+    }
+    let times = &session.project.clip().clip.times;
+    let mut table = Writer::create(out)?;
+    let mut n_rows = 0;
+    for (track, span) in &shown {
+        for (frame, &sample) in span.frames().zip(&span.samples) {
+            let run = session.project.run_at(*track, frame)?.map(|run| u64::from(run.0));
+            table.write(&TrackRow { track: *track, frame, time_s: times.get(frame), sample, run })?;
+            n_rows += 1;
+        }
+    }
+    table.finish()?;
+    Ok(Exported { n_tracks: shown.len(), n_rows })
+}

@@ -1,0 +1,25 @@
+//! The use-cases of honami as cancellable jobs on a project: what the terminal and the command line both call.
+//!
+//! A job has three steps. *Prepare* reads what it needs from the project; *run* works on any thread, reports
+//! [progress](progress::Progress) and can be stopped; *finish* commits one edit that undo takes back.
+
+pub mod cluster;
+pub mod compare;
+pub mod doctor;
+pub mod drive;
+mod error;
+pub mod export;
+pub mod generate;
+pub mod progress;
+pub mod session;
+pub mod spectra;
+mod stamp;
+pub mod track;
+
+pub use error::WorkbenchError;
+/// Plugins and their parameters.
+pub use honami_host as plugins;
+/// Clips and their frames.
+pub use honami_media as media;
+/// Projects.
+pub use honami_store as store;

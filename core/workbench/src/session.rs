@@ -1,0 +1,95 @@
+//! A session: a project, its clip and the plugins at hand.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use honami_host::Registry;
+use honami_media::{Media, OpenOptions};
+use honami_store::{Access, ClipRecord, Project, StoreError};
+
+use crate::error::WorkbenchError;
+
+/// What a session starts with.
+#[derive(Clone, Debug, Default)]
+pub struct SessionOptions {
+    /// Files and folders in which plugins are looked for first.
+    pub plugin_paths: Vec<PathBuf>,
+    /// Only look: never lock the project.
+    pub read_only: bool,
+}
+
+/// An open project with its clip and the plugins at hand.
+pub struct Session {
+    /// The project file.
+    pub project: Project,
+    /// The clip.
+    pub media: Arc<Media>,
+    /// The plugins.
+    pub registry: Arc<Registry>,
+}
+
+impl Session {
+    /// Opens a project and finds its clip.
+    ///
+    /// # Errors
+    /// When the project is locked by another session, is none, or its clip is missing or has changed.
+    pub fn open(path: &Path, options: &SessionOptions) -> Result<Self, WorkbenchError> {
+        let access = if options.read_only { Access::Read } else { Access::Write };
+        let project = Project::open(path, access)?;
+        let media = Arc::new(open_clip_of(&project)?);
+        Ok(Self { project, media, registry: Arc::new(Registry::scan(&options.plugin_paths)) })
+    }
+
+    /// Opens a project to write, or to look where another session writes.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open), but never because of a lock.
+    pub fn open_or_look(path: &Path, options: &SessionOptions) -> Result<Self, WorkbenchError> {
+        match Self::open(path, options) {
+            Err(WorkbenchError::Store(StoreError::Locked { .. })) => {
+                Self::open(path, &SessionOptions { read_only: true, ..options.clone() })
+            }
+            other => other,
+        }
+    }
+
+    /// Makes a project of a clip; `fps` where the user knows better than the container.
+    ///
+    /// # Errors
+    /// When the clip cannot be read, or the project file is there already; nothing is left behind.
+    pub fn create(
+        project: &Path,
+        clip: &Path,
+        fps: Option<f64>,
+        options: &SessionOptions,
+    ) -> Result<Self, WorkbenchError> {
+        if project.exists() {
+            return Err(StoreError::Exists(project.to_owned()).into());
+        }
+        let media = honami_media::open(clip, &OpenOptions { fps, ..OpenOptions::default() })?;
+        let record = ClipRecord {
+            path: clip.to_owned(),
+            sha256: media.sha256(),
+            fps_override: fps,
+            clip: media.clip().clone(),
+        };
+        let project = Project::create(project, &record)?;
+        let registry = Arc::new(Registry::scan(&options.plugin_paths));
+        Ok(Self { project, media: Arc::new(media), registry })
+    }
+}
+
+/// Opens the clip of a project, wherever it has moved to within reach.
+fn open_clip_of(project: &Project) -> Result<Media, WorkbenchError> {
+    let record = project.clip();
+    let options = OpenOptions { fps: record.fps_override, ..OpenOptions::default() };
+    let open = |path: &Path| honami_media::open(path, &options);
+    // The usual case first: it is where it was, and opening it gives its hash.
+    if let Ok(media) = open(&project.media_path())
+        && media.sha256() == record.sha256
+    {
+        return Ok(media);
+    }
+    let found = project.find_media(|path| open(path).ok().map(|media| media.sha256()))?;
+    Ok(open(&found)?)
+}

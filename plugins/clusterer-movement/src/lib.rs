@@ -1,0 +1,1 @@
+//! Clustering by movement as a honami plugin.

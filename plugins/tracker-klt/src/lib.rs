@@ -1,0 +1,1 @@
+//! The pyramidal KLT tracker as a honami plugin.

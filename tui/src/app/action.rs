@@ -1,0 +1,143 @@
+//! Every action of the terminal UI, in one table.
+//!
+//! The key map, the palette, the help, the hint line and the tests are made from it. A key has one meaning: where
+//! it does different things in different places (Enter keeps, runs, goes), it is one action that every place
+//! answers in its way.
+
+/// Where keys are read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Context {
+    /// Looking at the clip and its tracks.
+    Review,
+    /// Choosing where a new feature goes.
+    Place,
+    /// Moving a sample.
+    Move,
+    /// Setting the parameters of a plugin.
+    Form,
+    /// Choosing from a list by typing a part of its name.
+    Menu,
+    /// Typing a number.
+    Prompt,
+}
+
+impl Context {
+    /// All of them.
+    pub const ALL: [Self; 6] = [Self::Review, Self::Place, Self::Move, Self::Form, Self::Menu, Self::Prompt];
+
+    /// Whether letters are text here, so that only other keys are commands.
+    #[must_use]
+    pub fn is_text(self) -> bool {
+        matches!(self, Self::Menu | Self::Prompt)
+    }
+}
+
+/// What the table says of an action.
+#[derive(Debug)]
+pub struct Info {
+    /// The action.
+    pub action: Action,
+    /// Its name, for the palette, key maps and logs.
+    pub name: &'static str,
+    /// The keys that call it: each a sequence, keys apart by spaces.
+    pub keys: &'static [&'static str],
+    /// Where it works, and the word for what it does there. An empty word keeps it off the hint line.
+    pub places: &'static [(Context, &'static str)],
+    /// What it does, one line.
+    pub doc: &'static str,
+}
+
+macro_rules! table {
+    ($($action:ident $name:literal [$($keys:literal)*] [$($place:ident $word:literal)*] $doc:literal)*) => {
+        /// Something a person can do.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        pub enum Action {
+            $(#[doc = $doc] $action,)*
+        }
+
+        /// All actions, in the order of help and hints.
+        pub const TABLE: &[Info] = &[
+            $(Info {
+                action: Action::$action,
+                name: $name,
+                keys: &[$($keys),*],
+                places: &[$((Context::$place, $word)),*],
+                doc: $doc,
+            },)*
+        ];
+    };
+}
+
+table! {
+    // Moving about: hjkl and the arrows.
+    Left "left" ["h" "Left"] [Review "" Place "1 px" Move "1 px" Form "change"]
+        "left: the previous frame, one pixel, or a smaller value"
+    Down "down" ["j" "Down"] [Review "" Place "1 px" Move "1 px" Form "" Menu ""]
+        "down: the next track, one pixel, or the next row"
+    Up "up" ["k" "Up"] [Review "" Place "1 px" Move "1 px" Form "" Menu ""]
+        "up: the previous track, one pixel, or the previous row"
+    Right "right" ["l" "Right"] [Review "" Place "1 px" Move "1 px" Form "change"]
+        "right: the next frame, one pixel, or a larger value"
+    FineLeft "fine-left" ["H" "Shift-Left"] [Place ".25" Move ".25" Form ""] "a quarter of a pixel left, or a tenth of a value's range down"
+    FineDown "fine-down" ["J" "Shift-Down"] [Place ".25" Move ".25"] "a quarter of a pixel down"
+    FineUp "fine-up" ["K" "Shift-Up"] [Place ".25" Move ".25"] "a quarter of a pixel up"
+    FineRight "fine-right" ["L" "Shift-Right"] [Place ".25" Move ".25" Form ""] "a quarter of a pixel right, or a tenth of a value's range up"
+    Accept "accept" ["Enter"] [Place "place" Move "keep" Form "run" Menu "choose" Prompt "go" Review ""]
+        "accept: keep, place, run or go; while reviewing, confirm the sample here as a key-frame"
+    Back "back" ["Esc" "Ctrl-c"] [Place "back" Move "back" Form "back" Menu "back" Prompt "back" Review ""]
+        "back: leave what is open, undone; while reviewing, stop the job or the clip"
+    // Time.
+    PlayPause "play" ["space"] [Review "play"] "play or pause"
+    PlayBackwards "play-backwards" ["B"] [Review ""] "play backwards, or pause"
+    NextTrack "next-track" ["n"] [Review "next"] "select the next track"
+    PreviousTrack "previous-track" ["p"] [Review ""] "select the previous track"
+    WorstFrame "worst-frame" ["w"] [Review "worst"] "go to the most doubtful frame of the selected track"
+    StepForward "step" ["."] [Review ""] "one frame forward; a number before it steps so many"
+    StepBack "step-back" [","] [Review ""] "one frame back"
+    LeapForward "leap" [">"] [Review ""] "ten frames forward"
+    LeapBack "leap-back" ["<"] [Review ""] "ten frames back"
+    NextKey "next-key-frame" ["]"] [Review ""] "go to the next key-frame of the selected track"
+    PreviousKey "previous-key-frame" ["["] [Review ""] "go to the previous key-frame of the selected track"
+    GoStart "go-start" ["g s" "Home"] [Review ""] "go to the first frame"
+    GoEnd "go-end" ["g e" "End"] [Review ""] "go to the last frame"
+    GoFrame "go-frame" ["g f"] [Review ""] "go to a frame by its number (120 g f goes at once)"
+    GoTrack "go-track" ["g t" "/"] [Review ""] "find a track by its number or name"
+    // Work.
+    MoveSample "move-sample" ["m"] [Review "move"] "move the sample here; it becomes a key-frame"
+    AddFeature "add-feature" ["a"] [Review "add"] "add a feature by hand"
+    DeleteTrack "delete-track" ["d"] [Review ""] "delete the selected track (u brings it back)"
+    Erase "erase" ["Backspace"] [Review "" Form "" Menu "" Prompt ""]
+        "take back: a typed letter; while reviewing, the key-frame here"
+    RunTracker "track" ["t"] [Review "track"] "follow features with a tracker"
+    RunClusterer "cluster" ["c"] [Review "cluster"] "group the tracks by their movement"
+    MoreGroups "more-groups" ["+" "="] [Review ""] "cut the hierarchy into one group more"
+    FewerGroups "fewer-groups" ["-"] [Review ""] "cut the hierarchy into one group fewer"
+    Undo "undo" ["u"] [Review ""] "undo"
+    Redo "redo" ["Ctrl-r"] [Review ""] "redo"
+    // Looking.
+    ZoomIn "zoom-in" ["z"] [Review "" Place "" Move ""] "look closer, at the selected track or the cursor"
+    ZoomOut "zoom-out" ["Z"] [Review "" Place "" Move ""] "look from farther away"
+    Follow "follow" ["f"] [Review ""] "keep the selected track in the middle, or not"
+    Column "column" ["Tab"] [Review ""] "show or hide the column of tracks and groups"
+    Palette "palette" [":"] [Review "" Place "" Move "" Form ""] "find any action by name, key or what it does"
+    Help "help" ["?"] [Review "help" Place "" Move "" Form "help"] "list what works here; Enter does it"
+    Redraw "redraw" ["Ctrl-l"] [Review "" Place "" Move "" Form "" Menu "" Prompt ""] "paint the screen anew"
+    Suspend "suspend" ["Ctrl-z"] [Review "" Place "" Move "" Form "" Menu "" Prompt ""] "stop honami until `fg`"
+    Quit "quit" ["q"] [Review "leave" Place "" Move "" Form ""] "back; while reviewing, leave honami"
+    Leave "leave" ["Q"] [Review "" Place "" Move "" Form ""] "leave honami (everything is kept)"
+}
+
+impl Action {
+    /// Its row of the table.
+    #[must_use]
+    pub fn info(self) -> &'static Info {
+        // The table is made with the enum, in its order.
+        &TABLE[self as usize]
+    }
+
+    /// The word for what it does in a place; `None` where it does not work.
+    #[must_use]
+    pub fn word_in(self, context: Context) -> Option<&'static str> {
+        self.info().places.iter().find(|(place, _)| *place == context).map(|(_, word)| *word)
+    }
+}

@@ -1,0 +1,128 @@
+//! A list to choose from by typing a part of a name: the palette, the help, the tracks.
+
+use honami_model::track::TrackId;
+
+use super::action::{Action, Context, TABLE};
+use super::fuzzy;
+use super::keymap::KeyMap;
+use super::state::{Mode, State};
+
+/// What a row does when it is chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Choice {
+    /// Calls an action.
+    Action(Action),
+    /// Selects a track.
+    Track(TrackId),
+}
+
+/// A row of a menu.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Row {
+    /// What it is called.
+    pub label: String,
+    /// What it does or is.
+    pub detail: String,
+    /// Keys that do the same without the menu.
+    pub keys: String,
+    /// What choosing it does.
+    pub choice: Choice,
+}
+
+/// A menu and what was typed into it.
+#[derive(Clone, Debug)]
+pub struct Menu {
+    /// What it lists.
+    pub title: &'static str,
+    /// What was typed.
+    pub typed: String,
+    /// Position of the chosen row among the matching ones.
+    pub at: usize,
+    /// What keys meant before, and will again.
+    pub below: Mode,
+    rows: Vec<Row>,
+    matching: Vec<usize>,
+}
+
+impl Menu {
+    fn new(title: &'static str, rows: Vec<Row>, below: Mode) -> Self {
+        let matching = (0..rows.len()).collect();
+        Self { title, typed: String::new(), at: 0, below, rows, matching }
+    }
+
+    /// Every action that works where the menu was opened.
+    #[must_use]
+    pub fn of_actions(title: &'static str, keys: &KeyMap, below: Mode) -> Self {
+        let context = below.context();
+        let rows = TABLE.iter().filter(|info| info.action.word_in(context).is_some());
+        let rows = rows.map(|info| Row {
+            label: info.name.replace('-', " "),
+            detail: info.doc.to_owned(),
+            keys: all_keys(keys, context, info.action),
+            choice: Choice::Action(info.action),
+        });
+        Self::new(title, rows.collect(), below)
+    }
+
+    /// Every shown track.
+    #[must_use]
+    pub fn of_tracks(state: &State) -> Self {
+        let rows = state.tracks.iter().map(|row| {
+            let group = state.groups.as_ref().and_then(|g| g.of(row.id));
+            let doubt = row.worst.map_or_else(String::new, |w| format!("worst {w}"));
+            Row {
+                label: format!("track {} {}", row.id, row.name.as_deref().unwrap_or_default()),
+                detail: group.map_or(doubt.clone(), |g| format!("group {}  {doubt}", g + 1)),
+                keys: String::new(),
+                choice: Choice::Track(row.id),
+            }
+        });
+        Self::new("tracks", rows.collect(), Mode::Review)
+    }
+
+    /// The rows that match what was typed, best first.
+    pub fn rows(&self) -> impl ExactSizeIterator<Item = &Row> {
+        self.matching.iter().map(|&i| &self.rows[i])
+    }
+
+    /// The chosen row.
+    #[must_use]
+    pub fn chosen(&self) -> Option<&Row> {
+        self.matching.get(self.at).map(|&i| &self.rows[i])
+    }
+
+    /// Changes what was typed, and with it the rows.
+    pub fn retype(&mut self, change: impl FnOnce(&mut String)) {
+        change(&mut self.typed);
+        let mut scored: Vec<(i32, usize)> = Vec::new();
+        for (i, row) in self.rows.iter().enumerate() {
+            // A name counts for more than a key, a key for more than a word of the description.
+            let name = fuzzy::score(&self.typed, &row.label).map(|s| s + 20);
+            let key = (!self.typed.is_empty() && row.keys.split("  ").any(|k| k == self.typed)).then_some(90);
+            let words = row.detail.split_whitespace();
+            let detail = words.filter(|w| w.to_lowercase().starts_with(&self.typed.to_lowercase())).count();
+            let detail = (detail > 0).then_some(5);
+            if let Some(score) = [name, key, detail].into_iter().flatten().max() {
+                scored.push((score, i));
+            }
+        }
+        if !self.typed.is_empty() {
+            scored.sort_by_key(|&(score, i)| (std::cmp::Reverse(score), i));
+        }
+        self.matching = scored.into_iter().map(|(_, i)| i).collect();
+        self.at = 0;
+    }
+
+    /// Moves the choice by so many rows, staying in the list.
+    pub fn step(&mut self, rows: i64) {
+        let last = self.matching.len().saturating_sub(1);
+        let at = i64::try_from(self.at).unwrap_or(0) + rows;
+        self.at = usize::try_from(at).unwrap_or(0).min(last);
+    }
+}
+
+/// All keys of an action in a place, two spaces apart.
+fn all_keys(keys: &KeyMap, context: Context, action: Action) -> String {
+    let mine = keys.bindings().iter().filter(|b| b.context == context && b.action == action);
+    mine.map(|b| super::keymap::shown(&b.keys)).collect::<Vec<_>>().join("  ")
+}

@@ -1,0 +1,236 @@
+//! All that the terminal UI knows. Plain data: it is changed only by [`update`](super::update::update).
+
+use std::time::Duration;
+
+use honami_model::clip::Clip;
+use honami_model::track::TrackId;
+
+use super::action::Context;
+use super::form::{Form, Plugin};
+use super::keymap::KeyMap;
+use super::menu::Menu;
+use super::tracks::{Groups, TrackRow};
+use crate::term::key::Key;
+
+/// The state of the terminal UI.
+#[derive(Clone, Debug)]
+pub struct State {
+    /// What the project is called in the title.
+    pub name: String,
+    /// The clip.
+    pub clip: Clip,
+    /// The current frame.
+    pub frame: u32,
+    /// Playing, or not.
+    pub play: Option<Play>,
+    /// The shown tracks, in order of their numbers.
+    pub tracks: Vec<TrackRow>,
+    /// The track that keys work on.
+    pub selected: Option<TrackId>,
+    /// The shown clustering.
+    pub groups: Option<Groups>,
+    /// The tracker whose run is on top, with its version.
+    pub tracker: Option<String>,
+    /// Trackers and clusterers that were found.
+    pub plugins: Vec<Plugin>,
+    /// What keys mean now.
+    pub mode: Mode,
+    /// The live key map.
+    pub keys: KeyMap,
+    /// Keys of a sequence that is not whole yet.
+    pub pending: Vec<Key>,
+    /// The number typed before a command.
+    pub count: Option<u32>,
+    /// Whether the column is wanted.
+    pub column: bool,
+    /// Magnification, a power of two: 0 shows all of the picture.
+    pub zoom: u8,
+    /// Image point in the middle when magnified, pixels.
+    pub centre: [f32; 2],
+    /// Whether the selected track stays in the middle.
+    pub follow: bool,
+    /// Columns and rows of the terminal.
+    pub size: (u16, u16),
+    /// What happened last.
+    pub notice: Option<Notice>,
+    /// The job that is running.
+    pub job: Option<Job>,
+    /// Who holds the project, where it can only be read.
+    pub read_only: Option<String>,
+    /// What is known of the link to the terminal.
+    pub link: Link,
+    /// Time since the session began.
+    pub now: Duration,
+    /// Frames that can be shown without waiting.
+    pub n_ready: u32,
+    /// The terminal has no colours: marks are letters.
+    pub mono: bool,
+}
+
+/// What keys mean.
+#[derive(Clone, Debug)]
+pub enum Mode {
+    /// Looking at the clip and its tracks.
+    Review,
+    /// Choosing where a new feature goes; image pixels.
+    Place([f32; 2]),
+    /// Moving the selected track's sample: where it is shown, and where it will be; image pixels.
+    Move {
+        /// Where it is shown.
+        from: [f32; 2],
+        /// Where it will be.
+        to: [f32; 2],
+    },
+    /// Setting the parameters of a plugin.
+    Form(Box<Form>),
+    /// Choosing from a list.
+    Menu(Box<Menu>),
+    /// Typing a frame number.
+    Prompt(String),
+}
+
+impl Mode {
+    /// Where keys are read.
+    #[must_use]
+    pub fn context(&self) -> Context {
+        match self {
+            Self::Review => Context::Review,
+            Self::Place(_) => Context::Place,
+            Self::Move { .. } => Context::Move,
+            Self::Form(_) => Context::Form,
+            Self::Menu(_) => Context::Menu,
+            Self::Prompt(_) => Context::Prompt,
+        }
+    }
+}
+
+/// Playing: the clock decides the frame, pictures that come late are dropped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Play {
+    /// Seconds of the clip per second, negative backwards.
+    pub rate: f64,
+    /// When it began.
+    pub since: Duration,
+    /// Frame from which it began.
+    pub from: u32,
+}
+
+/// One line that says what happened.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Notice {
+    /// The line.
+    pub text: String,
+    /// Whether something failed.
+    pub is_error: bool,
+}
+
+/// A job that is running.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Job {
+    /// Short name of the plugin.
+    pub plugin: String,
+    /// What is being done now.
+    pub what: String,
+    /// Steps done, and in all (0 while unknown).
+    pub done: (u64, u64),
+    /// When it began.
+    pub since: Duration,
+    /// What stopping it keeps: the frames so far, or nothing.
+    pub keeps_frames: bool,
+    /// Whether it has been told to stop.
+    pub is_stopping: bool,
+}
+
+/// What is known of the link to the terminal.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Link {
+    /// Delay there and back, milliseconds.
+    pub delay_ms: Option<u32>,
+    /// What it carries, kB/s.
+    pub rate_kbs: Option<u32>,
+    /// The terminal does not answer.
+    pub is_silent: bool,
+}
+
+impl State {
+    /// The state before anything is known of the project.
+    #[must_use]
+    pub fn new(name: String, clip: Clip, size: (u16, u16)) -> Self {
+        let centre = [clip.width as f32 / 2.0, clip.height as f32 / 2.0];
+        Self {
+            name,
+            clip,
+            frame: 0,
+            play: None,
+            tracks: Vec::new(),
+            selected: None,
+            groups: None,
+            tracker: None,
+            plugins: Vec::new(),
+            mode: Mode::Review,
+            keys: KeyMap::default(),
+            pending: Vec::new(),
+            count: None,
+            column: false,
+            zoom: 0,
+            centre,
+            follow: false,
+            size,
+            notice: None,
+            job: None,
+            read_only: None,
+            link: Link::default(),
+            now: Duration::ZERO,
+            n_ready: 0,
+            mono: false,
+        }
+    }
+
+    /// Number of the last frame.
+    #[must_use]
+    pub fn last_frame(&self) -> u32 {
+        self.clip.n_frames().saturating_sub(1)
+    }
+
+    /// The selected track.
+    #[must_use]
+    pub fn selected_row(&self) -> Option<&TrackRow> {
+        self.row(self.selected?)
+    }
+
+    /// The row of a track.
+    #[must_use]
+    pub fn row(&self, track: TrackId) -> Option<&TrackRow> {
+        self.tracks.binary_search_by_key(&track, |row| row.id).ok().map(|i| &self.tracks[i])
+    }
+
+    /// Where the selected track is shown in the current frame, image pixels.
+    #[must_use]
+    pub fn selected_at(&self) -> Option<[f32; 2]> {
+        self.selected_row()?.at(self.frame)
+    }
+
+    /// The frame that playing has come to.
+    #[must_use]
+    pub fn frame_of_clock(&self, play: &Play) -> u32 {
+        let times = self.clip.times.as_slice();
+        let elapsed = self.now.saturating_sub(play.since).as_secs_f64();
+        let t_s = times[play.from as usize] + elapsed * play.rate;
+        // The frame on screen at a time is the last that has begun; backwards, the first still to end.
+        let begun = times.partition_point(|&t| t <= t_s + 1e-9);
+        let ahead = times.partition_point(|&t| t < t_s - 1e-9);
+        let frame = if play.rate >= 0.0 { begun.saturating_sub(1) } else { ahead };
+        u32::try_from(frame).unwrap_or(u32::MAX).min(self.last_frame())
+    }
+
+    /// When playing comes to the next frame; `None` when nothing plays.
+    #[must_use]
+    pub fn next_tick(&self) -> Option<Duration> {
+        let play = self.play?;
+        let times = self.clip.times.as_slice();
+        let next = if play.rate >= 0.0 { self.frame + 1 } else { self.frame.checked_sub(1)? };
+        let t_s = *times.get(next as usize)?;
+        let wait = (t_s - times[play.from as usize]) / play.rate;
+        Some(play.since + Duration::from_secs_f64(wait.max(0.0)))
+    }
+}

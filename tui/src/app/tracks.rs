@@ -1,0 +1,113 @@
+//! Tracks and groups as the screen shows them.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use honami_model::hierarchy::Dendrogram;
+use honami_model::track::{Sample, Source, Span, Status, TrackId};
+
+/// A track on screen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrackRow {
+    /// Its number.
+    pub id: TrackId,
+    /// What a person calls it.
+    pub name: Option<String>,
+    /// Its samples, hand work included.
+    pub span: Arc<Span>,
+    /// Frames of its key-frames, rising.
+    pub keys: Vec<u32>,
+    /// Its most doubtful frame; `None` where nothing is doubtful.
+    pub worst: Option<u32>,
+}
+
+impl TrackRow {
+    /// A row of a shown track.
+    #[must_use]
+    pub fn new(id: TrackId, name: Option<String>, span: Span) -> Self {
+        let frames = || span.frames().zip(&span.samples);
+        let keys = frames().filter(|(_, s)| s.source == Source::Key).map(|(f, _)| f).collect();
+        let worst = frames()
+            .map(|(frame, sample)| (doubt(sample), frame))
+            .filter(|(doubt, _)| *doubt > 0.0)
+            .max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)))
+            .map(|(_, frame)| frame);
+        Self { id, name, keys, worst, span: Arc::new(span) }
+    }
+
+    /// Where it is in a frame, image pixels.
+    #[must_use]
+    pub fn at(&self, frame: u32) -> Option<[f32; 2]> {
+        self.span.get(frame).map(|s| [s.x, s.y])
+    }
+
+    /// Its largest doubt, 0 to 1.
+    #[must_use]
+    pub fn doubt(&self) -> f32 {
+        self.worst.and_then(|frame| self.span.get(frame)).map_or(0.0, doubt)
+    }
+}
+
+/// How doubtful a sample is, 0 (a person's word) to 1 (lost).
+#[must_use]
+pub fn doubt(sample: &Sample) -> f32 {
+    match (sample.source, sample.status) {
+        (Source::Key | Source::Sketch, _) => 0.0,
+        (_, Status::Lost | Status::Rejected) => 1.0,
+        _ => {
+            // Half in doubt at 1 px forward-backward error, or at a correlation of .5.
+            let fb = sample.quality.fb_px.map_or(0.0, |fb| fb / (fb + 1.0));
+            let ncc = sample.quality.ncc.map_or(0.0, |ncc| (1.0 - ncc).clamp(0.0, 0.99));
+            fb.max(ncc)
+        }
+    }
+}
+
+/// The shown clustering at its cut.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Groups {
+    /// How it was made, as the title says it.
+    pub what: String,
+    /// Its tracks, in the dendrogram's order of leaves.
+    pub tracks: Vec<TrackId>,
+    /// The hierarchy.
+    pub dendrogram: Dendrogram,
+    /// Number of groups.
+    pub k: u32,
+    /// Frames that were left out as outliers, rising.
+    pub outlier_frames: Vec<u32>,
+    of: BTreeMap<TrackId, u32>,
+}
+
+impl Groups {
+    /// A clustering cut into `k` groups.
+    #[must_use]
+    pub fn new(
+        what: String,
+        tracks: Vec<TrackId>,
+        dendrogram: Dendrogram,
+        k: u32,
+        outlier_frames: Vec<u32>,
+    ) -> Self {
+        let of = tracks.iter().copied().zip(dendrogram.cut(k)).collect();
+        Self { what, tracks, dendrogram, k, outlier_frames, of }
+    }
+
+    /// The group of a track, from 0.
+    #[must_use]
+    pub fn of(&self, track: TrackId) -> Option<u32> {
+        self.of.get(&track).copied()
+    }
+
+    /// Number of tracks of every group.
+    #[must_use]
+    pub fn sizes(&self) -> Vec<usize> {
+        let mut sizes = Vec::new();
+        for &group in self.of.values() {
+            let group = group as usize;
+            sizes.resize(sizes.len().max(group + 1), 0);
+            sizes[group] += 1;
+        }
+        sizes
+    }
+}

@@ -1,0 +1,115 @@
+//! The command line: one file a command, each giving an answer for people and for machines.
+
+pub mod args;
+mod compare;
+mod groups;
+mod help;
+mod log;
+mod project;
+mod report;
+mod spectrum;
+mod synth;
+mod track;
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use anyhow::Context as _;
+use clap::Parser as _;
+use honami_workbench::session::{Session, SessionOptions};
+
+use self::args::{Cli, Command, Common};
+
+/// What a command has to say, in two forms.
+struct Answer {
+    /// For machines: `--json`.
+    json: serde_json::Value,
+    /// For people; without a final line break.
+    text: String,
+}
+
+/// Runs the command line of this process.
+#[must_use]
+pub fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => error.exit(),
+    };
+    let result = match cli.command {
+        Some(command) => run(command, &cli.common),
+        None => open(cli.project.as_deref(), &cli.common).map(|()| None),
+    };
+    match result.and_then(|answer| answer.map_or(Ok(()), |answer| answer.print(cli.common.json))) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) if broken_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) => {
+            report::complain(&error);
+            ExitCode::FAILURE
+        }
+    }
+}
+
+impl Answer {
+    /// Prints the form that was asked for.
+    fn print(&self, json: bool) -> anyhow::Result<()> {
+        use std::io::Write as _;
+        let mut out = std::io::stdout().lock();
+        if json {
+            serde_json::to_writer_pretty(&mut out, &self.json)?;
+            writeln!(out)?;
+        } else if !self.text.is_empty() {
+            writeln!(out, "{}", self.text)?;
+        }
+        out.flush()?;
+        Ok(())
+    }
+}
+
+/// Whether the reader of a pipe has gone: `honami log P | head` is no failure.
+fn broken_pipe(error: &anyhow::Error) -> bool {
+    error.chain().any(|cause| {
+        cause.downcast_ref::<std::io::Error>().is_some_and(|e| e.kind() == std::io::ErrorKind::BrokenPipe)
+    })
+}
+
+fn run(command: Command, common: &Common) -> anyhow::Result<Option<Answer>> {
+    let answer = match command {
+        Command::New(args) => project::new(&args, common)?,
+        Command::Track(args) => track::track(&args, common)?,
+        Command::Cluster(args) => groups::cluster(&args, common)?,
+        Command::Compare(args) => compare::compare(&args, common)?,
+        Command::Spectrum(args) => spectrum::spectrum(&args, common)?,
+        Command::Export(args) => project::export(&args, common)?,
+        Command::Synth(args) => synth::synth(&args)?,
+        Command::Demo(args) => return synth::demo(&args, common),
+        Command::Plugin(args) => help::plugin(&args, common)?,
+        Command::Log(args) => log::log(&args, common)?,
+        Command::Doctor => help::doctor(common),
+        Command::Completions { shell } => help::completions(shell),
+        Command::Man { folder } => help::manual(&folder)?,
+    };
+    Ok(Some(answer))
+}
+
+/// Opens the terminal UI on a project, or on a new project made from a clip.
+fn open(path: Option<&Path>, common: &Common) -> anyhow::Result<()> {
+    let Some(path) = path else {
+        return crate::app::run(None, &options(common));
+    };
+    let session = if path.extension().is_some_and(|e| e == "honami") {
+        session(path, common)?
+    } else {
+        let project = project::name_for(path);
+        if project.exists() { session(&project, common)? } else { project::make(&project, path, None, common)? }
+    };
+    crate::app::run(Some(session), &options(common))
+}
+
+fn options(common: &Common) -> SessionOptions {
+    SessionOptions { plugin_paths: common.plugins.clone() }
+}
+
+/// Opens a project for a command that writes to it or only reads it.
+fn session(path: &Path, common: &Common) -> anyhow::Result<Session> {
+    Session::open(path, &options(common)).with_context(|| "cannot open the project")
+}

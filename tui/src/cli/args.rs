@@ -1,0 +1,302 @@
+//! The command line as typed. Stable: scripts and tests use it.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// Measures how plants move.
+///
+/// Tracks features of a plant in video, lets you correct the tracks in the terminal, finds the branches
+/// behind the motion, and keeps everything with its provenance in one project file.
+#[derive(Debug, Parser)]
+#[command(name = "honami", version, args_conflicts_with_subcommands = true)]
+pub struct Cli {
+    /// What to do; without a command, the terminal UI opens.
+    #[command(subcommand)]
+    pub command: Option<Command>,
+    /// Project (.honami) to open in the terminal UI, or a clip to make one from.
+    pub project: Option<PathBuf>,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// Options of every command.
+#[derive(Args, Clone, Debug, Default)]
+pub struct Common {
+    /// Print one JSON object for machines instead of text.
+    #[arg(long, global = true)]
+    pub json: bool,
+    /// Look for plugins in this file or folder first.
+    #[arg(long = "plugin", value_name = "PATH", global = true)]
+    pub plugins: Vec<PathBuf>,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Make a project from a clip: a video, an image folder, or a pattern such as `frame_%04d.png`.
+    New(New),
+    /// Follow features through the clip with a tracker plugin.
+    Track(Track),
+    /// Find the groups that move together with a clusterer plugin.
+    Cluster(Cluster),
+    /// Run trackers side by side on a clip and say how far they can be trusted.
+    Compare(Compare),
+    /// Frequencies of tracks and groups, in Hz from the frame times.
+    Spectrum(Spectrum),
+    /// Write what was measured for other programs.
+    Export(Export),
+    /// Render a clip of a moving plant whose truth is known.
+    Synth(Synth),
+    /// A generated clip, tracked and clustered; then the terminal UI.
+    Demo(Demo),
+    /// What plugins there are and what they take.
+    #[command(subcommand)]
+    Plugin(Plugin),
+    /// Everything that was done to a project: runs, clusterings, edits.
+    Log(Project),
+    /// What this machine has, what each missing piece would add, and how to install it.
+    Doctor,
+    /// Shell completions, on standard output.
+    Completions {
+        /// The shell.
+        shell: clap_complete::Shell,
+    },
+    /// The manual pages, into a folder.
+    Man {
+        /// Folder to write them to; made if it is not there.
+        folder: PathBuf,
+    },
+}
+
+#[derive(Args, Debug)]
+pub struct Project {
+    /// Project file (.honami).
+    pub project: PathBuf,
+}
+
+#[derive(Args, Debug)]
+pub struct New {
+    /// Project file to make; never overwritten.
+    pub project: PathBuf,
+    /// Video, image folder or pattern.
+    pub clip: PathBuf,
+    /// True frame rate, where the container lies or an image sequence has none.
+    #[arg(long, value_name = "F")]
+    pub fps: Option<f64>,
+}
+
+/// Which plugin, with which parameters.
+#[derive(Args, Debug)]
+pub struct WithPlugin {
+    /// Plugin: its short name or full id.
+    #[arg(long, value_name = "NAME")]
+    pub with: Option<String>,
+    /// Set a parameter; `honami plugin info NAME` lists them.
+    #[arg(long = "set", value_name = "K=V")]
+    pub set: Vec<String>,
+}
+
+#[derive(Args, Debug)]
+pub struct Track {
+    /// Project file (.honami).
+    pub project: PathBuf,
+    #[command(flatten)]
+    pub plugin: WithPlugin,
+    /// Let this tracker choose the features (default: the project's own, where it has any).
+    #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = "", conflicts_with = "points")]
+    pub detect: Option<String>,
+    /// Features from a table `id,x,y[,frame]`.
+    #[arg(long, value_name = "FILE")]
+    pub points: Option<PathBuf>,
+    /// Image whose black pixels get no features.
+    #[arg(long, value_name = "FILE", conflicts_with = "region")]
+    pub mask: Option<PathBuf>,
+    /// Rectangle in pixels outside which there are no features.
+    #[arg(long, value_name = "X,Y,W,H")]
+    pub region: Option<Region>,
+    /// Frames to track, the last one excluded (default: all).
+    #[arg(long, value_name = "A..B")]
+    pub frames: Option<FrameRange>,
+    /// Detect again every N frames, where no feature is near.
+    #[arg(long, value_name = "N")]
+    pub every: Option<u32>,
+}
+
+#[derive(Args, Debug)]
+pub struct Cluster {
+    /// Project file (.honami).
+    pub project: PathBuf,
+    #[command(flatten)]
+    pub plugin: WithPlugin,
+    /// Number of groups to cut the hierarchy into.
+    #[arg(long, value_name = "K")]
+    pub groups: Option<u32>,
+}
+
+#[derive(Args, Debug)]
+pub struct Compare {
+    /// Clip, or project whose clip and tracks are used.
+    pub clip: PathBuf,
+    /// Tracker to run; give it once for each.
+    #[arg(long, value_name = "NAME")]
+    pub with: Vec<String>,
+    /// True positions, a table `track,frame,x,y,visible,branch`.
+    #[arg(long, value_name = "FILE")]
+    pub truth: Option<PathBuf>,
+    /// Features from a table `id,x,y[,frame]` (default: from the truth, or detected by the first tracker).
+    #[arg(long, value_name = "FILE")]
+    pub points: Option<PathBuf>,
+    /// Set a parameter of every tracker that has it.
+    #[arg(long = "set", value_name = "K=V")]
+    pub set: Vec<String>,
+    /// True frame rate of the clip.
+    #[arg(long, value_name = "F")]
+    pub fps: Option<f64>,
+}
+
+#[derive(Args, Debug)]
+pub struct Spectrum {
+    /// Project file (.honami), or a table of tracks (.csv).
+    pub project: PathBuf,
+    /// Only this track.
+    #[arg(long, value_name = "ID")]
+    pub track: Option<u32>,
+    /// How many peaks to name for each.
+    #[arg(long, value_name = "N", default_value_t = 3)]
+    pub peaks: usize,
+}
+
+#[derive(Args, Debug)]
+pub struct Export {
+    /// Project file (.honami).
+    pub project: PathBuf,
+    /// What to write.
+    pub what: ExportWhat,
+    /// File to write (.csv).
+    pub out: PathBuf,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ExportWhat {
+    /// The shown tracks: track,frame,time_s,x,y,status,source,quality,fb,ncc,run.
+    Tracks,
+}
+
+#[derive(Args, Debug)]
+pub struct Synth {
+    /// Clip to write: a .y4m or .mp4 file, or a folder of PNG files. The truth goes beside it.
+    pub out: PathBuf,
+    /// How hard it blows: mean leaf displacement of 1.5, 3.4 or 5.8 px per frame at 960x720.
+    #[arg(long, default_value = "calm")]
+    pub wind: Wind,
+    /// Number of frames.
+    #[arg(long, value_name = "T", default_value_t = 150, value_parser = clap::value_parser!(u32).range(2..=100_000))]
+    pub frames: u32,
+    /// Size in pixels.
+    #[arg(long, value_name = "WxH", default_value = "960x720")]
+    pub size: Size,
+    /// Frames per second.
+    #[arg(long, value_name = "F", default_value_t = 25.0)]
+    pub fps: f64,
+    /// Number of leaves.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub leaves: Option<u32>,
+    /// The same seed gives the same clip.
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    pub seed: u64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Wind {
+    /// 1.5 px per frame.
+    Calm,
+    /// 3.4 px per frame.
+    Wind,
+    /// 5.8 px per frame.
+    Storm,
+}
+
+#[derive(Args, Debug)]
+pub struct Demo {
+    /// Do everything but open the terminal UI.
+    #[arg(long)]
+    pub headless: bool,
+    /// Folder for the clip and the project (default: honami-demo in the current folder).
+    #[arg(long, value_name = "DIR", default_value = "honami-demo")]
+    pub folder: PathBuf,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Plugin {
+    /// Every plugin on the search path.
+    List,
+    /// One plugin: what it does, its parameters, where it comes from.
+    Info {
+        /// Short name or full id.
+        name: String,
+    },
+}
+
+/// `A..B`, the last one excluded; an open end reaches to the clip's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FrameRange {
+    pub start: u32,
+    pub end: Option<u32>,
+}
+
+impl std::str::FromStr for FrameRange {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wanted = || format!("wanted frames as A..B, for instance 0..100 or 50.., got {text}");
+        let (a, b) = text.split_once("..").ok_or_else(wanted)?;
+        let number = |word: &str| word.parse::<u32>().map_err(|_not_a_number| wanted());
+        let start = if a.is_empty() { 0 } else { number(a)? };
+        let end = if b.is_empty() { None } else { Some(number(b)?) };
+        if end.is_some_and(|end| end <= start) {
+            return Err(wanted());
+        }
+        Ok(Self { start, end })
+    }
+}
+
+/// A rectangle in pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Region {
+    pub x: f64,
+    pub y: f64,
+    pub width: f64,
+    pub height: f64,
+}
+
+impl std::str::FromStr for Region {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers: Vec<f64> = text.split(',').filter_map(|word| word.trim().parse().ok()).collect();
+        match numbers[..] {
+            [x, y, width, height] if width > 0.0 && height > 0.0 && text.matches(',').count() == 3 => {
+                Ok(Self { x, y, width, height })
+            }
+            _ => Err(format!("wanted a rectangle as x,y,w,h in pixels, got {text}")),
+        }
+    }
+}
+
+/// `WxH` in pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Size {
+    pub width: u32,
+    pub height: u32,
+}
+
+impl std::str::FromStr for Size {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parse = || {
+            let (w, h) = text.split_once('x')?;
+            Some(Self { width: w.parse().ok()?, height: h.parse().ok()? })
+        };
+        parse()
+            .filter(|size| (16..=8192).contains(&size.width) && (16..=8192).contains(&size.height))
+            .ok_or_else(|| format!("wanted a size as WxH between 16x16 and 8192x8192, got {text}"))
+    }
+}

@@ -1,0 +1,74 @@
+//! What a command says while it works: a progress bar on a terminal, nothing elsewhere.
+
+use std::io::IsTerminal as _;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use honami_workbench::progress::{Control, Progress};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+/// A progress bar on standard error; Ctrl-C asks the job to stop and keep what it has.
+pub(super) struct Bar {
+    bar: ProgressBar,
+    stop: Arc<AtomicBool>,
+}
+
+impl Bar {
+    pub(super) fn new() -> Self {
+        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(10));
+        let style = "{msg} {pos}/{len} ▕{bar:30}▏ {eta} left";
+        if let Ok(style) = ProgressStyle::with_template(style) {
+            bar.set_style(style.progress_chars("█▌ "));
+        }
+        let stop = Arc::new(AtomicBool::new(false));
+        // The second Ctrl-C ends the program at once: whoever presses twice means it.
+        let second = signal_hook::flag::register_conditional_shutdown(signal_hook::consts::SIGINT, 130, Arc::clone(&stop));
+        let first = signal_hook::flag::register(signal_hook::consts::SIGINT, Arc::clone(&stop));
+        if second.is_err() || first.is_err() {
+            bar.suspend(|| say("Ctrl-C cannot be caught here: it ends the program at once"));
+        }
+        Self { bar, stop }
+    }
+}
+
+impl Drop for Bar {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+impl Progress for Bar {
+    fn report(&self, done: u64, total: u64, what: &str) -> Control {
+        self.bar.set_length(total);
+        self.bar.set_position(done);
+        if self.bar.message() != what {
+            self.bar.set_message(what.to_owned());
+        }
+        if self.stop.load(Ordering::Relaxed) { Control::Stop } else { Control::Continue }
+    }
+}
+
+/// One line on standard error.
+#[expect(clippy::print_stderr, reason = "the command line speaks to a person here, and only here")]
+pub(super) fn say(line: &str) {
+    eprintln!("{line}");
+}
+
+/// What went wrong, the whole chain in one line.
+pub(super) fn complain(error: &anyhow::Error) {
+    let red = std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none();
+    let (on, off) = if red { ("\x1b[31m", "\x1b[0m") } else { ("", "") };
+    say(&format!("{on}honami:{off} {error:#}"));
+}
+
+/// Columns aligned to their widest cell, two spaces apart; the first row is the head.
+pub(super) fn table(rows: &[Vec<String>]) -> String {
+    let n_columns = rows.iter().map(Vec::len).max().unwrap_or(0);
+    let width = |column: usize| rows.iter().filter_map(|r| r.get(column)).map(|c| c.chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..n_columns).map(width).collect();
+    let line = |row: &Vec<String>| {
+        let cells = row.iter().zip(&widths).map(|(cell, &width)| format!("{cell:width$}"));
+        cells.collect::<Vec<_>>().join("  ").trim_end().to_owned()
+    };
+    rows.iter().map(line).collect::<Vec<_>>().join("\n")
+}

@@ -1,0 +1,3 @@
+//! honami in a terminal: the screen (`term`) and the workbench on it (`app`).
+
+pub mod term;

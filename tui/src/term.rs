@@ -1,0 +1,15 @@
+//! The terminal: bytes in, bytes out, and nothing of honami.
+//!
+//! `term` knows nothing of clips, tracks or plugins. It decodes what the terminal sends (`input`), keeps a
+//! model of what the terminal shows (`encode`), spends no more bytes than the link carries (`link`), paints
+//! whole frames (`writer`), gives the terminal back as it was (`tty`), and waits for all of it (`screen`).
+
+pub mod colour;
+pub mod encode;
+pub mod input;
+pub mod key;
+pub mod link;
+pub mod screen;
+pub mod signals;
+pub mod tty;
+pub mod writer;

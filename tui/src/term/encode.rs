@@ -1,0 +1,214 @@
+//! From the wanted grid of cells to the fewest bytes that show it.
+//!
+//! The encoder keeps what the terminal shows. Cells of the frame are *exact* (text, lines: always painted) or
+//! *soft* (the picture: painted by largest error on screen, as far as the byte budget goes). Paused, the soft
+//! cells converge to exact; while the picture moves, what is nearly right stays as it is.
+
+mod pen;
+
+use ratatui::buffer::{Buffer, Cell, CellWidth};
+use ratatui::layout::Rect;
+use ratatui::style::Color;
+
+use super::colour::{Depth, distance, rgb};
+use pen::Pen;
+
+/// The upper half block: its foreground is the upper pixel of the cell, its background the lower one.
+pub const HALF_BLOCK: &str = "▀";
+
+/// What the screen should show.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    /// Every cell, chrome and picture.
+    pub cells: Buffer,
+    /// How much a wrong cell matters: 0 for exact cells, otherwise a factor on its error. Row-major.
+    pub softness: Vec<u8>,
+}
+
+impl Frame {
+    /// An empty screen.
+    #[must_use]
+    pub fn new(columns: u16, rows: u16) -> Self {
+        let cells = Buffer::empty(Rect::new(0, 0, columns, rows));
+        Self { softness: vec![0; cells.content.len()], cells }
+    }
+}
+
+/// While the picture moves, a soft cell whose channels are all within this of the wanted stays as it is.
+const DEAD_BAND: u8 = 6;
+/// While the picture moves, a colour already set is taken for a wanted one within this, channel by channel.
+const REUSE_BAND: u8 = 3;
+/// From dark to bright, where there are no colours.
+const RAMP: &[u8] = b" .:-=+*#%@";
+/// In place of cells of which nothing is known: a private character that nobody wants.
+const UNKNOWN: Cell = Cell::new("\u{10fffd}");
+
+/// Paints frames with as few bytes as it can.
+#[derive(Debug)]
+pub struct Encoder {
+    depth: Depth,
+    columns: usize,
+    shown: Vec<Cell>,
+    pen: Pen,
+    /// Bytes really spent on soft cells over bytes expected, from the frames before.
+    thrift: f32,
+}
+
+/// A soft cell that shows the wrong colours.
+struct Wrong {
+    error: u32,
+    index: usize,
+}
+
+impl Encoder {
+    /// An encoder for a terminal of which nothing is known.
+    #[must_use]
+    pub fn new(depth: Depth) -> Self {
+        Self { depth, columns: 0, shown: Vec::new(), pen: Pen::default(), thrift: 1.0 }
+    }
+
+    /// Forgets what the terminal shows: the next frame paints every cell.
+    pub fn forget(&mut self) {
+        self.shown.clear();
+    }
+
+    /// Appends the bytes that bring the terminal nearer to the frame.
+    ///
+    /// Exact cells are all painted. Soft cells are painted while `bytes` stays within `budget`; `moving` says
+    /// that the next frame will differ, so that small errors are not worth their bytes.
+    /// Returns the number of soft cells still wrong.
+    pub fn encode(&mut self, frame: &Frame, budget: usize, moving: bool, bytes: &mut Vec<u8>) -> usize {
+        let start = bytes.len();
+        let wanted = self.wanted(frame);
+        if self.shown.len() != wanted.len() || self.columns != usize::from(frame.cells.area.width) {
+            self.columns = usize::from(frame.cells.area.width);
+            self.shown = vec![Cell::EMPTY; wanted.len()];
+            self.pen = Pen::default();
+            bytes.extend_from_slice(b"\x1b[m\x1b[2J");
+        }
+        self.pen.lose_cursor();
+        let mut wrong = Vec::new();
+        let mut index = 0;
+        while index < wanted.len() {
+            let cell = &wanted[index];
+            let width = usize::from(cell.cell_width()).max(1);
+            if frame.softness[index] == 0 {
+                if self.shown[index] != *cell {
+                    self.put(index, cell, 0, bytes);
+                }
+            } else if let Some(error) = self.error(index, cell, moving) {
+                wrong.push(Wrong { error: error.saturating_mul(frame.softness[index].into()), index });
+            }
+            index += width;
+        }
+        let band = if moving { REUSE_BAND } else { 0 };
+        let left = budget.saturating_sub(bytes.len() - start);
+        self.put_worst(&wanted, wrong, left, band, bytes)
+    }
+
+    /// The frame in the colours that the terminal has.
+    fn wanted(&self, frame: &Frame) -> Vec<Cell> {
+        let mut cells = frame.cells.content.clone();
+        if self.depth == Depth::True {
+            return cells;
+        }
+        for cell in &mut cells {
+            if self.depth == Depth::Mono && cell.symbol() == HALF_BLOCK {
+                let sum: u32 = [cell.fg, cell.bg].into_iter().flat_map(rgb).map(u32::from).sum();
+                let step = sum as usize * (RAMP.len() - 1) / (6 * 255);
+                cell.set_char(char::from(RAMP[step]));
+            }
+            cell.fg = self.depth.nearest(cell.fg);
+            cell.bg = self.depth.nearest(cell.bg);
+        }
+        cells
+    }
+
+    /// How wrong a soft cell is on screen; `None` when it is right, or nearly so while the picture moves.
+    fn error(&self, index: usize, cell: &Cell, moving: bool) -> Option<u32> {
+        let shown = &self.shown[index];
+        if shown == cell {
+            return None;
+        }
+        if shown.symbol() != cell.symbol() || shown.modifier != cell.modifier {
+            return Some(1 << 20);
+        }
+        if moving && near(shown.fg, cell.fg, DEAD_BAND) && near(shown.bg, cell.bg, DEAD_BAND) {
+            return None;
+        }
+        Some(distance(rgb(shown.fg), rgb(cell.fg)) + distance(rgb(shown.bg), rgb(cell.bg)))
+    }
+
+    /// Paints the worst cells, row by row, within `budget` bytes; returns how many stay wrong.
+    fn put_worst(
+        &mut self,
+        wanted: &[Cell],
+        mut wrong: Vec<Wrong>,
+        budget: usize,
+        band: u8,
+        bytes: &mut Vec<u8>,
+    ) -> usize {
+        let n_wrong = wrong.len();
+        let start = bytes.len();
+        wrong.sort_unstable_by_key(|w| (std::cmp::Reverse(w.error), w.index));
+        let mut expected = 0.0;
+        let chosen = wrong
+            .iter()
+            .take_while(|w| {
+                expected += pen::expected_bytes(&wanted[w.index]) as f32;
+                expected * self.thrift <= budget as f32
+            })
+            .count();
+        wrong.truncate(chosen);
+        wrong.sort_unstable_by_key(|w| w.index);
+        let mut spent = 0.0;
+        let mut n_put = 0;
+        for w in &wrong {
+            let cell = &wanted[w.index];
+            if bytes.len() - start + pen::LONGEST > budget {
+                break;
+            }
+            spent += pen::expected_bytes(cell) as f32;
+            self.put(w.index, cell, band, bytes);
+            n_put += 1;
+        }
+        if n_put >= 16 {
+            let ratio = (bytes.len() - start) as f32 / spent;
+            self.thrift = (0.75 * self.thrift + 0.25 * ratio).clamp(0.2, 1.0);
+        }
+        n_wrong - n_put
+    }
+
+    fn put(&mut self, index: usize, cell: &Cell, band: u8, bytes: &mut Vec<u8>) {
+        let (x, y) = (index % self.columns, index / self.columns);
+        let width = usize::from(cell.cell_width()).max(1);
+        // A wide glyph that loses one of its cells loses both.
+        let old_width = usize::from(self.shown[index].cell_width()).max(1);
+        for covered in index + 1..(index + old_width.max(width)).min((y + 1) * self.columns) {
+            self.shown[covered] = UNKNOWN;
+        }
+        if x > 0 && self.shown[index - 1].cell_width() > 1 {
+            self.shown[index - 1] = UNKNOWN;
+        }
+        let end = index + width;
+        if end < (y + 1) * self.columns && self.shown[end - 1].cell_width() > 1 {
+            self.shown[end] = UNKNOWN;
+        }
+        let painted = self.pen.put(x, y, cell, band, bytes);
+        if x + width >= self.columns {
+            self.pen.lose_cursor();
+        }
+        self.shown[index] = painted;
+    }
+}
+
+/// Whether every channel is within `band`. Only 24-bit colours are ever near: others are equal or not.
+fn near(a: Color, b: Color, band: u8) -> bool {
+    match (a, b) {
+        (Color::Rgb(..), Color::Rgb(..)) => rgb(a).iter().zip(rgb(b)).all(|(x, y)| x.abs_diff(y) <= band),
+        _ => a == b,
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,213 @@
+//! The encoder against a terminal emulator, cell by cell.
+
+use proptest::prelude::*;
+use ratatui::style::{Modifier, Style};
+
+use super::*;
+use crate::term::colour::base_index;
+
+const COLUMNS: u16 = 24;
+const ROWS: u16 = 6;
+
+/// What a test puts in a cell.
+#[derive(Clone, Debug)]
+enum Ink {
+    Picture([u8; 3], [u8; 3]),
+    Text(&'static str, Color, Color, Modifier),
+}
+
+fn ink() -> impl Strategy<Value = Ink> {
+    let colour = prop_oneof![
+        Just(Color::Reset),
+        (0..=255_u8).prop_map(Color::Indexed),
+        Just(Color::Cyan),
+        any::<[u8; 3]>().prop_map(|[r, g, b]| Color::Rgb(r, g, b)),
+    ];
+    let modifier = prop_oneof![
+        Just(Modifier::empty()),
+        Just(Modifier::BOLD),
+        Just(Modifier::BOLD | Modifier::REVERSED),
+        Just(Modifier::DIM | Modifier::UNDERLINED),
+    ];
+    let text = prop_oneof![Just("a"), Just("┃"), Just("木"), Just(" "), Just("◆")];
+    prop_oneof![
+        3 => (any::<[u8; 3]>(), any::<[u8; 3]>()).prop_map(|(a, b)| Ink::Picture(a, b)),
+        2 => (text, colour.clone(), colour, modifier).prop_map(|(t, f, b, m)| Ink::Text(t, f, b, m)),
+    ]
+}
+
+fn frame(inks: &[Ink]) -> Frame {
+    let mut frame = Frame::new(COLUMNS, ROWS);
+    for (i, ink) in (0_u16..).zip(inks) {
+        let (x, y) = (i % COLUMNS, i / COLUMNS);
+        let covered = x > 0 && frame.cells[(x - 1, y)].cell_width() > 1;
+        match *ink {
+            _ if covered => {}
+            Ink::Picture([a, b, c], [d, e, f]) => {
+                let style = Style::new().fg(Color::Rgb(a, b, c)).bg(Color::Rgb(d, e, f));
+                frame.cells[(x, y)].set_symbol(HALF_BLOCK).set_style(style);
+                frame.softness[usize::from(i)] = 1;
+            }
+            // A wide glyph does not fit into the last column.
+            Ink::Text(t, ..) if x + 1 == COLUMNS && t.cell_width() > 1 => {}
+            Ink::Text(t, f, b, m) => {
+                frame.cells.set_string(x, y, t, Style::new().fg(f).bg(b).add_modifier(m));
+            }
+        }
+    }
+    frame
+}
+
+/// The emulator's word for one of our colours.
+fn emulated(colour: Color) -> vt100::Color {
+    match (colour, base_index(colour)) {
+        (Color::Rgb(r, g, b), _) => vt100::Color::Rgb(r, g, b),
+        (Color::Indexed(n), _) | (_, Some(n)) => vt100::Color::Idx(n),
+        _ => vt100::Color::Default,
+    }
+}
+
+/// Asserts that every cell of the emulator is the frame's.
+fn assert_shows(screen: &vt100::Screen, frame: &Frame) {
+    let mut covered = 0;
+    for (i, cell) in frame.cells.content.iter().enumerate() {
+        let (x, y) = frame.cells.pos_of(i);
+        if covered > 0 {
+            covered -= 1;
+            continue;
+        }
+        covered = cell.cell_width().max(1) - 1;
+        let there = screen.cell(y, x).unwrap();
+        let glyph = if there.contents().is_empty() { " " } else { there.contents() };
+        assert_eq!(glyph, cell.symbol(), "glyph at {x},{y}");
+        assert_eq!(there.fgcolor(), emulated(cell.fg), "foreground of {glyph:?} at {x},{y}");
+        assert_eq!(there.bgcolor(), emulated(cell.bg), "background of {glyph:?} at {x},{y}");
+        let attributes = [
+            (there.bold(), Modifier::BOLD),
+            (there.dim(), Modifier::DIM),
+            (there.underline(), Modifier::UNDERLINED),
+            (there.inverse(), Modifier::REVERSED),
+        ];
+        for (set, attribute) in attributes {
+            assert_eq!(set, cell.modifier.contains(attribute), "{attribute:?} at {x},{y}");
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(128))]
+    #[test]
+    fn the_emulator_shows_what_was_wanted(
+        frames in prop::collection::vec(
+            prop::collection::vec(ink(), usize::from(COLUMNS * ROWS)),
+            1..5,
+        ),
+        budget in 100_usize..3000,
+    ) {
+        let mut emulator = vt100::Parser::new(ROWS.try_into().unwrap(), COLUMNS.try_into().unwrap(), 0);
+        let mut encoder = Encoder::new(Depth::True);
+        for inks in &frames {
+            // Some budgeted frames on the way, as during playing.
+            let mut bytes = Vec::new();
+            encoder.encode(&frame(inks), budget, true, &mut bytes);
+            emulator.process(&bytes);
+        }
+        let last = frame(frames.last().unwrap());
+        let mut n_paints = 0;
+        loop {
+            let mut bytes = Vec::new();
+            let left = encoder.encode(&last, budget, false, &mut bytes);
+            emulator.process(&bytes);
+            n_paints += 1;
+            prop_assert!(n_paints < 500, "does not converge: {left} cells left");
+            if left == 0 {
+                break;
+            }
+        }
+        assert_shows(emulator.screen(), &last);
+        let mut nothing = Vec::new();
+        prop_assert_eq!(encoder.encode(&last, budget, false, &mut nothing), 0);
+        prop_assert!(nothing.is_empty(), "an exact screen costs nothing");
+    }
+}
+
+/// A leafy picture: noise on waves, moving with t.
+fn leaves(columns: u16, rows: u16, t: f32) -> Frame {
+    let mut frame = Frame::new(columns, rows);
+    let mut noise = 1_u32;
+    let mut pixel = |x: u16, y: u16| {
+        noise = noise.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        let (x, y) = (f32::from(x), f32::from(y));
+        let wave = (0.7 * x + 3.0 * (0.2 * y + t).sin()).sin() * (0.5 * y + 2.0 * (0.1 * x - t).cos()).cos();
+        let v = 90.0 + 70.0 * wave + f32::from((noise >> 24) as u8 % 9);
+        Color::Rgb((v * 0.6) as u8, v as u8, (v * 0.4) as u8)
+    };
+    for y in 0..rows {
+        for x in 0..columns {
+            let (above, below) = (pixel(x, 2 * y), pixel(x, 2 * y + 1));
+            let i = frame.cells.index_of(x, y);
+            frame.cells.content[i].set_symbol(HALF_BLOCK).set_fg(above).set_bg(below);
+            frame.softness[i] = 1;
+        }
+    }
+    frame
+}
+
+/// Peak signal to noise ratio of what an encoder's terminal shows, dB.
+fn psnr(encoder: &Encoder, frame: &Frame) -> f64 {
+    let squares: u64 = encoder
+        .shown
+        .iter()
+        .zip(&frame.cells.content)
+        .map(|(a, b)| u64::from(distance(rgb(a.fg), rgb(b.fg)) + distance(rgb(a.bg), rgb(b.bg))))
+        .sum();
+    let mean = squares as f64 / (6 * frame.cells.content.len()) as f64;
+    10.0 * (255.0_f64.powi(2) / mean.max(1e-9)).log10()
+}
+
+#[test]
+fn the_budget_holds_and_buys_the_worst_cells() {
+    let mut encoder = Encoder::new(Depth::True);
+    let mut sizes = Vec::new();
+    let mut quality = Vec::new();
+    for k in 0..60_u8 {
+        let frame = leaves(80, 20, f32::from(k) * 0.05);
+        let mut bytes = Vec::new();
+        encoder.encode(&frame, 8192, true, &mut bytes);
+        if k >= 20 {
+            sizes.push(bytes.len());
+            quality.push(psnr(&encoder, &frame));
+        }
+    }
+    let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
+    let mean_size = sizes.iter().sum::<usize>() / sizes.len();
+    eprintln!("8 kB frames: {mean_size} bytes, {:.1} dB", mean(&quality));
+    assert!(sizes.iter().all(|&n| n <= 8192), "a frame exceeds its budget: {sizes:?}");
+    assert!(mean_size > 7000, "the budget is not used: {mean_size}");
+    assert!(mean(&quality) > 28.0);
+}
+
+#[test]
+fn poor_terminals_get_what_they_can_show() {
+    let frame = leaves(8, 2, 0.0);
+    for (depth, expect) in [(Depth::Ansi256, "38;5;"), (Depth::Mono, ""), (Depth::Ansi16, "\x1b[")] {
+        let mut encoder = Encoder::new(depth);
+        let mut bytes = Vec::new();
+        assert_eq!(encoder.encode(&frame, 1 << 20, false, &mut bytes), 0);
+        let text = String::from_utf8(bytes).unwrap();
+        assert!(text.contains(expect) && !text.contains("8;2;"), "{depth:?}: {text:?}");
+        assert!(depth != Depth::Mono || text.is_ascii(), "{text:?}");
+    }
+}
+
+#[test]
+fn one_changed_letter_costs_a_few_bytes() {
+    let mut encoder = Encoder::new(Depth::True);
+    let mut frame = Frame::new(80, 24);
+    frame.cells.set_string(0, 0, "frame 12", Style::new());
+    encoder.encode(&frame, 8192, false, &mut Vec::new());
+    frame.cells.set_string(0, 0, "frame 13", Style::new());
+    let mut bytes = Vec::new();
+    encoder.encode(&frame, 8192, false, &mut bytes);
+    assert_eq!(bytes, b"\x1b[1;8H3");
+}

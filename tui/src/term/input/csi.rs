@@ -1,0 +1,130 @@
+//! Control sequences: `ESC [ parameters final`.
+
+use super::{CSI_MAX, Event, Head, Mouse, MouseKind, Reply};
+use crate::term::key::{Code, Key};
+
+/// The sequence at the head of `bytes`, which begin with `ESC [`.
+pub(super) fn head(bytes: &[u8]) -> Head {
+    for (i, &b) in bytes.iter().enumerate().take(CSI_MAX).skip(2) {
+        match b {
+            0x20..=0x3f => {}
+            0x40..=0x7e => {
+                let body = std::str::from_utf8(&bytes[2..i]).unwrap_or_default();
+                return match (body, b) {
+                    ("200", b'~') => Head::PasteBegins(i + 1),
+                    _ => Head::Whole(event(body, b), i + 1),
+                };
+            }
+            // Not a control sequence after all: drop what was read and begin anew with this byte.
+            _ => return Head::Whole(None, i),
+        }
+    }
+    if bytes.len() >= CSI_MAX { Head::Whole(None, CSI_MAX) } else { Head::Part }
+}
+
+/// Keys whose sequence ends in a letter (`CSI A`, `SS3 P`).
+pub(super) fn letter_key(final_byte: u8) -> Option<Code> {
+    Some(match final_byte {
+        b'A' => Code::Up,
+        b'B' => Code::Down,
+        b'C' => Code::Right,
+        b'D' => Code::Left,
+        b'F' => Code::End,
+        b'H' => Code::Home,
+        b'M' => Code::Enter,
+        b'P' => Code::F(1),
+        b'Q' => Code::F(2),
+        b'R' => Code::F(3),
+        b'S' => Code::F(4),
+        _ => return None,
+    })
+}
+
+fn event(body: &str, final_byte: u8) -> Option<Event> {
+    let reply = |reply| Some(Event::Reply(reply));
+    let key = |code, modifiers| Some(Event::Key(Key::with_modifiers(code, modifiers)));
+    if let Some(private) = body.strip_prefix('?') {
+        return match final_byte {
+            b'c' => reply(Reply::Attributes(numbers(private))),
+            b'u' => reply(Reply::Keyboard(*numbers(private).first()?)),
+            b'y' => match numbers(private.strip_suffix('$')?)[..] {
+                [mode, state] => reply(Reply::Mode { mode, state }),
+                _ => None,
+            },
+            _ => None,
+        };
+    }
+    if let Some(body) = body.strip_prefix('<') {
+        return mouse(&numbers(body), final_byte == b'm').map(Event::Mouse);
+    }
+    let p = numbers(body);
+    let modifiers = p.get(1).copied().unwrap_or(1);
+    match final_byte {
+        b'n' => (p == [0]).then_some(Event::Reply(Reply::Ready)),
+        // `CSI 1 ; 2 R` is Shift-F3; every other position is the answer to a cursor query.
+        b'R' if p.len() == 2 && !(p[0] == 1 && (2..=8).contains(&p[1])) => {
+            reply(Reply::Cursor { row: p[0].saturating_sub(1), column: p[1].saturating_sub(1) })
+        }
+        b'I' | b'O' if body.is_empty() => Some(Event::Focus(final_byte == b'I')),
+        b'Z' => key(Code::Tab, 2),
+        b'~' if p.len() == 3 && p[0] == 27 => key(unicode_key(p[2])?, p[1]),
+        b'~' => key(tilde_key(*p.first()?)?, modifiers),
+        b'u' => key(unicode_key(*p.first()?)?, modifiers),
+        b'M' => None,
+        _ => key(letter_key(final_byte)?, modifiers),
+    }
+}
+
+/// The numbers between semicolons; of `a:b` only a counts, an empty one is 1 as terminals read it.
+fn numbers(body: &str) -> Vec<u16> {
+    if body.is_empty() {
+        return Vec::new();
+    }
+    body.split(';')
+        .map(|n| n.split(':').next().unwrap_or_default())
+        .map(|n| if n.is_empty() { 1 } else { n.parse().unwrap_or(u16::MAX) })
+        .collect()
+}
+
+fn mouse(p: &[u16], released: bool) -> Option<Mouse> {
+    let &[bits, column, row] = p else { return None };
+    let button = u8::try_from(bits & 3).ok()?;
+    let kind = match (bits & 64 != 0, bits & 32 != 0) {
+        (true, _) if button == 0 => MouseKind::WheelUp,
+        (true, _) if button == 1 => MouseKind::WheelDown,
+        (true, _) => return None,
+        (false, true) if button == 3 => MouseKind::Move,
+        (false, true) => MouseKind::Drag(button),
+        (false, false) if released => MouseKind::Release(button),
+        (false, false) => MouseKind::Press(button),
+    };
+    Some(Mouse { kind, column: column.saturating_sub(1), row: row.saturating_sub(1) })
+}
+
+fn tilde_key(n: u16) -> Option<Code> {
+    Some(match n {
+        1 | 7 => Code::Home,
+        2 => Code::Insert,
+        3 => Code::Delete,
+        4 | 8 => Code::End,
+        5 => Code::PageUp,
+        6 => Code::PageDown,
+        11..=15 => Code::F((n - 10) as u8),
+        17..=21 => Code::F((n - 11) as u8),
+        23 | 24 => Code::F((n - 12) as u8),
+        _ => return None,
+    })
+}
+
+/// Keys named by a code point, as kitty's protocol and modifyOtherKeys send them.
+fn unicode_key(n: u16) -> Option<Code> {
+    Some(match n {
+        9 => Code::Tab,
+        13 => Code::Enter,
+        27 => Code::Esc,
+        8 | 127 => Code::Backspace,
+        // kitty's private range: modifier and media keys have no meaning here.
+        0xe000..=0xf8ff | 0..=31 => return None,
+        _ => Code::Char(char::from_u32(u32::from(n))?),
+    })
+}

@@ -1,0 +1,94 @@
+//! The decoder against a table of real sequences, at every split, and against garbage.
+
+use proptest::prelude::*;
+
+use super::*;
+
+/// The one door: bytes in, events out, in words.
+fn decode(chunks: &[&[u8]]) -> Vec<String> {
+    let mut decoder = Decoder::default();
+    let mut events = Vec::new();
+    for chunk in chunks {
+        decoder.feed(chunk, &mut events);
+    }
+    decoder.flush(&mut events);
+    events.iter().map(word).collect()
+}
+
+fn word(event: &Event) -> String {
+    match event {
+        Event::Key(key) => key.to_string(),
+        Event::Mouse(m) => format!("{:?}@{},{}", m.kind, m.column, m.row),
+        other => format!("{other:?}"),
+    }
+}
+
+const TABLE: &[(&[u8], &[&str])] = &[
+    (b"aG ", &["a", "G", "space"]),
+    ("é木".as_bytes(), &["é", "木"]),
+    (b"\r\t\x7f\x12\x00", &["Enter", "Tab", "Backspace", "Ctrl-r", "Ctrl-space"]),
+    (b"\x1b", &["Esc"]),
+    (b"\x1b\x1b[A", &["Esc", "Up"]),
+    (b"\x1bx\x1b[Z", &["Alt-x", "Shift-Tab"]),
+    (b"\x1b[", &["Alt-["]),
+    (b"\x1b[A\x1bOB\x1b[1;5C\x1b[3~\x1b[24~\x1bOP", &["Up", "Down", "Ctrl-Right", "Delete", "F12", "F1"]),
+    (b"\x1b[27u\x1b[114;5u\x1b[27;5;46~", &["Esc", "Ctrl-r", "Ctrl-."]),
+    (b"\x1b[1;2R\x1b[5;9R", &["Shift-F3", "Reply(Cursor { row: 4, column: 8 })"]),
+    (b"\x1b[0n\x1b[?62;22c", &["Reply(Ready)", "Reply(Attributes([62, 22]))"]),
+    (b"\x1b[?2026;2$y", &["Reply(Mode { mode: 2026, state: 2 })"]),
+    (b"\x1bP>|tmux 3.3a\x1b\\q", &["Reply(Version(\"tmux 3.3a\"))", "q"]),
+    (b"\x1b]11;rgb:ffff/8080/0000\x07", &["Reply(Background([255, 128, 0]))"]),
+    (b"\x1b[?1u", &["Reply(Keyboard(1))"]),
+    (b"\x1b[<0;10;5M\x1b[<0;10;5m\x1b[<32;1;1M", &["Press(0)@9,4", "Release(0)@9,4", "Drag(0)@0,0"]),
+    (b"\x1b[<64;3;3M\x1b[<65;3;3M\x1b[<35;2;2M", &["WheelUp@2,2", "WheelDown@2,2", "Move@1,1"]),
+    (b"\x1b[200~a\x1b[Ab\x1b[201~c", &["Paste(\"a\\u{1b}[Ab\")", "c"]),
+    (b"\x1b[I\x1b[O", &["Focus(true)", "Focus(false)"]),
+    (b"\xffa\xc3\x28", &["a", "("]),
+    (b"\x1b[12\x1b[B", &["Down"]),
+    (b"\x1b]0;title cut off\x1b[B", &["Down"]),
+];
+
+#[test]
+fn every_sequence_at_every_split() {
+    for (bytes, expect) in TABLE {
+        assert_eq!(decode(&[bytes]), *expect, "{:?}", String::from_utf8_lossy(bytes));
+        for at in 1..bytes.len() {
+            let (a, b) = bytes.split_at(at);
+            assert_eq!(decode(&[a, b]), *expect, "{:?} split at {at}", String::from_utf8_lossy(bytes));
+        }
+    }
+}
+
+#[test]
+fn endless_strings_neither_grow_nor_swallow_what_follows() {
+    let mut decoder = Decoder::default();
+    let mut events = Vec::new();
+    decoder.feed(b"\x1bP", &mut events);
+    for _ in 0..1000 {
+        decoder.feed(&[b'x'; 999], &mut events);
+        assert!(decoder.pending.len() <= STRING_MAX);
+    }
+    decoder.feed(b"\x1b\\q", &mut events);
+    assert_eq!(events.iter().map(word).collect::<Vec<_>>(), ["q"]);
+}
+
+proptest! {
+    #[test]
+    fn splits_change_nothing(
+        pieces in prop::collection::vec(
+            prop_oneof![
+                (0..TABLE.len()).prop_map(|i| TABLE[i].0.to_vec()),
+                prop::collection::vec(any::<u8>(), 0..12),
+            ],
+            0..12,
+        ),
+        cuts in prop::collection::vec(0.0..1.0, 0..12),
+    ) {
+        let bytes: Vec<u8> = pieces.concat();
+        let mut at: Vec<usize> = cuts.iter().map(|c: &f64| (c * bytes.len() as f64) as usize).collect();
+        at.extend([0, bytes.len()]);
+        at.sort_unstable();
+        let chunks: Vec<&[u8]> = at.windows(2).map(|w| &bytes[w[0]..w[1]]).collect();
+        prop_assert_eq!(decode(&chunks), decode(&[&bytes]));
+    }
+}

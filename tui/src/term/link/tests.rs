@@ -1,0 +1,114 @@
+//! The link's model against simulated links.
+
+use super::*;
+
+/// A link with one queue: bytes per second, and delay there and back.
+struct Wire {
+    rate: f64,
+    delay: Duration,
+    free: Duration,
+}
+
+/// What holding a key for some seconds comes to.
+#[derive(Debug)]
+struct Outcome {
+    frames_per_s: f64,
+    /// Longest time from sending to answer.
+    worst: Duration,
+    budget: usize,
+    window: usize,
+    goodput: f64,
+}
+
+/// Sends as much as the model allows for `seconds`, on a wire.
+fn play(rate: f64, delay_ms: u64, seconds: u64) -> Outcome {
+    let mut link = Link::default();
+    let mut wire = Wire { rate, delay: Duration::from_millis(delay_ms), free: Duration::ZERO };
+    let mut answers: VecDeque<(Duration, Duration)> = VecDeque::new();
+    let (mut n_frames, mut worst) = (0, Duration::ZERO);
+    let mut now = Duration::ZERO;
+    // The first thing sent is a short probe, as in the program.
+    let mut size = 60;
+    let warm_up = Duration::from_secs(2);
+    while now < Duration::from_secs(seconds) {
+        while answers.front().is_some_and(|&(at, _)| at <= now) {
+            let Some((at, sent)) = answers.pop_front() else { break };
+            link.answered(at);
+            if at > warm_up {
+                n_frames += 1;
+                worst = worst.max(at - sent);
+            }
+        }
+        link.check(now);
+        if link.next_slot(now).is_some_and(|slot| slot <= now) {
+            link.sent(now, size);
+            let begin = wire.free.max(now + wire.delay / 2);
+            wire.free = begin + Duration::from_secs_f64(size as f64 / wire.rate);
+            answers.push_back((wire.free + wire.delay / 2, now));
+            size = link.budget();
+        }
+        now += Duration::from_millis(1);
+    }
+    Outcome {
+        frames_per_s: f64::from(n_frames) / (seconds - warm_up.as_secs()) as f64,
+        worst,
+        budget: link.budget(),
+        window: link.window(),
+        goodput: link.goodput().unwrap_or(0.0),
+    }
+}
+
+#[test]
+fn frames_fit_the_link() {
+    // Rate in B/s, delay in ms; at least so many frames per second, each on screen within so many ms.
+    for (rate, delay, frames, within_ms) in [
+        (235e3, 80, 24.0, 160),  // 2 Mbit/s
+        (118e3, 150, 20.0, 250), // 1 Mbit/s
+        (2.3e6, 40, 30.0, 70),   // 20 Mbit/s
+        (60e3, 80, 20.0, 200),   // 0.5 Mbit/s
+        (100e6, 0, 50.0, 5),     // the same machine
+        (30e3, 600, 10.0, 1000), // a satellite
+    ] {
+        let outcome = play(rate, delay, 70);
+        eprintln!("{rate:>9} B/s {delay:>3} ms: {outcome:?}");
+        assert!(outcome.frames_per_s >= frames, "{rate} B/s, {delay} ms: {outcome:?}");
+        assert!(outcome.worst <= Duration::from_millis(within_ms), "{rate} B/s, {delay} ms: {outcome:?}");
+    }
+}
+
+#[test]
+fn goodput_is_measured_within_a_tenth() {
+    let outcome = play(235e3, 80, 10);
+    assert!((outcome.goodput / 235e3 - 1.0).abs() < 0.1, "{outcome:?}");
+    assert!((7000..8500).contains(&outcome.budget) && outcome.window == 3, "{outcome:?}");
+}
+
+#[test]
+fn a_silent_terminal_gets_a_fixed_rate_until_it_speaks() {
+    let mut link = Link::default();
+    let (mut now, mut n_bytes) = (Duration::ZERO, 0);
+    while now < Duration::from_secs(12) {
+        link.check(now);
+        if link.next_slot(now).is_some_and(|slot| slot <= now) {
+            let size = link.budget();
+            link.sent(now, size);
+            n_bytes += size;
+        }
+        now += Duration::from_millis(1);
+    }
+    assert!(link.is_silent());
+    assert!((600_000..680_000).contains(&n_bytes), "{n_bytes} bytes in 12 s");
+    link.answered(now);
+    assert!(!link.is_silent());
+}
+
+#[test]
+fn surplus_answers_are_no_harm() {
+    let mut link = Link::default();
+    for ms in 0..10 {
+        link.answered(Duration::from_millis(ms));
+    }
+    link.sent(Duration::from_millis(20), 100);
+    assert!(link.is_waiting());
+    assert_eq!(link.goodput(), None);
+}

@@ -1,0 +1,231 @@
+//! A terminal session: the device, its signals, what it sends and what it shows, in one `wait` and one `paint`.
+
+use std::io;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::io::Errno;
+use signal_hook::consts::{SIGCONT, SIGHUP, SIGTSTP, SIGWINCH};
+
+use super::colour::Depth;
+use super::encode::Frame;
+use super::input::{Decoder, Event};
+use super::link::Link;
+use super::signals::{Signals, Waker};
+use super::tty::{self, Tty};
+use super::writer::Writer;
+
+/// How long an `ESC` may be the beginning of more: on this machine, and over ssh.
+const ESC_DELAY: [Duration; 2] = [Duration::from_millis(10), Duration::from_millis(60)];
+/// How long answers still on their way are awaited before the terminal is given back.
+const LAST_ANSWERS: Duration = Duration::from_millis(400);
+
+/// A terminal that is ours.
+#[derive(Debug)]
+pub struct Screen {
+    tty: Option<Tty>,
+    log: std::path::PathBuf,
+    signals: Signals,
+    decoder: Decoder,
+    writer: Writer,
+    esc_delay: Duration,
+    /// Until when an `ESC` may be the beginning of more.
+    esc_until: Option<Duration>,
+    start: Instant,
+}
+
+/// What a wait has brought.
+#[derive(Debug, Default)]
+pub struct Happened {
+    /// What the terminal has sent.
+    pub events: Vec<Event>,
+    /// The terminal has another size now.
+    pub resized: bool,
+    /// Somebody wants the program stopped for a while.
+    pub suspend: bool,
+    /// The session is over, and why.
+    pub end: Option<End>,
+}
+
+/// Why a session ends without its user's wish.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// This signal came.
+    Signal(i32),
+    /// The terminal is gone.
+    Hangup,
+}
+
+impl Screen {
+    /// Takes the terminal over and asks it what it can do, without waiting for answers.
+    ///
+    /// # Errors
+    /// When there is no terminal or the log cannot be written.
+    pub fn open(log: &Path) -> io::Result<Self> {
+        let var = |name: &str| std::env::var(name).ok();
+        // Catch signals before anything needs to be undone.
+        let signals = Signals::catch()?;
+        let in_multiplexer =
+            var("TMUX").is_some() || var("TERM").is_some_and(|t| t.starts_with("tmux") || t.starts_with("screen"));
+        let mut screen = Self {
+            tty: None,
+            log: log.to_owned(),
+            signals,
+            decoder: Decoder::default(),
+            writer: Writer::new(Depth::from_env(var), !in_multiplexer),
+            esc_delay: ESC_DELAY[usize::from(var("SSH_CONNECTION").is_some())],
+            esc_until: None,
+            start: Instant::now(),
+        };
+        screen.enter()?;
+        Ok(screen)
+    }
+
+    fn enter(&mut self) -> io::Result<()> {
+        let now = self.now();
+        let tty = self.tty.insert(Tty::enter(&self.log)?);
+        self.writer.begin(tty, tty::ENTER, now)
+    }
+
+    /// Time since the session began.
+    #[must_use]
+    pub fn now(&self) -> Duration {
+        self.start.elapsed()
+    }
+
+    /// Columns and rows.
+    #[must_use]
+    pub fn size(&self) -> (u16, u16) {
+        self.tty.as_ref().map_or((80, 24), Tty::size)
+    }
+
+    /// Something with which another thread ends [`wait`](Self::wait).
+    #[must_use]
+    pub fn waker(&self) -> Waker {
+        self.signals.waker()
+    }
+
+    /// What is known of the link.
+    #[must_use]
+    pub fn link(&self) -> &Link {
+        self.writer.link()
+    }
+
+    /// Whether a frame may go now.
+    #[must_use]
+    pub fn has_slot(&self) -> bool {
+        let now = self.now();
+        self.writer.next_slot(now).is_some_and(|slot| slot <= now)
+    }
+
+    /// Nothing is known of the screen any more; the next frame paints all of it.
+    pub fn forget(&mut self) {
+        self.writer.forget();
+    }
+
+    /// Brings the screen nearer to the frame; returns whether it shows the frame exactly. Needs a free slot.
+    ///
+    /// # Errors
+    /// When the terminal is gone.
+    pub fn paint(&mut self, frame: &Frame, moving: bool) -> io::Result<bool> {
+        let now = self.now();
+        match &self.tty {
+            Some(tty) => Ok(self.writer.paint(tty, frame, moving, now)? == 0),
+            None => Ok(true),
+        }
+    }
+
+    /// Waits until something happens: input, a signal, a wake-up, the time `until`, or (with `for_slot`) a free
+    /// slot for a frame.
+    ///
+    /// # Errors
+    /// When the system cannot wait; a terminal that is gone is [`End::Hangup`].
+    pub fn wait(&mut self, until: Option<Duration>, for_slot: bool) -> io::Result<Happened> {
+        let now = self.now();
+        let slot = if for_slot { self.writer.next_slot(now) } else { None };
+        let deadline = self.writer.check(now);
+        let until = [until, slot, deadline, self.esc_until].into_iter().flatten().min();
+        let mut happened = Happened::default();
+        self.poll(until.map(|t| t.saturating_sub(now)), &mut happened)?;
+        for signal in self.signals.take() {
+            match signal {
+                SIGWINCH => happened.resized = true,
+                SIGTSTP => happened.suspend = true,
+                SIGCONT => self.writer.forget(),
+                SIGHUP => happened.end = Some(End::Hangup),
+                _ => happened.end = Some(End::Signal(signal)),
+            }
+        }
+        let now = self.now();
+        self.writer.check(now);
+        if self.esc_until.is_some_and(|t| t <= now) {
+            self.decoder.flush(&mut happened.events);
+        }
+        self.esc_until = match self.esc_until {
+            _ if !self.decoder.is_waiting() => None,
+            Some(t) if t > now => Some(t),
+            _ => Some(now + self.esc_delay),
+        };
+        for event in &happened.events {
+            if let Event::Reply(reply) = event {
+                self.writer.answered(reply, now);
+            }
+        }
+        Ok(happened)
+    }
+
+    fn poll(&mut self, timeout: Option<Duration>, happened: &mut Happened) -> io::Result<()> {
+        let Some(tty) = &self.tty else { return Ok(()) };
+        let timeout = timeout.map(|t| Timespec {
+            tv_sec: i64::try_from(t.as_secs()).unwrap_or(i64::MAX),
+            tv_nsec: i64::from(t.subsec_nanos()),
+        });
+        let blocked = if self.writer.is_blocked() { PollFlags::OUT } else { PollFlags::empty() };
+        let mut fds = [PollFd::new(tty, PollFlags::IN | blocked), PollFd::new(&self.signals, PollFlags::IN)];
+        match poll(&mut fds, timeout.as_ref()) {
+            Ok(_) | Err(Errno::INTR) => {}
+            Err(error) => return Err(error.into()),
+        }
+        let ready = fds[0].revents();
+        if ready.contains(PollFlags::OUT) && self.writer.flush(tty).is_err() {
+            happened.end = Some(End::Hangup);
+        }
+        if ready.intersects(PollFlags::IN | PollFlags::HUP | PollFlags::ERR) {
+            let mut bytes = [0; 4096];
+            match rustix::io::read(tty, &mut bytes) {
+                Ok(0) => happened.end = Some(End::Hangup),
+                Ok(n) => self.decoder.feed(&bytes[..n], &mut happened.events),
+                Err(Errno::AGAIN | Errno::INTR) => {}
+                Err(_) => happened.end = Some(End::Hangup),
+            }
+        }
+        Ok(())
+    }
+
+    /// Gives the terminal back, stops the program until it is continued, and takes the terminal again.
+    ///
+    /// # Errors
+    /// When the terminal cannot be taken again.
+    pub fn suspend(&mut self) -> io::Result<()> {
+        self.close()?;
+        signal_hook::low_level::emulate_default_handler(SIGTSTP)?;
+        self.signals.take();
+        self.enter()
+    }
+
+    /// Awaits the answers still on their way, so that they do not end up in the shell; gives the terminal back.
+    ///
+    /// # Errors
+    /// When the system cannot wait.
+    pub fn close(&mut self) -> io::Result<()> {
+        let until = self.now() + LAST_ANSWERS;
+        while self.tty.is_some() && self.link().is_waiting() && self.now() < until {
+            if self.wait(Some(until), false)?.end.is_some() {
+                break;
+            }
+        }
+        self.tty = None;
+        Ok(())
+    }
+}

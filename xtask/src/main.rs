@@ -1,0 +1,73 @@
+//! Developer commands of honami: `cargo xtask demo|test|lint|bench`.
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "a command-line tool speaks to a person")]
+
+mod bench;
+mod shell;
+mod system;
+
+use std::process::ExitCode;
+
+use shell::cargo;
+
+const HELP: &str = "\
+cargo xtask <command>
+
+  demo [--headless]   build what the demo needs (release) and run it
+  test [args…]        install what the tests need where it may, then run every test
+  lint                formatting, clippy and documentation, warnings denied
+  bench [name]        measure; without a name, list the benchmarks";
+
+/// The packages of a working installation: the program and the plugins it ships.
+const SHIPPED: [&str; 6] =
+    ["-p", "honami", "-p", "honami-tracker-klt", "-p", "honami-clusterer-movement"];
+
+fn main() -> ExitCode {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    let args: Vec<&str> = args.iter().map(String::as_str).collect();
+    let result = match args.split_first() {
+        Some((&"demo", rest)) => demo(rest),
+        Some((&"test", rest)) => test(rest),
+        Some((&"lint", [])) => lint(),
+        Some((&"bench", rest)) => bench::run(rest),
+        Some((&("help" | "--help" | "-h"), _)) => {
+            println!("{HELP}");
+            return ExitCode::SUCCESS;
+        }
+        _ => {
+            eprintln!("{HELP}");
+            return ExitCode::from(2);
+        }
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("xtask: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Builds the program and its plugins and runs the demo.
+fn demo(args: &[&str]) -> anyhow::Result<()> {
+    system::need_compiler()?;
+    cargo(&["build", "--release"]).args(SHIPPED).run()?;
+    shell::built("release", "honami")?.arg("demo").args(args).run()
+}
+
+/// Installs what the tests need and runs all of them.
+fn test(args: &[&str]) -> anyhow::Result<()> {
+    system::need_compiler()?;
+    system::want_ffmpeg();
+    // The end-to-end tests run the real program with the real plugins: build them first.
+    cargo(&["build", "--workspace"]).run()?;
+    cargo(&["test", "--workspace"]).args(args.iter().copied()).run()
+}
+
+/// Everything that a reviewer should not have to say.
+fn lint() -> anyhow::Result<()> {
+    cargo(&["fmt", "--all", "--check"]).run()?;
+    cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]).run()?;
+    cargo(&["doc", "--workspace", "--no-deps", "--document-private-items"])
+        .env("RUSTDOCFLAGS", "-D warnings")
+        .run()
+}

@@ -1,0 +1,64 @@
+//! What honami needs from the system: a C++ compiler to build, ffmpeg for most videos.
+
+use std::process::{Command, Stdio};
+
+use anyhow::ensure;
+
+use crate::shell::Step;
+
+/// Makes sure that the bundled C and C++ sources (SQLite, openh264) can be built.
+pub(crate) fn need_compiler() -> anyhow::Result<()> {
+    let there = || answers("cc") && answers("c++");
+    if !there() {
+        install("g++");
+    }
+    ensure!(there(), "a C and C++ compiler is needed: install it with `apt-get install g++`");
+    Ok(())
+}
+
+/// ffmpeg is wanted: without it the tests of most video formats say that they are skipped.
+pub(crate) fn want_ffmpeg() {
+    if !answers("ffmpeg") && !install("ffmpeg") {
+        eprintln!("ffmpeg is missing: tests that need it say so. To install it: apt-get install ffmpeg");
+    }
+}
+
+fn answers(program: &str) -> bool {
+    let quiet = |flag: &str| {
+        Command::new(program).arg(flag).stdout(Stdio::null()).stderr(Stdio::null()).stdin(Stdio::null()).status()
+    };
+    quiet("-version").is_ok_and(|s| s.success()) || quiet("--version").is_ok_and(|s| s.success())
+}
+
+/// Installs a Debian package where this user may do so without a question; says so where not.
+fn install(package: &str) -> bool {
+    let sudo: &[&str] = match root_prefix() {
+        Some(prefix) => prefix,
+        None => {
+            eprintln!("{package} is missing and cannot be installed from here (needs root and apt-get)");
+            return false;
+        }
+    };
+    let apt = |args: &[&str]| {
+        let words: Vec<&str> = sudo.iter().chain(&["apt-get", "-qq", "-y"]).chain(args).copied().collect();
+        Step::new(words[0]).args(&words[1..]).env("DEBIAN_FRONTEND", "noninteractive").run()
+    };
+    let done = apt(&["update"]).and_then(|()| apt(&["install", "--no-install-recommends", package]));
+    if let Err(error) = &done {
+        eprintln!("could not install {package}: {error:#}");
+    }
+    done.is_ok()
+}
+
+/// The words that make a command run as root: none for root itself, `sudo -n` where it asks nothing.
+fn root_prefix() -> Option<&'static [&'static str]> {
+    let ok = |program: &str, args: &[&str]| {
+        let out = Command::new(program).args(args).stderr(Stdio::null()).output().ok()?;
+        out.status.success().then(|| String::from_utf8_lossy(&out.stdout).trim().to_owned())
+    };
+    ok("apt-get", &["--version"])?;
+    if ok("id", &["-u"])? == "0" {
+        return Some(&[]);
+    }
+    ok("sudo", &["-n", "true"]).map(|_| &["sudo", "-n"] as &[_])
+}
