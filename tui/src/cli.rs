@@ -14,7 +14,6 @@ mod track;
 use std::path::Path;
 use std::process::ExitCode;
 
-use anyhow::Context as _;
 use clap::Parser as _;
 use honami_workbench::session::{Session, SessionOptions};
 
@@ -96,20 +95,26 @@ fn open(path: Option<&Path>, common: &Common) -> anyhow::Result<()> {
     let Some(path) = path else {
         return crate::app::run(None, &options(common));
     };
-    let session = if path.extension().is_some_and(|e| e == "honami") {
-        session(path, common)?
+    let is_project = path.extension().is_some_and(|e| e == "honami");
+    let project = if is_project { path.to_owned() } else { project::name_for(path) };
+    let session = if is_project || project.exists() {
+        Session::open_or_look(&project, &options(common))?
     } else {
-        let project = project::name_for(path);
-        if project.exists() { session(&project, common)? } else { project::make(&project, path, None, common)? }
+        project::make(&project, path, None, common)?
     };
     crate::app::run(Some(session), &options(common))
 }
 
 fn options(common: &Common) -> SessionOptions {
-    SessionOptions { plugin_paths: common.plugins.clone() }
+    SessionOptions { plugin_paths: common.plugins.clone(), read_only: false }
 }
 
-/// Opens a project for a command that writes to it or only reads it.
+/// Opens a project for a command that writes to it.
 fn session(path: &Path, common: &Common) -> anyhow::Result<Session> {
-    Session::open(path, &options(common)).with_context(|| "cannot open the project")
+    Ok(Session::open(path, &options(common))?)
+}
+
+/// Opens a project for a command that only looks, also while another session writes.
+fn look(path: &Path, common: &Common) -> anyhow::Result<Session> {
+    Ok(Session::open(path, &SessionOptions { read_only: true, ..options(common) })?)
 }

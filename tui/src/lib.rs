@@ -1,3 +1,5 @@
-//! honami in a terminal: the screen (`term`) and the workbench on it (`app`).
+//! honami in a terminal: the screen (`term`), the workbench on it (`app`), and the command line (`cli`).
 
+pub mod app;
+pub mod cli;
 pub mod term;

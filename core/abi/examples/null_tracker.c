@@ -108,7 +108,8 @@ static honami_code push(honami_instance *instance, const honami_call *call, cons
     ((uint32_t *)out[0].data)[i] = self->points[i].id;
     ((float *)out[1].data)[i] = self->points[i].x;
     ((float *)out[2].data)[i] = self->points[i].y;
-    ((uint8_t *)out[3].data)[i] = self->points[i].x <= (float)frame->width - 0.5f ? HONAMI_TRACKED : HONAMI_OUTSIDE;
+    ((uint8_t *)out[3].data)[i] =
+        self->points[i].x >= -0.5f && self->points[i].x < (float)frame->width - 0.5f ? HONAMI_TRACKED : HONAMI_OUTSIDE;
   }
   self->pushed = 1;
   return call->commit(call, HONAMI_POINTS, self->n);

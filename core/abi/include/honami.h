@@ -15,7 +15,8 @@
  *   [control]       the host calls it from any thread, but never two at once for one instance
  *   [.. & idle]     only before begin, or after end or a cancelled call
  *   [.. & run]      only between begin and end
- * Two instances of one library run at once only if the manifest says "parallel_instances": true.
+ *   [library]       any thread, one at a time for a library
+ * Two instances of one library work at once only if the manifest says "parallel_instances": true.
  *
  * OWNERSHIP. What the host passes in is the host's, read-only, and gone when the call returns: copy what you keep.
  * What a plugin returns by pointer (library, instance, interface) is the plugin's; a library and its interfaces live
@@ -29,7 +30,8 @@
  *
  * MANNERS. At most max_threads threads work at a time; they have stopped before the call returns. Leave alone: file
  * descriptors 0-2, signals, locale, environment, working directory, floating-point mode. No fork, no exit.
- * The same input, parameters and seed give the same bits, with one thread and with many.
+ * The same input, parameters and seed give the same bits, with one thread and with many, unless the manifest says
+ * "deterministic": false.
  */
 #ifndef HONAMI_H
 #define HONAMI_H
@@ -51,14 +53,18 @@ extern "C" {
 
 #if defined(__GNUC__)
 #define HONAMI_EXPORT __attribute__((visibility("default")))
-/* Puts the manifest, a string literal, into the library's note and names it honami_note; use once, at file scope. */
+#else
+#define HONAMI_EXPORT
+#endif
+
+#if defined(__GNUC__) && defined(__ELF__)
+/* Puts the manifest, a string literal, into the library's note (owner "honami", type 1, the text with its NUL) and names
+ * it honami_note; use once, at file scope. */
 #define HONAMI_MANIFEST(json)                                                                                        \
   static const struct {                                                                                              \
     uint32_t name_len, text_len, type;                                                                               \
     char name[8], text[sizeof(json)];                                                                                \
-  } honami_note __attribute__((used, aligned(4), section(".note.honami"))) = {7, sizeof(json) - 1, 1, "honami", json}
-#else
-#define HONAMI_EXPORT
+  } honami_note __attribute__((used, aligned(4), section(".note.honami"))) = {7, sizeof(json), 1, "honami", json}
 #endif
 
 /* ---------------------------------------------------------------------------------------------------- codes --- */
@@ -236,16 +242,16 @@ struct honami_instance {
 typedef struct honami_library {
   uint32_t struct_size;
   uint32_t abi_minor;    /* the minor it was built for */
-  const char *manifest;  /* the same bytes as in the note */
-  uint64_t manifest_len;
+  const char *manifest;  /* the same text as in the note */
+  uint64_t manifest_len; /* without the NUL */
 
   /* Makes an instance of the plugin with this id, with default parameters; NULL, and a reason by call->fail, if there
-   * is none or it cannot work here.  [control] */
+   * is none or it cannot work here.  [library] */
   honami_instance *(*create)(const honami_host_info *host, const honami_call *call, const char *plugin_id);
 } honami_library;
 
 /* The one exported symbol. May be called more than once and returns the same pointer; NULL refuses the host.
- * Does nothing that takes time.  [control] */
+ * Does nothing that takes time.  [library] */
 HONAMI_EXPORT const honami_library *honami_library_v1(const honami_host_info *host);
 typedef const honami_library *(*honami_library_v1_fn)(const honami_host_info *host);
 #define HONAMI_LIBRARY_SYMBOL "honami_library_v1"

@@ -118,7 +118,7 @@ layout! {
     }
 }
 
-/// Every number of the header beside the mirror's value for it.
+/// Every whole number of the header beside the mirror's value for it.
 pub const NUMBERS: &[(&str, i64)] = &[
     ("HONAMI_ABI_MAJOR", crate::ABI_MAJOR as i64),
     ("HONAMI_ABI_MINOR", crate::ABI_MINOR as i64),
@@ -159,9 +159,11 @@ pub const NUMBERS: &[(&str, i64)] = &[
     ("HONAMI_SEED", crate::kind::SEED as i64),
     ("HONAMI_GRAY8", crate::GRAY8 as i64),
     ("HONAMI_LATENCY_ALL", crate::LATENCY_ALL as i64),
-    ("HONAMI_FB_NONE", crate::FB_NONE as i64),
-    ("HONAMI_NCC_NONE", crate::NCC_NONE as i64),
 ];
+
+/// Every number of the header that is not whole by type, beside the mirror's value for it.
+pub const FLOATS: &[(&str, f32)] =
+    &[("HONAMI_FB_NONE", crate::FB_NONE), ("HONAMI_NCC_NONE", crate::NCC_NONE)];
 
 /// Every id of the header and the draft header beside the mirror's value for it.
 pub const IDS: &[(&str, &core::ffi::CStr)] = &[

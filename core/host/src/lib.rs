@@ -1,1 +1,41 @@
-//! Finds, loads and calls honami plugins.
+//! The host of plugins: finds them, reads what they are without running them, loads them, and checks what they return.
+//!
+//! The way of a plugin: [`Registry::scan`] reads manifests from files along the search path; [`Registry::find`] gives a
+//! [`PluginInfo`], whose parameters a form is drawn from; [`Host::tracker`] and its like make a handle to one
+//! at work. A handle's calls take a [`CallContext`] for progress, cancel and log, and give results that have been
+//! checked: whatever breaks the contract of `honami.h` is a [`HostError::Misbehaved`] with names and numbers, and
+//! nothing of it reaches the caller.
+//!
+//! Handles do not know where a plugin runs. Today it runs in this process, from a copy in the store that is named by its
+//! hash, and is never unloaded.
+
+mod call;
+mod clusterer;
+mod context;
+mod error;
+mod host;
+mod in_process;
+mod instance;
+mod manifest;
+mod note;
+mod registry;
+mod reply;
+mod store;
+mod tracker;
+mod types;
+mod values;
+
+pub mod draft;
+
+pub use clusterer::Clusterer;
+pub use context::{CallContext, Flow, Level};
+pub use error::{Code, HostError};
+pub use host::{Host, Origin};
+pub use manifest::{Caps, Entry, Kind, Numeric, Param, ParamKind};
+pub use registry::{PluginInfo, Registry, SearchPath, Trust};
+pub use tracker::Tracker;
+pub use types::{
+    Clustering, DetectRequest, Feature, Field, FrameNote, FrameView, Gray, Merge, Point, PointRow, Points,
+    Status, StreamInfo, Tracks,
+};
+pub use values::{Value, ValueError, Values};

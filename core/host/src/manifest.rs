@@ -31,50 +31,50 @@ impl std::fmt::Display for Kind {
 
 /// The JSON document in a library's note. Unknown members are ignored.
 #[derive(Clone, Debug, Deserialize)]
-pub struct Manifest {
+pub(crate) struct Manifest {
     /// Version of this document's form; 1.
-    pub honami: u32,
+    pub(crate) honami: u32,
     /// Major and minor of the ABI that it was built for.
-    pub abi: (u32, u32),
+    pub(crate) abi: (u32, u32),
     /// Of the library as a whole.
-    pub library: LibraryInfo,
+    pub(crate) library: LibraryInfo,
     /// What is in it.
-    pub plugins: Vec<PluginManifest>,
+    pub(crate) plugins: Vec<PluginManifest>,
 }
 
 /// Of a library as a whole.
 #[derive(Clone, Debug, Deserialize)]
-pub struct LibraryInfo {
+pub(crate) struct LibraryInfo {
     /// Reverse-DNS.
-    pub id: String,
+    pub(crate) id: String,
     /// Version of all its plugins.
-    pub version: String,
+    pub(crate) version: String,
     /// SPDX expression.
     #[serde(default)]
-    pub license: String,
+    pub(crate) license: String,
 }
 
 /// Of one plugin.
 #[derive(Clone, Debug, Deserialize)]
-pub struct PluginManifest {
+pub(crate) struct PluginManifest {
     /// Reverse-DNS; the last component is its short name.
-    pub id: String,
+    pub(crate) id: String,
     /// What it does; as text, so that a library may also hold kinds of tomorrow.
-    pub kind: String,
+    pub(crate) kind: String,
     /// For people, a few words.
-    pub name: String,
+    pub(crate) name: String,
     /// Markdown.
     #[serde(default)]
-    pub doc: String,
+    pub(crate) doc: String,
     /// Where the method comes from.
     #[serde(default)]
-    pub cite: Vec<String>,
+    pub(crate) cite: Vec<String>,
     /// Interface ids.
     #[serde(default)]
-    pub interfaces: Vec<String>,
+    pub(crate) interfaces: Vec<String>,
     /// Abilities.
     #[serde(default)]
-    pub caps: Caps,
+    pub(crate) caps: Caps,
     #[serde(default)]
     params: Vec<serde_json::Value>,
 }
@@ -221,8 +221,12 @@ impl Manifest {
     ///
     /// # Errors
     /// A sentence, when it is no such document or says what cannot be.
-    pub fn parse(json: &[u8]) -> Result<Self, String> {
-        let manifest: Self = serde_json::from_slice(json).map_err(|e| format!("its manifest is broken: {e}"))?;
+    pub(crate) fn parse(json: &[u8]) -> Result<Self, String> {
+        let manifest: Self =
+            serde_json::from_slice(json).map_err(|e| format!("its manifest is broken: {e}"))?;
+        if manifest.honami != 1 {
+            return Err(format!("its manifest is of form {}, this honami reads form 1", manifest.honami));
+        }
         if manifest.abi.0 != honami_abi::ABI_MAJOR {
             let (major, known) = (manifest.abi.0, honami_abi::ABI_MAJOR);
             return Err(format!("built for ABI {major}, this honami knows ABI {known}"));
@@ -243,7 +247,7 @@ impl PluginManifest {
     ///
     /// # Errors
     /// A sentence, when one is declared wrongly.
-    pub fn params(&self) -> Result<(Vec<Param>, BTreeMap<String, String>), String> {
+    pub(crate) fn params(&self) -> Result<(Vec<Param>, BTreeMap<String, String>), String> {
         let mut params: Vec<Param> = Vec::new();
         let mut renamed = BTreeMap::new();
         for json in &self.params {

@@ -16,7 +16,7 @@ const MANIFEST_BYTES_MAX: usize = 1 << 20;
 ///
 /// # Errors
 /// When the file cannot be read, is for another machine or another ABI, or its manifest is broken.
-pub fn read(path: &Path) -> Result<Option<(Manifest, Vec<u8>)>, HostError> {
+pub(crate) fn read(path: &Path) -> Result<Option<(Manifest, Vec<u8>)>, HostError> {
     let file_error = |why: String| HostError::File { path: path.to_owned(), why };
     let file = File::open(path).map_err(|e| file_error(format!("cannot be read: {e}")))?;
     let data = ReadCache::new(file);
@@ -28,22 +28,24 @@ pub fn read(path: &Path) -> Result<Option<(Manifest, Vec<u8>)>, HostError> {
 /// The bytes of the note.
 fn note<'d, R: ReadRef<'d>>(data: R) -> Result<Option<Vec<u8>>, String> {
     let broken = |e: object::Error| format!("is no whole ELF file: {e}");
-    let header = FileHeader64::<Endianness>::parse(data).map_err(|_ignored| "is no 64-bit ELF library".to_owned())?;
+    let header =
+        FileHeader64::<Endianness>::parse(data).map_err(|_ignored| "is no 64-bit ELF library".to_owned())?;
     let endian = header.endian().map_err(broken)?;
     let machine = header.e_machine(endian);
     if Some(machine) != this_machine() {
-        return Err(format!("is built for another machine (ELF machine {machine})"));
+        return Err(format!("is built for another machine (ELF machine {})", machine.0));
     }
     let mut found = None;
     for segment in header.program_headers(endian, data).map_err(broken)? {
         let Some(mut notes) = segment.notes(endian, data).map_err(broken)? else { continue };
         while let Some(note) = notes.next().map_err(broken)? {
-            if note.name() == honami_abi::NOTE_NAME.to_bytes() && note.n_type(endian) == 1 {
+            if note.name() == honami_abi::NOTE_NAME.to_bytes() && note.n_type(endian) == elf::NoteType(1) {
                 found = Some(note.desc());
             }
         }
     }
     let Some(json) = found else { return Ok(None) };
+    let json = json.strip_suffix(&[0]).unwrap_or(json);
     if json.len() > MANIFEST_BYTES_MAX {
         return Err(format!("its manifest has {} bytes, more than anybody can mean", json.len()));
     }
@@ -52,7 +54,11 @@ fn note<'d, R: ReadRef<'d>>(data: R) -> Result<Option<Vec<u8>>, String> {
 }
 
 /// Checks that the one symbol of our major version is there.
-fn exports<'d, R: ReadRef<'d>>(header: &FileHeader64<Endianness>, endian: Endianness, data: R) -> Result<(), String> {
+fn exports<'d, R: ReadRef<'d>>(
+    header: &FileHeader64<Endianness>,
+    endian: Endianness,
+    data: R,
+) -> Result<(), String> {
     let broken = |e: object::Error| format!("is no whole ELF file: {e}");
     let sections = header.sections(endian, data).map_err(broken)?;
     let symbols = sections.symbols(endian, data, elf::SHT_DYNSYM).map_err(broken)?;
@@ -61,16 +67,20 @@ fn exports<'d, R: ReadRef<'d>>(header: &FileHeader64<Endianness>, endian: Endian
         .filter(|symbol| symbol.st_shndx(endian) != elf::SHN_UNDEF)
         .filter_map(|symbol| symbol.name(endian, symbols.strings()).ok());
     let versions: Vec<String> = names
-        .filter_map(|name| std::str::from_utf8(name).ok()?.strip_prefix("honami_library_v").map(str::to_owned))
+        .filter_map(|name| {
+            std::str::from_utf8(name).ok()?.strip_prefix("honami_library_v").map(str::to_owned)
+        })
         .collect();
     match versions.as_slice() {
         [] => Err("carries a manifest but does not export honami_library_v1".into()),
         all if all.iter().any(|v| *v == honami_abi::ABI_MAJOR.to_string()) => Ok(()),
-        [other, ..] => Err(format!("is built for ABI {other}, this honami knows ABI {}", honami_abi::ABI_MAJOR)),
+        [other, ..] => {
+            Err(format!("is built for ABI {other}, this honami knows ABI {}", honami_abi::ABI_MAJOR))
+        }
     }
 }
 
-fn this_machine() -> Option<u16> {
+fn this_machine() -> Option<elf::Machine> {
     match std::env::consts::ARCH {
         "x86_64" => Some(elf::EM_X86_64),
         "aarch64" => Some(elf::EM_AARCH64),

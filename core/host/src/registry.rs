@@ -28,7 +28,8 @@ impl SearchPath {
             named.extend(std::env::split_paths(&paths).filter(|path| !path.as_os_str().is_empty()));
         }
         let absolute = |name| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
-        let data = absolute("XDG_DATA_HOME").or_else(|| absolute("HOME").map(|home| home.join(".local/share")));
+        let data =
+            absolute("XDG_DATA_HOME").or_else(|| absolute("HOME").map(|home| home.join(".local/share")));
         let installed = data
             .into_iter()
             .map(|data| data.join("honami/plugins"))
@@ -71,6 +72,8 @@ pub struct PluginInfo {
     pub license: String,
     /// ABI that it was built for.
     pub abi: (u32, u32),
+    /// Id of its library.
+    pub library_id: String,
     /// The library's file.
     pub library: PathBuf,
     /// Whether it may be loaded.
@@ -127,7 +130,9 @@ impl Registry {
                 registry.add_file(named, Trust::Named, true);
             }
         }
-        if let Some((executable, folder)) = path.executable.as_deref().and_then(|exe| Some((exe, exe.parent()?))) {
+        if let Some((executable, folder)) =
+            path.executable.as_deref().and_then(|exe| Some((exe, exe.parent()?)))
+        {
             for folder in [folder.to_owned(), folder.join("../lib/honami/plugins")] {
                 registry.scan_folder(&folder, |file| shipped(executable, &folder, file));
             }
@@ -229,6 +234,7 @@ impl Registry {
                 version: manifest.library.version.clone(),
                 license: manifest.library.license.clone(),
                 abi: manifest.abi,
+                library_id: manifest.library.id.clone(),
                 library: file.to_owned(),
                 trust: trust.clone(),
                 interfaces: plugin.interfaces,

@@ -17,18 +17,18 @@ const AGE_MAX: Duration = Duration::from_secs(30 * 24 * 3600);
 
 /// A copy in the store.
 #[derive(Clone, Debug)]
-pub struct Stored {
+pub(crate) struct Stored {
     /// The copy.
-    pub path: PathBuf,
+    pub(crate) path: PathBuf,
     /// Of its content, lower-case hexadecimal.
-    pub sha256: String,
+    pub(crate) sha256: String,
 }
 
 /// The hash of a file's content, lower-case hexadecimal.
 ///
 /// # Errors
 /// When it cannot be read.
-pub fn sha256_of(path: &Path) -> Result<String, HostError> {
+pub(crate) fn sha256_of(path: &Path) -> Result<String, HostError> {
     read(path).map(|bytes| hex(&bytes))
 }
 
@@ -36,12 +36,11 @@ pub fn sha256_of(path: &Path) -> Result<String, HostError> {
 ///
 /// # Errors
 /// When it cannot be read, or the store cannot be written.
-pub(crate) fn keep(path: &Path) -> Result<Stored, HostError> {
+pub(crate) fn keep(path: &Path, folder: &Path) -> Result<Stored, HostError> {
     let bytes = read(path)?;
     let sha256 = hex(&bytes);
-    let folder = folder();
     let copy = folder.join(format!("{sha256}.so"));
-    keep_bytes(&folder, &copy, &bytes).map_err(|e| HostError::File {
+    keep_bytes(folder, &copy, &bytes).map_err(|e| HostError::File {
         path: copy.clone(),
         why: format!("cannot keep a copy of {} here: {e}", path.display()),
     })?;
@@ -60,7 +59,7 @@ fn hex(bytes: &[u8]) -> String {
 }
 
 /// `$XDG_CACHE_HOME/honami/store`.
-fn folder() -> PathBuf {
+pub(crate) fn folder_of_user() -> PathBuf {
     let absolute = |name| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
     let cache = absolute("XDG_CACHE_HOME").or_else(|| absolute("HOME").map(|home| home.join(".cache")));
     let fallback = || std::env::temp_dir().join(format!("honami-{}", geteuid().as_raw()));

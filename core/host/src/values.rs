@@ -146,9 +146,9 @@ impl Param {
             ParamKind::Bool { default } => Value::Bool(*default),
             ParamKind::Int(Numeric { default, .. }) | ParamKind::Seed { default } => Value::Int(*default),
             ParamKind::Float(Numeric { default, .. }) => Value::Float(*default),
-            ParamKind::Enum { default, .. } | ParamKind::String { default } | ParamKind::Path { default, .. } => {
-                Value::Text(default.clone())
-            }
+            ParamKind::Enum { default, .. }
+            | ParamKind::String { default }
+            | ParamKind::Path { default, .. } => Value::Text(default.clone()),
             ParamKind::Vec2 { default } => Value::List(default.to_vec()),
             ParamKind::Rect { default } => Value::List(default.to_vec()),
         }
@@ -164,7 +164,9 @@ impl Param {
             }),
             ParamKind::Int(_) | ParamKind::Seed { .. } => Value::Int(text.parse().ok()?),
             ParamKind::Float(_) => Value::Float(text.parse().ok()?),
-            ParamKind::Enum { .. } | ParamKind::String { .. } | ParamKind::Path { .. } => Value::Text(text.to_owned()),
+            ParamKind::Enum { .. } | ParamKind::String { .. } | ParamKind::Path { .. } => {
+                Value::Text(text.to_owned())
+            }
             ParamKind::Vec2 { .. } | ParamKind::Rect { .. } => {
                 Value::List(text.split(',').map(|n| n.trim().parse().ok()).collect::<Option<_>>()?)
             }
@@ -188,8 +190,12 @@ impl Param {
             (ParamKind::Seed { .. }, Value::Int(i)) => *i >= 0,
             (ParamKind::Enum { entries, .. }, Value::Text(id)) => entries.iter().any(|entry| entry.id == *id),
             (ParamKind::String { .. } | ParamKind::Path { .. }, Value::Text(text)) => !text.contains('\0'),
-            (ParamKind::Vec2 { .. }, Value::List(list)) => list.len() == 2 && list.iter().all(|n| n.is_finite()),
-            (ParamKind::Rect { .. }, Value::List(list)) => list.len() == 4 && list.iter().all(|n| n.is_finite()),
+            (ParamKind::Vec2 { .. }, Value::List(list)) => {
+                list.len() == 2 && list.iter().all(|n| n.is_finite())
+            }
+            (ParamKind::Rect { .. }, Value::List(list)) => {
+                list.len() == 4 && list.iter().all(|n| n.is_finite())
+            }
             _ => false,
         };
         if fits { Ok(value) } else { Err(self.wrong(&value.to_string())) }

@@ -37,7 +37,7 @@ const PARTIAL: &str = "part";
 /// A cache folder and its bound.
 #[derive(Clone, Debug)]
 pub(crate) struct Folder {
-    dir: PathBuf,
+    pub(crate) dir: PathBuf,
     bound: u64,
 }
 
@@ -202,6 +202,13 @@ impl Filling {
     /// Writes frame `n`. Through the file, not the map: a full disk is then an error and no SIGBUS.
     pub(crate) fn write(&self, n: u32, frame: &[u8]) -> io::Result<()> {
         self.file.write_all_at(frame, HEAD_LEN + u64::from(n) * frame.len() as u64)
+    }
+
+    /// From here on writing fails, as on a full disk.
+    #[cfg(test)]
+    pub(crate) fn refuse_writes(&mut self) -> io::Result<()> {
+        self.file = Arc::new(File::open(&self.partial.0)?);
+        Ok(())
     }
 
     /// All frames are in: makes the file the one that later openings find.

@@ -137,7 +137,10 @@ pub(crate) fn rgb_to_planes(rgb: &[u8], shape: &Shape, frame: &mut [u8]) {
         for column in 0..half {
             let (left, right) = (6 * column, (6 * column + 3).min(3 * (width - 1)));
             let [r, g, b] = [0, 1, 2].map(|c| {
-                [top[left + c], top[right + c], below[left + c], below[right + c]].map(i32::from).iter().sum::<i32>()
+                [top[left + c], top[right + c], below[left + c], below[right + c]]
+                    .map(i32::from)
+                    .iter()
+                    .sum::<i32>()
             });
             // Sums of four pixels: two more bits of fraction. 128 in the same scale, and one half to round.
             const BIAS: i32 = (128 << 18) + (1 << 17);

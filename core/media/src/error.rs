@@ -76,12 +76,12 @@ pub enum MediaError {
         /// The file.
         path: PathBuf,
     },
-    /// Only ffmpeg can read this, and it is not there.
-    #[error("{what} needs ffmpeg, which is not installed (apt install ffmpeg): {}", path.display())]
+    /// Only ffmpeg can do this, and it is not installed or not wanted.
+    #[error("{what} needs ffmpeg (apt install ffmpeg): {}", path.display())]
     NeedsFfmpeg {
         /// The file.
         path: PathBuf,
-        /// What the built-in decoder cannot read.
+        /// What the built-in code cannot read or write.
         what: String,
     },
     /// A kind of picture that honami does not read.

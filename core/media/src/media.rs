@@ -133,10 +133,11 @@ impl Media {
     /// Frames that [`Media::frame`] gives without waiting for the decoder to come by; all when decoded on demand.
     #[must_use]
     pub fn n_ready(&self) -> u32 {
-        if self.shared.map.is_none() || self.shared.ended().is_some() {
-            return self.shared.n_frames;
+        match *self.shared.ended() {
+            Some(Ended::NoRoom) => self.shared.n_frames,
+            _ if self.shared.map.is_none() => self.shared.n_frames,
+            _ => self.shared.n_ready.load(Ordering::Acquire),
         }
-        self.shared.n_ready.load(Ordering::Acquire)
     }
 
     /// Frame `n`, exactly the n-th of a sequential decode; waits until it is decoded.
@@ -147,7 +148,7 @@ impl Media {
         self.shared.frame(n)
     }
 
-    /// Frame `n` if it is at hand, without waiting.
+    /// Frame `n` if it is at hand, without waiting: `None` when it is still to be decoded.
     ///
     /// # Errors
     /// As [`Media::frame`].
@@ -184,7 +185,10 @@ impl Drop for Media {
 
 impl std::fmt::Debug for Media {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Media").field("path", &self.path).field("shape", &self.shared.shape).finish_non_exhaustive()
+        f.debug_struct("Media")
+            .field("path", &self.path)
+            .field("shape", &self.shared.shape)
+            .finish_non_exhaustive()
     }
 }
 
@@ -210,10 +214,10 @@ impl Shared {
         }
         if self.map.is_some() {
             let guard = self.ended();
-            let pending = |ended: &mut Option<Ended>| {
-                ended.is_none() && self.n_ready.load(Ordering::Acquire) <= n
-            };
-            let ended = self.progress.wait_while(guard, pending).unwrap_or_else(PoisonError::into_inner).clone();
+            let pending =
+                |ended: &mut Option<Ended>| ended.is_none() && self.n_ready.load(Ordering::Acquire) <= n;
+            let ended =
+                self.progress.wait_while(guard, pending).unwrap_or_else(PoisonError::into_inner).clone();
             if let Some(frame) = self.mapped(n)? {
                 return Ok(frame);
             }
@@ -282,7 +286,9 @@ impl Shared {
                 return Err(Ended::Failed(self.miscount(n)));
             }
             filling.write(n, &frame).map_err(|error| {
-                let note = format!("frames cannot be kept any more ({error}): the rest is decoded on demand, slower");
+                let note = format!(
+                    "frames cannot be kept any more ({error}): the rest is decoded on demand, slower"
+                );
                 self.late_note.get_or_init(|| note);
                 Ended::NoRoom
             })?;

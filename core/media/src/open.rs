@@ -49,6 +49,12 @@ pub enum Step {
     Indexing,
 }
 
+/// The folder in which decoded frames are kept unless told otherwise; `None` where there is no home folder.
+#[must_use]
+pub fn cache_folder() -> Option<std::path::PathBuf> {
+    crate::cache::Folder::find(None, None).map(|folder| folder.dir)
+}
+
 /// Opens a video file, a Y4M file, a folder of images or an image pattern (`frame_%04d.png`, `*.png`).
 ///
 /// Frame times are seconds after the first frame. Decoding starts in the background; see [`Media::frame`].
@@ -63,7 +69,11 @@ pub fn open(path: &Path, options: &OpenOptions) -> Result<Media, MediaError> {
 ///
 /// # Errors
 /// As [`open`].
-pub fn open_with(path: &Path, options: &OpenOptions, on_step: &mut dyn FnMut(Step)) -> Result<Media, MediaError> {
+pub fn open_with(
+    path: &Path,
+    options: &OpenOptions,
+    on_step: &mut dyn FnMut(Step),
+) -> Result<Media, MediaError> {
     if let Some(fps) = options.fps.filter(|fps| !(fps.is_finite() && *fps > 0.0)) {
         return Err(MediaError::Rate { fps });
     }
@@ -113,7 +123,8 @@ pub fn open_with(path: &Path, options: &OpenOptions, on_step: &mut dyn FnMut(Ste
     match folder.begin(&wanted) {
         Ok(filling) => Media::filling(head, source, filling),
         Err(why) => {
-            head.notes.push(format!("the frame cache is not used ({why}): frames are decoded on demand, slower"));
+            head.notes
+                .push(format!("the frame cache is not used ({why}): frames are decoded on demand, slower"));
             Ok(Media::on_demand(head, source))
         }
     }
@@ -127,7 +138,7 @@ enum Kind {
     Other,
 }
 
-/// By the first bytes, not by the name.
+/// By the first bytes; images by their names, because a JPEG may also begin a raw stream of them.
 fn kind_of(path: &Path) -> Result<Kind, MediaError> {
     if path.is_dir() || sequence::is_pattern(path) {
         return Ok(Kind::Images);
@@ -139,11 +150,7 @@ fn kind_of(path: &Path) -> Result<Kind, MediaError> {
         [] => return Err(MediaError::NoFrames { path: path.to_path_buf() }),
         bytes if bytes.starts_with(y4m::MAGIC) => Kind::Y4m,
         [_, _, _, _, b'f', b't', b'y', b'p', ..] => Kind::Mp4,
-        [0x89, b'P', b'N', b'G', ..]
-        | [0xff, 0xd8, 0xff, ..]
-        | [b'B', b'M', _, _, _, _, 0, 0, 0, 0, ..]
-        | [b'I', b'I', 42, 0, ..]
-        | [b'M', b'M', 0, 42, ..] => Kind::Images,
+        _ if sequence::is_image(path) => Kind::Images,
         _ => Kind::Other,
     })
 }

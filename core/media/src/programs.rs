@@ -5,18 +5,23 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::OnceLock;
 
-/// Version of the installed ffmpeg, as in "5.1.9-0+deb12u1"; `None` unless both ffmpeg and ffprobe run.
+/// Version of the installed ffmpeg, as in "5.1.9-0+deb12u1"; `None` unless both ffmpeg and ffprobe are there.
 ///
 /// Looked up once per process.
 #[must_use]
 pub fn ffmpeg_version() -> Option<String> {
     static FOUND: OnceLock<Option<String>> = OnceLock::new();
-    FOUND.get_or_init(|| version("ffprobe").and_then(|_| version("ffmpeg"))).clone()
+    FOUND.get_or_init(|| is_on_path("ffprobe").then(find_version)?).clone()
+}
+
+fn is_on_path(program: &str) -> bool {
+    std::env::var_os("PATH")
+        .is_some_and(|path| std::env::split_paths(&path).any(|dir| dir.join(program).is_file()))
 }
 
 /// Third word of the first line: `ffmpeg version 5.1.9-0+deb12u1 Copyright ...`.
-fn version(program: &str) -> Option<String> {
-    let output = Command::new(program).arg("-version").stdin(Stdio::null()).output().ok()?;
+fn find_version() -> Option<String> {
+    let output = Command::new("ffmpeg").arg("-version").stdin(Stdio::null()).output().ok()?;
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     output.status.success().then(|| text.split_whitespace().nth(2).unwrap_or("unknown").to_owned())
 }

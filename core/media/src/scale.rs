@@ -39,7 +39,8 @@ pub(crate) fn rgb_area(planes: &Planes<'_>, area: Rect, width: u32, height: u32)
         [u, v].map(|plane| box_means(plane, stride, &columns, &rows))
     });
     let colours = Colours::of(planes.range);
-    let inside = rows.iter().flat_map(|row| columns.iter().map(move |column| row.is_some() && column.is_some()));
+    let inside =
+        rows.iter().flat_map(|row| columns.iter().map(move |column| row.is_some() && column.is_some()));
     let pixel = |(at, inside): (usize, bool)| match (&chroma, inside) {
         (_, false) => [0; 3],
         (None, true) => colours.rgb(luma[at], 128, 128),
@@ -67,7 +68,11 @@ fn spans(start: f64, extent: f64, n: u32, limit: u32) -> Vec<Span> {
             return None;
         }
         let (first, end) = (from.ceil().max(0.0), to.ceil().min(f64::from(limit)));
-        Some(if end > first { (first as usize, end as usize) } else { (middle as usize, middle as usize + 1) })
+        Some(if end > first {
+            (first as usize, end as usize)
+        } else {
+            (middle as usize, middle as usize + 1)
+        })
     };
     (0..n).map(span).collect()
 }

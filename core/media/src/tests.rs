@@ -1,5 +1,4 @@
 //! Clips that the tests make or find, and the proof that any order of reading gives the same frames.
-#![expect(clippy::unwrap_used, reason = "helpers of tests")]
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -77,8 +76,10 @@ fn gray(width: u32, height: u32, frame: u32) -> GrayImage {
 }
 
 fn rgb(width: u32, height: u32, frame: u32) -> RgbImage {
-    let [r, g, b] = [0, 100, 200].map(|seed| gray(width, height, frame + seed));
-    ImageBuffer::from_fn(width, height, |x, y| image::Rgb([r, g, b].each_ref().map(|c| c.get_pixel(x, y).0[0])))
+    let channels = [0, 100, 200].map(|seed| gray(width, height, frame + seed));
+    ImageBuffer::from_fn(width, height, |x, y| {
+        image::Rgb(channels.each_ref().map(|c| c.get_pixel(x, y).0[0]))
+    })
 }
 
 fn bytes_of(media: &Media) -> Vec<Vec<u8>> {
@@ -108,8 +109,8 @@ fn data(name: &str) -> Option<PathBuf> {
     Some(path)
 }
 
-/// Every frame in order, then 200 seeded seeks, then all frames backwards: always the same bytes.
-fn assert_exact(media: &Media) {
+/// Every frame in order, then 200 seeded seeks, then 200 steps back from the end: always the same bytes. Their hashes.
+fn assert_exact(media: &Media) -> Vec<String> {
     let n = media.clip().n_frames();
     let hash = |k: u32| crate::hash::sha256_of_bytes(media.frame(k).unwrap().bytes());
     let in_order: Vec<String> = (0..n).map(hash).collect();
@@ -118,7 +119,8 @@ fn assert_exact(media: &Media) {
         let k = random.random_range(0..n);
         assert_eq!(hash(k), in_order[k as usize], "frame {k} of {media:?}");
     }
-    for k in (0..n).rev() {
+    for k in (0..n).rev().take(200) {
         assert_eq!(hash(k), in_order[k as usize], "frame {k} of {media:?}, going back");
     }
+    in_order
 }

@@ -9,6 +9,9 @@ use serde::{Deserialize, Serialize};
 use crate::document::{ClusteringId, Document, Key, Origin, RunId, ShownClustering, ShownRun, Track};
 use crate::track::{TrackId, TrackSet};
 
+pub use error::EditError;
+
+mod error;
 mod label;
 
 /// One change of a document.
@@ -20,9 +23,9 @@ pub enum Edit {
         /// The new track.
         track: TrackId,
     },
-    /// Takes [`Edit::AddTrack`] back; a track with hand work is deleted instead.
+    /// Takes [`Edit::AddTrack`] back; a track with hand work or in a shown run is deleted instead.
     RemoveTrack {
-        /// The track, without hand work.
+        /// The track, placed by hand and nothing else.
         track: TrackId,
     },
     /// Tracks vanish; their work is kept.
@@ -104,77 +107,6 @@ pub struct Transaction {
     pub label: String,
     /// The changes, in order.
     pub edits: Vec<Edit>,
-}
-
-/// Why an edit cannot be done.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum EditError {
-    /// The document knows no such track.
-    #[error("there is no track {0}")]
-    NoSuchTrack(TrackId),
-    /// The track is deleted.
-    #[error("track {0} is deleted; restore it first")]
-    Deleted(TrackId),
-    /// A track that is not deleted cannot be restored.
-    #[error("track {0} is not deleted")]
-    NotDeleted(TrackId),
-    /// The number is taken.
-    #[error("track {0} exists already; reserve a new number")]
-    TrackExists(TrackId),
-    /// Forgetting the track would lose hand work.
-    #[error("track {0} has hand work; delete it instead")]
-    HasWork(TrackId),
-    /// The frame is not in the clip.
-    #[error("frame {frame} is beyond the clip, whose last frame is {}", n_frames.saturating_sub(1))]
-    BeyondClip {
-        /// The frame asked for.
-        frame: u32,
-        /// Frames of the clip.
-        n_frames: u32,
-    },
-    /// A position is NaN or infinite.
-    #[error("track {track}: the position at frame {frame} is not finite")]
-    NotFinite {
-        /// The track.
-        track: TrackId,
-        /// The frame.
-        frame: u32,
-    },
-    /// There is no key-frame to clear.
-    #[error("track {track} has no key-frame at {frame}")]
-    NoKey {
-        /// The track.
-        track: TrackId,
-        /// The frame.
-        frame: u32,
-    },
-    /// The run is shown already.
-    #[error("run {0} is shown already")]
-    RunShown(RunId),
-    /// The run is not shown.
-    #[error("run {0} is not shown")]
-    RunHidden(RunId),
-    /// Only what was born in a run, and is in no other, is forgotten with it.
-    #[error("track {track} is not run {run}'s own; it cannot be forgotten with it")]
-    NotItsOwn {
-        /// The run.
-        run: RunId,
-        /// The track.
-        track: TrackId,
-    },
-    /// There is nothing to cut.
-    #[error("no clustering is shown; show one before cutting it")]
-    NoClustering,
-    /// A cut makes at least one group.
-    #[error("a cut makes at least 1 group, not 0")]
-    NoGroups,
-    /// A name must have letters; `None` takes it away.
-    #[error("a name cannot be empty")]
-    EmptyName,
-    /// The transaction holds no edit.
-    #[error("there is nothing to do")]
-    Empty,
 }
 
 impl Edit {
@@ -287,11 +219,14 @@ impl Document {
 
     fn forget(&mut self, track: TrackId) -> Result<(), EditError> {
         let known = self.tracks.get(&track).ok_or(EditError::NoSuchTrack(track))?;
-        if known.origin != Origin::Hand {
-            return Err(EditError::NoSuchTrack(track));
+        if let Origin::Run(run) = known.origin {
+            return Err(EditError::InRun { run, track });
         }
         if known.has_work() {
             return Err(EditError::HasWork(track));
+        }
+        if let Some(run) = self.runs_of(track).next() {
+            return Err(EditError::InRun { run, track });
         }
         self.tracks.remove(&track);
         Ok(())

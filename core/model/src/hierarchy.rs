@@ -122,6 +122,25 @@ impl Dendrogram {
             })
             .collect()
     }
+
+    /// The number of groups, 2 to `k_max`, at which a cut is clearest: where the heights of the merges it undoes
+    /// and of those it keeps differ by the largest factor. 1 where there is nothing to cut.
+    ///
+    /// The smallest such number where several are equally clear.
+    #[must_use]
+    pub fn clearest_cut(&self, k_max: u32) -> u32 {
+        let mut heights: Vec<f64> = self.merges.iter().map(|merge| merge.height).collect();
+        heights.sort_by(|a, b| b.total_cmp(a));
+        let mut clearest = (1, 0.0);
+        // A cut into k groups undoes the k - 1 highest merges.
+        for (k, pair) in (2..=k_max).zip(heights.windows(2)) {
+            let factor = pair[0] / pair[1].max(f64::MIN_POSITIVE);
+            if factor > clearest.1 {
+                clearest = (k, factor);
+            }
+        }
+        if clearest.0 == 1 && !heights.is_empty() { 2.min(k_max.max(1)) } else { clearest.0 }
+    }
 }
 
 #[cfg(test)]

@@ -63,3 +63,12 @@ pub struct Provenance {
     /// Version of honami that ran it.
     pub honami_version: String,
 }
+
+/// `org.honami.klt 0.1.0 (3f2a…) levels=4 radius=10`: what made it, in one line.
+impl std::fmt::Display for Provenance {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let hash = self.plugin_sha256.get(..8).unwrap_or_default();
+        write!(f, "{} {} ({hash}…), on revision {}", self.plugin_id, self.plugin_version, self.input_revision)?;
+        self.params.iter().try_for_each(|(id, value)| write!(f, " {id}={value}"))
+    }
+}

@@ -21,9 +21,9 @@ fn branches() -> Positions {
                 continue;
             }
             let phase = frame as f32 / 25.0 * (0.5 + 0.05 * branch) * std::f32::consts::TAU + branch;
-            let noise = || 0.0;
             let shake: [f32; 2] = [rng.random_range(-0.2..0.2), rng.random_range(-0.2..0.2)];
-            let at = [rest[0] + swing * phase.sin() + shake[0] + noise(), rest[1] + swing * 0.3 * phase.cos() + shake[1]];
+            let at =
+                [rest[0] + swing * phase.sin() + shake[0], rest[1] + swing * 0.3 * phase.cos() + shake[1]];
             positions.set(track, frame, at);
         }
     }

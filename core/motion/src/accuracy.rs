@@ -62,7 +62,8 @@ struct Sums {
 impl Sums {
     fn add(&mut self, truth: &TruePath, query_frame: u32, track: &Span) {
         let (mut survived, mut n_frames, mut alive, mut ok) = (0_u64, 0_u64, true, true);
-        let after_query = (truth.first_frame..).zip(&truth.positions).filter(|(frame, _)| *frame > query_frame);
+        let after_query =
+            (truth.first_frame..).zip(&truth.positions).filter(|(frame, _)| *frame > query_frame);
         for (frame, &(x, y, visible)) in after_query {
             let seen = track.get(frame).filter(|sample| sample.status.is_seen());
             self.n_all += 1;

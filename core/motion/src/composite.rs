@@ -37,12 +37,14 @@ pub struct Options {
     pub movement_weight: f64,
     /// Frames further from the mean than this many standard deviations are left out; `None` keeps all.
     pub outlier_sd: Option<f64>,
+    /// Threads to work with; 0 for those of the current rayon pool. The result is the same.
+    pub n_threads: usize,
 }
 
 impl Default for Options {
     /// The thesis's: equal weights, frames beyond 2 standard deviations left out.
     fn default() -> Self {
-        Self { position_weight: 1.0, movement_weight: 1.0, outlier_sd: Some(2.0) }
+        Self { position_weight: 1.0, movement_weight: 1.0, outlier_sd: Some(2.0), n_threads: 0 }
     }
 }
 
@@ -68,7 +70,7 @@ pub struct Composite {
 /// Computes the composite distance of all pairs of tracks.
 ///
 /// `keep_going` is told the share of the work that is done, 0 to 1, some hundred times; `false` stops.
-/// Uses the current rayon pool; the result does not depend on its size. O(n² T) time, O(n²) memory.
+/// O(n² T) time, O(n²) memory.
 ///
 /// # Errors
 /// [`MotionError`] for fewer than 2 tracks or frames, tracks that share no frames, options out of range, a
@@ -82,12 +84,12 @@ pub fn composite(
     let n = positions.n_tracks();
     let mut condensed = zeros(n)?;
     let steps = Steps::of(positions);
+    let pool = pairs::Pool::new(n, options.n_threads);
 
     let all: Vec<usize> = (0..steps.len()).collect();
     let (places, movements) = (steps.blocks(Place, &all), headings::moments(&steps));
-    let sums = pairs::add::<Place>(&places, n, &mut condensed, |total, _, _, sum| *total = sum, &mut |done| {
-        keep_going(0.6 * done)
-    })?;
+    let set = |total: &mut f64, _: usize, _: usize, sum: f64| *total = sum;
+    let sums = pool.add::<Place>(&places, &mut condensed, set, &mut |done| keep_going(0.6 * done))?;
     let place = Spread::of(&steps.place_moments(&sums)).ok_or(MotionError::NeverTogether)?;
     // Without a single pair that moves together, movement tells nothing apart.
     let movement = Spread::of(&movements).unwrap_or_default();
@@ -105,17 +107,21 @@ pub fn composite(
 
     if !out.is_empty() {
         let left_out = steps.blocks(Place, &out);
-        pairs::add::<Place>(&left_out, n, &mut condensed, |total, _, _, sum| *total -= sum, &mut |_| true)?;
+        pool.add::<Place>(&left_out, &mut condensed, |total, _, _, sum| *total -= sum, &mut |_| true)?;
     }
     let (seen, moving) = (steps.counts(&kept, Step::is_seen), steps.counts(&kept, Step::is_moving));
     let finish = |total: &mut f64, i: usize, j: usize, angles: f64| {
         let (n_seen, n_moving) = (seen.common(i, j), moving.common(i, j));
         let angle = if n_moving > 0 { angles / f64::from(n_moving) } else { movement.mean };
         // Left-out frames are subtracted: rounding may leave a hair below zero.
-        *total = if n_seen > 0 { k_place * total.max(0.0) / f64::from(n_seen) + k_movement * angle } else { APART };
+        *total = if n_seen > 0 {
+            k_place * total.max(0.0) / f64::from(n_seen) + k_movement * angle
+        } else {
+            APART
+        };
     };
     let headings = steps.blocks(Movement, &kept);
-    pairs::add::<Movement>(&headings, n, &mut condensed, finish, &mut |done| keep_going(0.6 + 0.4 * done))?;
+    pool.add::<Movement>(&headings, &mut condensed, finish, &mut |done| keep_going(0.6 + 0.4 * done))?;
     let n_apart = part_the_apart(&mut condensed);
     Ok(Composite {
         n_tracks: n,
@@ -132,7 +138,7 @@ pub fn composite(
 const APART: f64 = -1.0;
 
 fn check(positions: &Positions, options: &Options) -> Result<(), MotionError> {
-    let Options { position_weight, movement_weight, outlier_sd } = *options;
+    let Options { position_weight, movement_weight, outlier_sd, .. } = *options;
     let named = [
         ("the weight of position", position_weight),
         ("the weight of movement", movement_weight),
@@ -210,7 +216,11 @@ fn outliers(frame_means: &[Option<f64>], factor: Option<f64>) -> Vec<bool> {
     let is_out = |d: f64| factor.is_some_and(|factor| (d - mean).abs() > factor * sd);
     let out: Vec<bool> = frame_means.iter().map(|d| d.is_some_and(is_out)).collect();
     // A factor of nearly 0 would leave nothing to average over.
-    if frame_means.iter().zip(&out).any(|(d, &out)| d.is_some() && !out) { out } else { vec![false; out.len()] }
+    if frame_means.iter().zip(&out).any(|(d, &out)| d.is_some() && !out) {
+        out
+    } else {
+        vec![false; out.len()]
+    }
 }
 
 /// Gives pairs without a distance the largest one; returns how many there are.

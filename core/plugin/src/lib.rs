@@ -17,6 +17,7 @@
 //! struct Drift {
 //!     step: f32,
 //!     points: Vec<Seed>,
+//!     started: bool,
 //! }
 //!
 //! impl Tracker for Drift {
@@ -24,7 +25,7 @@
 //!     const INFO: Info = Info { id: "org.example.drift", name: "Drift", doc: "x += drift", ..Info::NEW };
 //!
 //!     fn begin(params: &Choice, _: &Stream, _: &Cx<'_>) -> Result<Self> {
-//!         Ok(Self { step: params.drift as f32, points: Vec::new() })
+//!         Ok(Self { step: params.drift as f32, points: Vec::new(), started: false })
 //!     }
 //!
 //!     fn seed(&mut self, seeds: &[Seed], _: &Cx<'_>) -> Result<()> {
@@ -39,9 +40,12 @@
 //!
 //!     fn push(&mut self, frame: &Frame<'_>, out: &mut Points, cx: &Cx<'_>) -> Result<()> {
 //!         cx.progress(0.0, "drifting")?; // `?` is how a cancel gets out
+//!         // What is seeded before the first frame holds there; everything else holds in the frame before this one.
+//!         let step = if self.started { self.step } else { 0.0 };
+//!         self.started = true;
 //!         for point in &mut self.points {
-//!             point.x += self.step;
-//!             let inside = point.x < frame.gray.width as f32 - 0.5;
+//!             point.x += step;
+//!             let inside = (-0.5..frame.gray.width as f32 - 0.5).contains(&point.x);
 //!             out.add(Point::new(point.id, point.x, point.y, if inside { Status::Tracked } else { Status::Outside }));
 //!         }
 //!         Ok(())

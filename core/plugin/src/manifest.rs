@@ -4,7 +4,7 @@ use crate::export::Descriptor;
 use crate::params::{Entry, Param};
 use crate::{Info, Library};
 
-/// The ELF note that carries a manifest of `N - 1` bytes, and a NUL after it.
+/// The ELF note that carries a manifest of `N - 1` bytes and a NUL after it, which belongs to the note's text.
 #[repr(C, align(4))]
 #[derive(Debug)]
 pub struct Note<const N: usize> {
@@ -24,13 +24,13 @@ impl<const N: usize> Note<N> {
     pub const fn new(library: &Library, plugins: &[Descriptor]) -> Self {
         let json = write::<N>(library, plugins);
         assert!(json.len + 1 == N, "N is manifest_len + 1");
-        Self { name_len: 7, text_len: json.len as u32, kind: 1, name: *b"honami\0\0", text: json.bytes }
+        Self { name_len: 7, text_len: N as u32, kind: 1, name: *b"honami\0\0", text: json.bytes }
     }
 
-    /// The JSON.
+    /// The JSON, without the NUL.
     #[must_use]
     pub const fn text(&self) -> &[u8] {
-        self.text.split_at(self.text_len as usize).0
+        self.text.split_at(N - 1).0
     }
 }
 

@@ -148,7 +148,8 @@ impl Project {
     }
 
     /// Whether tracks that a clustering used have changed since: what was edited on the way through the
-    /// undo tree from its input revision to now. `None`: it is as fresh as on the first day.
+    /// undo tree from its input revision to now. `None`: it is as fresh as on the first day. Reads every edit
+    /// on that way: keep the answer until the revision changes.
     ///
     /// # Errors
     /// [`StoreError::NoSuchClustering`], or what SQLite met.

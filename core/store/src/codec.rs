@@ -105,21 +105,20 @@ impl Record<'_> {
 pub(crate) fn records(mut chunk: &[u8]) -> Result<Vec<Record<'_>>, StoreError> {
     let mut records = Vec::new();
     while !chunk.is_empty() {
-        let (head, rest) = chunk
-            .as_chunks::<4>()
-            .0
-            .split_first_chunk::<3>()
-            .map_or((None, chunk), |(head, _)| (Some(head.map(u32::from_le_bytes)), &chunk[12..]));
-        let parts = head.and_then(|[track, first_frame, length]| {
-            rest.split_at_checked(length as usize).map(|(block, rest)| (track, first_frame, block, rest))
-        });
-        let Some((track, first_frame, block, rest)) = parts else {
-            return Err(StoreError::corrupt("a chunk of samples is cut short"));
-        };
-        records.push(Record { track: TrackId(track), first_frame, block });
+        let (record, rest) =
+            split_record(chunk).ok_or_else(|| StoreError::corrupt("a chunk of samples is cut short"))?;
+        records.push(record);
         chunk = rest;
     }
     Ok(records)
+}
+
+fn split_record(chunk: &[u8]) -> Option<(Record<'_>, &[u8])> {
+    let (head, rest) = chunk.split_first_chunk::<12>()?;
+    let [track, first_frame, length] =
+        [0, 4, 8].map(|at| u32::from_le_bytes([head[at], head[at + 1], head[at + 2], head[at + 3]]));
+    let (block, rest) = rest.split_at_checked(length as usize)?;
+    Some((Record { track: TrackId(track), first_frame, block }, rest))
 }
 
 pub(crate) fn len_u32(n: usize) -> u32 {

@@ -26,6 +26,16 @@ pub enum StoreError {
         /// The file.
         path: PathBuf,
     },
+    /// An earlier honami wrote it, and this session may not bring it up.
+    #[error("the project has schema {came}, this honami {known}; open it once for writing: {path}")]
+    Older {
+        /// Schema of the file.
+        came: u32,
+        /// Schema this program reads.
+        known: u32,
+        /// The file.
+        path: PathBuf,
+    },
     /// Another session writes to it.
     #[error(
         "the project is open for writing by {}; open it read-only, or close it there: {path}",
@@ -138,6 +148,9 @@ impl StoreError {
 impl From<rusqlite::Error> for StoreError {
     fn from(error: rusqlite::Error) -> Self {
         use rusqlite::ErrorCode as Code;
+        if matches!(error, rusqlite::Error::QueryReturnedNoRows) {
+            return Self::corrupt("a row that every project has is missing");
+        }
         match error.sqlite_error_code() {
             Some(Code::DiskFull) => Self::DiskFull,
             Some(Code::DatabaseBusy | Code::DatabaseLocked) => Self::Busy,

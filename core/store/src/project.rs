@@ -16,6 +16,8 @@ use crate::media::ClipRecord;
 use crate::shown::Shown;
 use crate::{journal, run, schema};
 
+mod make;
+
 /// What a session may do with a project.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Access {
@@ -46,22 +48,11 @@ impl Project {
     /// # Errors
     /// [`StoreError::Exists`]: a file is never overwritten. On any error nothing is left behind.
     pub fn create(path: &Path, record: &ClipRecord) -> Result<Self, StoreError> {
-        let path = real_path(path)?;
+        let path = make::real_path(path)?;
+        make::check_free(&path)?;
         let lock = Lock::acquire(&path)?;
-        if path.symlink_metadata().is_ok() {
-            return Err(StoreError::Exists(path));
-        }
-        // Under the lock this name is ours, whatever a killed session left there.
-        let new =
-            path.with_file_name(format!(".{}.new", path.file_name().unwrap_or_default().to_string_lossy()));
-        let made = remove_if_there(&new)
-            .and_then(|()| fill(&new, &record.seen_from(folder_of(&path)), &lock.holder.user))
-            .and_then(|()| give_name(&new, &path));
-        if let Err(error) = made {
-            // The first error is the one to tell; what cannot be removed is replaced by the next attempt.
-            drop(remove_if_there(&new));
-            return Err(error);
-        }
+        make::check_free(&path)?;
+        make::make(&path, record, &lock.holder.user)?;
         Self::load(path, Some(Arc::new(lock)), None)
     }
 
@@ -79,7 +70,7 @@ impl Project {
         match access {
             Access::Write => {
                 // Looked at before it is locked: no lock file appears beside what is no project.
-                schema::check(&mut schema::connect(&path, false)?, false, &path)?;
+                schema::version(&schema::connect(&path, false)?, &path)?;
                 let lock = Lock::acquire(&path)?;
                 Self::load(path, Some(Arc::new(lock)), None)
             }
@@ -92,7 +83,7 @@ impl Project {
 
     fn load(path: PathBuf, lock: Option<Arc<Lock>>, other: Option<Holder>) -> Result<Self, StoreError> {
         let mut conn = schema::connect(&path, lock.is_some())?;
-        schema::check(&mut conn, lock.is_some(), &path)?;
+        schema::bring_up(&mut conn, lock.is_some(), &path)?;
         if lock.is_some() {
             run::end_interrupted(&mut conn)?;
         }
@@ -226,9 +217,7 @@ impl Project {
     /// # Errors
     /// [`StoreError::ReadOnly`], or what SQLite met.
     pub fn reserve_tracks(&mut self, n: u32) -> Result<Range<u32>, StoreError> {
-        let sql = "UPDATE state SET next_track = next_track + ?1 RETURNING next_track";
-        let end: u32 = self.writer()?.query_row(sql, [n], |row| row.get(0))?;
-        Ok(end - n..end)
+        reserve_tracks(self.writer()?, n)
     }
 
     /// Sets these very track numbers aside: those of a user's list of points.
@@ -290,49 +279,15 @@ impl Project {
     }
 }
 
-fn folder_of(path: &Path) -> &Path {
+pub(crate) fn folder_of(path: &Path) -> &Path {
     path.parent().unwrap_or(Path::new("/"))
 }
 
-/// The path of a file that is not there yet, in a folder that is, without links: one name for the lock.
-fn real_path(path: &Path) -> Result<PathBuf, StoreError> {
-    let io = |source| StoreError::Io { what: "cannot make a project", source, path: path.to_owned() };
-    let absolute = std::path::absolute(path).map_err(io)?;
-    let name = absolute.file_name().ok_or_else(|| io(std::io::ErrorKind::InvalidFilename.into()))?;
-    Ok(folder_of(&absolute).canonicalize().map_err(io)?.join(name))
-}
-
-fn remove_if_there(path: &Path) -> Result<(), StoreError> {
-    match std::fs::remove_file(path) {
-        Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
-            Err(StoreError::Io { what: "cannot remove a half-made project", source, path: path.to_owned() })
-        }
-        _ => Ok(()),
-    }
-}
-
-fn fill(path: &Path, record: &ClipRecord, author: &str) -> Result<(), StoreError> {
-    let mut conn = schema::create(path)?;
-    let tx = conn.transaction()?;
-    record.insert(&tx)?;
-    journal::create(&tx, author)?;
-    tx.commit()?;
-    conn.close().map_err(|(_, error)| error.into())
-}
-
-/// Gives the finished file its name, unless somebody has taken it meanwhile.
-fn give_name(new: &Path, path: &Path) -> Result<(), StoreError> {
-    let io = |source| StoreError::Io { what: "cannot make a project", source, path: path.to_owned() };
-    match std::fs::hard_link(new, path) {
-        Ok(()) => remove_if_there(new)?,
-        Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {
-            return Err(StoreError::Exists(path.to_owned()));
-        }
-        // A file system without hard links: the lock keeps other sessions away between look and rename.
-        Err(_) if path.symlink_metadata().is_ok() => return Err(StoreError::Exists(path.to_owned())),
-        Err(_) => std::fs::rename(new, path).map_err(io)?,
-    }
-    std::fs::File::open(folder_of(path)).and_then(|folder| folder.sync_all()).map_err(io)
+/// Sets `n` track numbers aside, in one statement: two connections never get the same.
+pub(crate) fn reserve_tracks(conn: &Connection, n: u32) -> Result<Range<u32>, StoreError> {
+    let sql = "UPDATE state SET next_track = next_track + ?1 RETURNING next_track";
+    let end: u32 = conn.query_row(sql, [n], |row| row.get(0))?;
+    Ok(end - n..end)
 }
 
 #[cfg(test)]

@@ -79,11 +79,15 @@ pub(crate) const SCHEMA: u32 = MIGRATIONS.len() as u32;
 
 /// A connection to an existing or new database file.
 pub(crate) fn connect(path: &Path, write: bool) -> Result<Connection, StoreError> {
-    let conn = match open(path, OpenFlags::SQLITE_OPEN_READ_WRITE) {
+    let opened = match open(path, OpenFlags::SQLITE_OPEN_READ_WRITE) {
         // A reader may lack the right to write; with it, it can roll a dead writer's journal back.
-        Err(_) if !write => open(path, OpenFlags::SQLITE_OPEN_READ_ONLY)?,
-        other => other?,
+        Err(_) if !write => open(path, OpenFlags::SQLITE_OPEN_READ_ONLY),
+        other => other,
     };
+    let conn = opened.map_err(|error| match error.sqlite_error_code() {
+        Some(ErrorCode::NotADatabase) => StoreError::NotAProject(path.to_owned()),
+        _ => error.into(),
+    })?;
     conn.pragma_update(None, "query_only", !write)?;
     Ok(conn)
 }
@@ -107,21 +111,28 @@ pub(crate) fn create(path: &Path) -> Result<Connection, StoreError> {
     Ok(conn)
 }
 
-/// Whether the database is a project of a schema known here; brings an older one up when writing.
-pub(crate) fn check(conn: &mut Connection, write: bool, path: &Path) -> Result<(), StoreError> {
+/// The schema of a project.
+///
+/// # Errors
+/// [`StoreError::NotAProject`], or [`StoreError::Newer`] for a schema not known here.
+pub(crate) fn version(conn: &Connection, path: &Path) -> Result<u32, StoreError> {
     let pragma = |name| conn.pragma_query_value(None, name, |row| row.get::<_, u32>(0));
-    let application_id = match pragma("application_id") {
-        Err(error) if error.sqlite_error_code() == Some(ErrorCode::NotADatabase) => 0,
-        other => other?,
-    };
-    if application_id != APPLICATION_ID {
+    if pragma("application_id")? != APPLICATION_ID {
         return Err(StoreError::NotAProject(path.to_owned()));
     }
-    match pragma("user_version")? {
+    let came = pragma("user_version")?;
+    if came > SCHEMA {
+        return Err(StoreError::Newer { came, known: SCHEMA, path: path.to_owned() });
+    }
+    Ok(came)
+}
+
+/// Brings an older project up to this schema; a session that only reads cannot.
+pub(crate) fn bring_up(conn: &mut Connection, write: bool, path: &Path) -> Result<(), StoreError> {
+    match version(conn, path)? {
         SCHEMA => Ok(()),
-        came if came > SCHEMA => Err(StoreError::Newer { came, known: SCHEMA, path: path.to_owned() }),
-        _ if !write => Err(StoreError::ReadOnly),
-        older => migrate(conn, older),
+        came if write => migrate(conn, came),
+        came => Err(StoreError::Older { came, known: SCHEMA, path: path.to_owned() }),
     }
 }
 

@@ -69,27 +69,40 @@ impl Project {
             .collect()
     }
 
-    /// The run that a shown sample comes from; `None` for hand work and interpolation.
+    /// The run that each sample of the shown track comes from; `None` for hand work and interpolation.
+    ///
+    /// # Errors
+    /// What SQLite met.
+    pub fn sample_runs(&self, track: TrackId) -> Result<Vec<Option<RunId>>, StoreError> {
+        let Some(span) = self.shown(track)? else { return Ok(Vec::new()) };
+        let mut runs = vec![None; span.samples.len()];
+        let sql = "SELECT first_frame, n_frames FROM span WHERE run = ?1 AND track = ?2";
+        let mut statement = self.conn.prepare_cached(sql)?;
+        for run in self.document().runs_of(track) {
+            let mut rows = statement.query([run.0, track.0])?;
+            while let Some(row) = rows.next()? {
+                let (first_frame, n_frames): (u32, u32) = (row.get(0)?, row.get(1)?);
+                // A run may go on beyond the clip's last frame, never before the shown span's first.
+                let from = (first_frame - span.first_frame) as usize;
+                runs.iter_mut().skip(from).take(n_frames as usize).for_each(|of| *of = Some(run));
+            }
+        }
+        for (of, sample) in runs.iter_mut().zip(&span.samples) {
+            if !matches!(sample.source, Source::Tracked | Source::Imported) {
+                *of = None;
+            }
+        }
+        Ok(runs)
+    }
+
+    /// The run that one shown sample comes from; for a whole track ask [`sample_runs`](Self::sample_runs).
     ///
     /// # Errors
     /// What SQLite met.
     pub fn run_at(&self, track: TrackId, frame: u32) -> Result<Option<RunId>, StoreError> {
-        let by_hand = self
-            .shown(track)?
-            .and_then(|span| span.get(frame).map(|sample| sample.source))
-            .is_none_or(|source| matches!(source, Source::Key | Source::Sketch | Source::Interpolated));
-        if by_hand {
-            return Ok(None);
-        }
-        let sql = "SELECT EXISTS (SELECT 1 FROM span
-                   WHERE run = ?1 AND track = ?2 AND first_frame <= ?3 AND first_frame + n_frames > ?3)";
-        let mut statement = self.conn.prepare_cached(sql)?;
-        for run in self.document().runs_of(track).rev() {
-            if statement.query_row([run.0, track.0, frame], |row| row.get(0))? {
-                return Ok(Some(run));
-            }
-        }
-        Ok(None)
+        let Some(span) = self.shown(track)? else { return Ok(None) };
+        let Some(at) = frame.checked_sub(span.first_frame) else { return Ok(None) };
+        Ok(self.sample_runs(track)?.get(at as usize).copied().flatten())
     }
 
     /// Composes tracks in one pass over each shown run.

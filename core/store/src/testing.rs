@@ -1,5 +1,4 @@
 //! What the tests of this crate begin with: a folder, a clip, a project, samples.
-#![expect(clippy::unwrap_used, reason = "helpers of tests")]
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -88,8 +87,8 @@ pub(crate) fn sample(track: u32, frame: u32) -> Sample {
         status: Status::from_u8((seed % 6) as u8).unwrap(),
         source: Source::Tracked,
         quality: Quality {
-            fb_px: (seed % 3 != 0).then_some(seed as f32 / 9.0),
-            ncc: (seed % 4 != 0).then_some(-0.5),
+            fb_px: (!seed.is_multiple_of(3)).then_some(seed as f32 / 9.0),
+            ncc: (!seed.is_multiple_of(4)).then_some(-0.5),
         },
     }
 }

@@ -54,13 +54,17 @@ fn main() -> Result<(), Failure> {
         turns.push((ours, theirs));
     }
     let by_set: serde_json::Map<String, Value> = simd::available()
-        .map(|level| (level.name().into(), rounded(median(bench.time(level).search)).into()))
+        .map(|level| (level.name().into(), rounded(median(bench.search(level, 1))).into()))
+        .collect();
+    let by_threads: serde_json::Map<String, Value> = [1, 2]
+        .map(|n| (n.to_string(), rounded(median(bench.search(simd::best(), n))).into()))
+        .into_iter()
         .collect();
     let mut report = json!({
         "peer": peer.as_ref().map(Peer::name), "picture": format!("{}x{}", frames.width, frames.height),
         "points": points.iter().map(Vec::len).max(), "pairs": points.len(), "repeats": options.repeats, "threads": 1,
         "radius_px": options.params.radius_px, "levels": options.params.levels, "simd": simd::level(),
-        "search_ms_by_simd": by_set, "times": times(&turns),
+        "search_ms_by_simd": by_set, "search_ms_by_threads": by_threads, "times": times(&turns),
     });
     let ours = bench.positions();
     let theirs = peer.as_mut().map(Peer::positions).transpose()?;
@@ -136,6 +140,17 @@ impl<'a> Bench<'a> {
         times
     }
 
+    /// Milliseconds of the search alone in every pair, on so many threads.
+    fn search(&mut self, level: simd::Level, n_threads: usize) -> Vec<f64> {
+        let pairs = self.points.iter().enumerate().map(|(i, points)| {
+            let [first, second] = &mut self.pyramids;
+            first.fill(&self.frames.gray(i));
+            second.fill(&self.frames.gray(i + 1));
+            milliseconds(|| klt::track_at(level, first, second, points, None, &self.params, n_threads))
+        });
+        pairs.collect()
+    }
+
     fn positions(&mut self) -> Vec<Vec<klt::Flow>> {
         let pairs = self.points.iter().enumerate().map(|(i, points)| {
             let [first, second] = &mut self.pyramids;
@@ -190,7 +205,10 @@ fn positions(
     theirs: Option<&[Vec<Option<Point>>]>,
 ) -> Value {
     let (mut apart, mut our_error, mut their_error) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut both, mut only_ours, mut only_theirs) = (0, 0, 0);
+    let (mut both, mut only_ours, mut only_theirs, mut beyond) = (0, 0, 0, 0);
+    let on_picture = |[x, y]: Point| {
+        (-0.5..=frames.width as f32 - 0.5).contains(&x) && (-0.5..=frames.height as f32 - 0.5).contains(&y)
+    };
     for (i, (points, flows)) in points.iter().zip(ours).enumerate() {
         for (k, (&from, flow)) in points.iter().zip(flows).enumerate() {
             let our = (flow.state == State::Tracked).then_some(flow.to);
@@ -204,13 +222,17 @@ fn positions(
                     their_error.extend(truth.map(|t| distance(b, t)));
                 }
                 (Some(_), None) => only_ours += 1,
-                (None, Some(_)) => only_theirs += 1,
+                (None, Some(b)) => {
+                    only_theirs += 1;
+                    beyond += usize::from(!on_picture(b));
+                }
                 (None, None) => {}
             }
         }
     }
     json!({
         "both_keep": both, "only_ours": only_ours, "only_opencv": only_theirs,
+        "only_opencv_and_beyond_the_picture": beyond,
         "difference_px": quantiles(apart),
         "error_px": { "ours": quantiles(our_error), "opencv": quantiles(their_error) },
     })

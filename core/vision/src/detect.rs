@@ -73,20 +73,7 @@ pub fn corners(picture: &Gray<'_>, mask: Option<&[u8]>, occupied: &[Point], para
         return Vec::new();
     }
     let map = response::map(picture, params);
-    let allowed = |x: usize, y: usize| mask.is_none_or(|m| m[y * width + x] != 0);
-    let strongest = (1..height - 1)
-        .flat_map(|y| (1..width - 1).map(move |x| (x, y)))
-        .filter(|&(x, y)| allowed(x, y))
-        .fold(0.0_f32, |most, (x, y)| most.max(map[y * width + x]));
-
-    let weakest = (strongest * params.quality).max(f32::MIN_POSITIVE);
-    let mut peaks: Vec<(f32, usize)> = (1..height - 1)
-        .flat_map(|y| y * width + 1..(y + 1) * width - 1)
-        .filter(|&i| map[i] >= weakest && is_peak(&map, width, i) && allowed(i % width, i / width))
-        .map(|i| (map[i], i))
-        .collect();
-    peaks.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-
+    let peaks = peaks(&map, width, mask, params.quality);
     let mut spacing = Spacing::new(params.min_distance_px, width, height);
     for &point in occupied {
         spacing.occupy(point);
@@ -99,6 +86,38 @@ pub fn corners(picture: &Gray<'_>, mask: Option<&[u8]>, occupied: &[Point], para
         })
     });
     free.take(params.max_corners).collect()
+}
+
+/// Score and index of every peak that the mask allows and that is strong enough, in the order of [`corners`].
+fn peaks(map: &[f32], width: usize, mask: Option<&[u8]>, quality: f32) -> Vec<(f32, usize)> {
+    let inner = |i: usize| (1..width - 1).contains(&(i % width));
+    let allowed = |i: usize| inner(i) && mask.is_none_or(|m| m[i] != 0);
+    let rows = || (1..map.len() / width - 1).map(|y| y * width);
+    // Positive floats are in the order of their bits, and whole numbers are compared many at a time.
+    let strongest = rows().map(|row| match mask {
+        None => map[row + 1..row + width - 1].iter().map(|v| v.to_bits() as i32).max(),
+        Some(_) => (row..row + width).filter(|&i| allowed(i)).map(|i| map[i].to_bits() as i32).max(),
+    });
+    let strongest = f32::from_bits(strongest.flatten().fold(0, i32::max) as u32);
+    let weakest = (strongest * quality).max(f32::MIN_POSITIVE);
+
+    let greater = |a: f32, b: f32| if a > b { a } else { b };
+    let mut columns = vec![0.0; width];
+    let mut found = Vec::new();
+    for row in rows() {
+        let [above, here, below] = [row - width, row, row + width].map(|start| &map[start..start + width]);
+        // Without branches first: as strong as the nine pixels around?
+        for (((most, a), h), b) in columns.iter_mut().zip(above).zip(here).zip(below) {
+            *most = greater(greater(*a, *h), *b);
+        }
+        let around = columns.windows(3).map(|c| greater(greater(c[0], c[1]), c[2]));
+        let candidates =
+            here[1..].iter().zip(around).enumerate().filter(|(_, (h, most))| (*h >= most) & (**h >= weakest));
+        let candidates = candidates.map(|(x, _)| row + 1 + x);
+        found.extend(candidates.filter(|&i| is_peak(map, width, i) && allowed(i)).map(|i| (map[i], i)));
+    }
+    found.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    found
 }
 
 /// Whether a pixel is at least as strong as its eight neighbours; of equal ones the first counts.

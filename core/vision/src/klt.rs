@@ -8,7 +8,7 @@
 //! `(Σ_W g gᵀ) dv = -Σ_W δ g` and moves by `dv`, until it is shorter than a hundredth of a pixel.
 //!
 //! Pixels, gradients and mismatches are 16-bit fixed-point numbers and their sums are exact integers, so the
-//! plain kernel and the fast ones give the same bits ([`window`]).
+//! plain kernel and the fast ones give the same bits (`klt/window.rs`).
 
 #[cfg(test)]
 mod tests;

@@ -15,5 +15,15 @@ pub mod sample;
 pub mod simd;
 pub mod texture;
 
+/// What everything here looks at.
+pub use honami_model::picture::Gray;
+
 /// A position in a picture, `[x, y]`, pixels.
 pub type Point = [f32; 2];
+
+/// Property tests draw the same cases in every run.
+#[cfg(test)]
+fn cases(cases: u32) -> proptest::test_runner::Config {
+    use proptest::test_runner::{Config, RngSeed};
+    Config { cases, rng_seed: RngSeed::Fixed(0), failure_persistence: None, ..Config::default() }
+}

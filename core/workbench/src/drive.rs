@@ -2,14 +2,21 @@
 
 use std::collections::BTreeMap;
 use std::ops::Range;
+use std::time::Instant;
 
-use honami_host::{CallContext, DetectInput, FrameView, Point, PointRow, StreamInfo, Tracker};
+use honami_host::{
+    CallContext, DetectRequest, FrameView, Gray, HostError, Level, Point, Points, StreamInfo, Tracker,
+};
 use honami_media::Media;
-use honami_model::picture::Gray;
+use honami_model::clip::Clip;
 use honami_model::track::{Quality, Sample, Source, Status, TrackId};
 
 use crate::error::WorkbenchError;
-use crate::progress::{Control, Progress};
+use crate::progress::{Flow, Progress};
+use crate::stamp::SEED;
+
+/// More features than any tracker finds in a frame; a tracker's own parameter sets the real limit.
+const MAX_FEATURES: u32 = 100_000;
 
 /// A feature given to a tracker in one frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,15 +31,16 @@ pub struct Seed {
     pub y: f32,
 }
 
+/// Gives out that many numbers for new tracks.
+pub type Numbers<'a> = &'a mut dyn FnMut(u32) -> Result<Range<u32>, WorkbenchError>;
+
 /// Where and how often a tracker is asked for new features.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Detect {
     /// Detect in the first frame, and again every so many frames.
     pub every: Option<u32>,
-    /// A byte a pixel, non-zero where features may be; `None`: everywhere.
+    /// A byte a pixel of the clip, non-zero where features may be; `None`: everywhere.
     pub mask: Option<Vec<u8>>,
-    /// Numbers for the features found; when they are used up, detection ends.
-    pub ids: Range<u32>,
 }
 
 /// What a tracker is to do.
@@ -51,7 +59,37 @@ pub struct Plan {
 /// One row a live track.
 pub type Rows = Vec<(TrackId, Sample)>;
 
-/// Follows the plan and hands every frame's rows to `sink`, in order. Returns the first frame not tracked.
+/// Takes the rows of a frame; frames come in order.
+pub type Sink<'a> = &'a mut dyn FnMut(u32, &Rows) -> Result<(), WorkbenchError>;
+
+/// How far it came.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Driven {
+    /// The first frame that was not tracked.
+    pub end: u32,
+    /// Time spent in the tracker, decoding and keeping aside.
+    pub tracker_secs: f64,
+}
+
+/// Refuses points that are not in the clip.
+///
+/// # Errors
+/// [`WorkbenchError::NoFeatures`] for none, [`WorkbenchError::Point`] for the first outside.
+pub fn check_seeds(seeds: &[Seed], clip: &Clip) -> Result<(), WorkbenchError> {
+    let (width, height, n_frames) = (clip.width, clip.height, clip.n_frames());
+    let inside = |v: f32, size: u32| (-0.5..size as f32 - 0.5).contains(&v);
+    let outside =
+        |seed: &&Seed| !(inside(seed.x, width) && inside(seed.y, height) && seed.frame < n_frames);
+    match seeds.iter().find(outside) {
+        _ if seeds.is_empty() => Err(WorkbenchError::NoFeatures),
+        Some(&Seed { frame, track, x, y }) => {
+            Err(WorkbenchError::Point { id: track.0, x, y, frame, width, height, n_frames })
+        }
+        None => Ok(()),
+    }
+}
+
+/// Follows the plan and hands every frame's rows to `sink`.
 ///
 /// Where a person stops it, or the tracker fails, the frames before are with the sink already.
 ///
@@ -61,59 +99,188 @@ pub fn drive(
     media: &Media,
     tracker: &mut Tracker,
     mut plan: Plan,
-    sink: &mut dyn FnMut(u32, &Rows) -> Result<(), WorkbenchError>,
+    numbers: Numbers<'_>,
+    sink: Sink<'_>,
     progress: &dyn Progress,
-) -> Result<u32, WorkbenchError> {
-    let clip = media.clip();
-    let call = CallContext::default();
-    tracker.begin(
-        &StreamInfo {
+) -> Result<Driven, WorkbenchError> {
+    plan.seeds.sort_by_key(|seed| (seed.frame, seed.track));
+    let (first, total) = (plan.frames.start, u64::from(plan.frames.end - plan.frames.start));
+    let mut ride = Ride { media, tracker, plan: &plan, board: Board::default(), tracker_secs: 0.0 };
+    ride.begin()?;
+    let mut end = plan.frames.end;
+    for frame in plan.frames.clone() {
+        let done = u64::from(frame - first);
+        let watch = |_: f64, _: &str| progress.report(done, total, "frame");
+        let call = CallContext { progress: &watch, log: &|_: Level, _: &str| {} };
+        let stepped = match progress.report(done, total, "frame") {
+            Flow::Stop => Err(WorkbenchError::Stopped),
+            Flow::Continue => ride.step(frame, numbers, &call),
+        };
+        match stepped {
+            Ok(()) => ride.board.flush(sink)?,
+            Err(WorkbenchError::Stopped | WorkbenchError::Plugin(HostError::Cancelled { .. })) => {
+                end = frame;
+                break;
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    if end == plan.frames.end {
+        ride.end(sink)?;
+        progress.report(total, total, "frame");
+    }
+    Ok(Driven { end, tracker_secs: ride.tracker_secs })
+}
+
+/// A tracker on its way through the clip.
+struct Ride<'a> {
+    media: &'a Media,
+    tracker: &'a mut Tracker,
+    plan: &'a Plan,
+    board: Board,
+    tracker_secs: f64,
+}
+
+impl Ride<'_> {
+    fn begin(&mut self) -> Result<(), WorkbenchError> {
+        let clip = self.media.clip();
+        let info = StreamInfo {
             width: clip.width,
             height: clip.height,
             fps: clip.times.nominal_fps(),
-            n_frames: Some(u64::from(plan.frames.end - plan.frames.start)),
+            n_frames: Some(u64::from(self.plan.frames.end - self.plan.frames.start)),
             reversed: false,
-            max_threads: plan.max_threads,
-            seed: 0,
+            max_threads: self.plan.max_threads,
+            seed: SEED,
             births: 0..0,
-        },
-        &call,
-    )?;
-    plan.seeds.sort_by_key(|seed| (seed.frame, seed.track));
-    let total = u64::from(plan.frames.end - plan.frames.start);
-    let mut late = Late::default();
-    for frame in plan.frames.clone() {
-        let done = u64::from(frame - plan.frames.start);
-        if progress.report(done, total, "frame") == Control::Stop {
-            late.flush(tracker, &call, sink)?;
-            return Ok(frame);
-        }
-        let picture = media.frame(frame)?;
-        let view = FrameView {
-            gray: picture.planes().y,
-            index: i64::from(frame),
-            time_s: clip.times.get(frame).unwrap_or(0.0),
         };
-        let first = frame == plan.frames.start;
-        let mut rows = if first { Vec::new() } else { late.push(tracker, &view, &call)? };
-        let mut new = due(&plan.seeds, frame);
-        if let Some(detect) = &mut plan.detect {
-            let again = detect.every.is_some_and(|every| (frame - plan.frames.start).is_multiple_of(every));
+        Ok(self.tracker.begin(info, &CallContext::silent())?)
+    }
+
+    /// Pushes one frame and seeds what is due in it.
+    fn step(&mut self, frame: u32, numbers: Numbers<'_>, call: &CallContext<'_>) -> Result<(), WorkbenchError> {
+        let picture = self.media.frame(frame)?;
+        let y = picture.planes().y;
+        let view = FrameView {
+            gray: Gray { data: y.data, width: y.width, height: y.height, stride: y.stride },
+            index: i64::from(frame),
+            time_s: self.media.clip().times.get(frame).unwrap_or_default(),
+        };
+        let begun = Instant::now();
+        let first = frame == self.plan.frames.start;
+        // Seeds hold in the frame pushed last; only those of the first frame come before it.
+        if !first {
+            self.board.take(self.tracker.push(&view, call)?);
+        }
+        let mut new: Vec<Point> = due(&self.plan.seeds, frame).collect();
+        if let Some(detect) = &self.plan.detect {
+            let again = detect.every.is_some_and(|n| n > 0 && (frame - self.plan.frames.start).is_multiple_of(n));
             if first || again {
-                new.extend(find(tracker, &view, detect, &rows, &new, plan.max_threads, &call)?);
+                let found = self.find(detect, &view, &new, numbers, call)?;
+                new.extend(found);
             }
         }
         if !new.is_empty() {
-            tracker.seed(&new, &call)?;
+            self.tracker.seed(&new, call)?;
         }
         if first {
-            rows = late.push(tracker, &view, &call)?;
+            self.board.take(self.tracker.push(&view, call)?);
         } else {
-            place(&mut rows, &new);
+            self.board.place(frame, &new);
         }
-        sink(frame, &rows)?;
+        self.tracker_secs += begun.elapsed().as_secs_f64();
+        Ok(())
     }
-    progress.report(total, total, "frame");
-    tracker.end(&call)?;
-    Ok(plan.frames.end)
+
+    /// New features away from those there are.
+    fn find(
+        &mut self,
+        detect: &Detect,
+        view: &FrameView<'_>,
+        due: &[Point],
+        numbers: Numbers<'_>,
+        call: &CallContext<'_>,
+    ) -> Result<Vec<Point>, WorkbenchError> {
+        let points: Vec<Point> = self.board.seen().chain(due.iter().copied()).collect();
+        let (width, height) = (view.gray.width, view.gray.height);
+        let mask = detect.mask.as_ref().map(|data| Gray { data, width, height, stride: width as usize });
+        let wanted = DetectRequest {
+            frame: *view,
+            max_features: MAX_FEATURES,
+            mask,
+            points: &points,
+            max_threads: self.plan.max_threads,
+            seed: SEED,
+        };
+        let features = self.tracker.detect(&wanted, call)?;
+        let ids = numbers(u32::try_from(features.len()).unwrap_or(MAX_FEATURES))?;
+        Ok(ids.zip(features).map(|(id, feature)| Point { id, x: feature.x, y: feature.y }).collect())
+    }
+
+    fn end(&mut self, sink: Sink<'_>) -> Result<(), WorkbenchError> {
+        let rest = self.tracker.end(&CallContext::silent())?;
+        self.board.take(rest);
+        self.board.flush(sink)
+    }
+}
+
+/// The seeds of a frame; `seeds` is sorted by frame.
+fn due(seeds: &[Seed], frame: u32) -> impl Iterator<Item = Point> {
+    let start = seeds.partition_point(|seed| seed.frame < frame);
+    let seeds = seeds[start..].iter().take_while(move |seed| seed.frame == frame);
+    seeds.map(|seed| Point { id: seed.track.0, x: seed.x, y: seed.y })
+}
+
+/// Rows on their way to the sink: those the tracker gave, and the seeds of frames it has not answered yet.
+#[derive(Default)]
+struct Board {
+    answered: BTreeMap<u32, Rows>,
+    placed: BTreeMap<u32, Vec<Point>>,
+    /// Where the live points were seen last.
+    last: BTreeMap<u32, Point>,
+}
+
+impl Board {
+    fn take(&mut self, answers: Vec<Points>) {
+        for answer in answers {
+            let frame = u32::try_from(answer.frame).unwrap_or(u32::MAX);
+            self.last.clear();
+            let mut rows = Rows::with_capacity(answer.rows.len());
+            for row in answer.rows {
+                let status = Status::from_u8(row.status as u8).unwrap_or(Status::Lost);
+                if status.is_seen() {
+                    self.last.insert(row.id, Point { id: row.id, x: row.x, y: row.y });
+                }
+                let quality = Quality { fb_px: row.fb, ncc: row.ncc };
+                let sample = Sample { x: row.x, y: row.y, status, source: Source::Tracked, quality };
+                rows.push((TrackId(row.id), sample));
+            }
+            self.answered.insert(frame, rows);
+        }
+    }
+
+    fn place(&mut self, frame: u32, points: &[Point]) {
+        if !points.is_empty() {
+            self.last.extend(points.iter().map(|point| (point.id, *point)));
+            self.placed.insert(frame, points.to_vec());
+        }
+    }
+
+    fn seen(&self) -> impl Iterator<Item = Point> {
+        self.last.values().copied()
+    }
+
+    /// Hands over the answered frames, with the seeds placed in them.
+    fn flush(&mut self, sink: Sink<'_>) -> Result<(), WorkbenchError> {
+        while let Some((frame, mut rows)) = self.answered.pop_first() {
+            for point in self.placed.remove(&frame).unwrap_or_default() {
+                rows.retain(|(track, _)| track.0 != point.id);
+                let quality = Quality::default();
+                let (status, source) = (Status::Tracked, Source::Tracked);
+                rows.push((TrackId(point.id), Sample { x: point.x, y: point.y, status, source, quality }));
+            }
+            sink(frame, &rows)?;
+        }
+        Ok(())
+    }
 }

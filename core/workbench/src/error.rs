@@ -21,6 +21,15 @@ pub enum WorkbenchError {
     /// Tracks could not be compared.
     #[error(transparent)]
     Motion(#[from] honami_motion::MotionError),
+    /// There is no spectrum.
+    #[error(transparent)]
+    Spectrum(#[from] honami_motion::spectrum::SpectrumError),
+    /// A table of tracks does not say when its frames were.
+    #[error("a spectrum needs the time of every frame: column time_s, no frame left out: {}", path.display())]
+    NoTimes {
+        /// The table.
+        path: PathBuf,
+    },
     /// A clip could not be generated.
     #[error(transparent)]
     Synth(#[from] honami_synth::SynthError),
@@ -87,6 +96,14 @@ pub enum WorkbenchError {
     /// The truth names no point that was tracked.
     #[error("the truth shows none of the tracked points after their first frame")]
     NoTruth,
+    /// What a clusterer returned is no hierarchy.
+    #[error("{plugin} returned no hierarchy: {error}")]
+    Hierarchy {
+        /// Its name.
+        plugin: String,
+        /// What is wrong with it.
+        error: honami_model::hierarchy::DendrogramError,
+    },
     /// The caller stopped a job that keeps nothing.
     #[error("stopped")]
     Stopped,

@@ -29,8 +29,9 @@ pub fn tracks(session: &Session, out: &Path) -> Result<Exported, WorkbenchError>
     let mut table = Writer::create(out)?;
     let mut n_rows = 0;
     for (track, span) in &shown {
-        for (frame, &sample) in span.frames().zip(&span.samples) {
-            let run = session.project.run_at(*track, frame)?.map(|run| u64::from(run.0));
+        let runs = session.project.sample_runs(*track)?;
+        for ((frame, &sample), run) in span.frames().zip(&span.samples).zip(runs) {
+            let run = run.map(|run| u64::from(run.0));
             table.write(&TrackRow { track: *track, frame, time_s: times.get(frame), sample, run })?;
             n_rows += 1;
         }

@@ -1,26 +1,46 @@
 //! The provenance of a result that is about to be made.
 
-use std::collections::BTreeMap;
-
-use honami_host::{PluginInfo, Values};
+use honami_host::{Origin, PluginInfo, Values};
 use honami_model::provenance::{Provenance, Value};
 use honami_store::Project;
 
-/// Says what is about to run, on which revision of the project.
-pub(crate) fn stamp(project: &Project, what: &str, plugin: &PluginInfo, params: &Values) -> Provenance {
+/// Says what is about to run, with all its parameters, on which revision of the project.
+pub(crate) fn stamp(
+    project: &Project,
+    what: &str,
+    plugin: &PluginInfo,
+    params: &Values,
+    origin: Origin,
+) -> Provenance {
+    let mut all = Values::defaults(&plugin.params);
+    all.restore(params, &plugin.renamed);
     Provenance {
         what: what.to_owned(),
-        plugin_id: plugin.id.clone(),
-        plugin_version: plugin.version.clone(),
-        plugin_sha256: plugin.sha256.clone(),
-        abi: plugin.abi,
-        params: values(params),
+        plugin_id: origin.plugin_id,
+        plugin_version: origin.plugin_version,
+        plugin_sha256: origin.plugin_sha256,
+        abi: (narrow(origin.abi.0), narrow(origin.abi.1)),
+        params: all.iter().map(|(id, value)| (id.to_owned(), kept(value))).collect(),
         seed: SEED,
         input_revision: project.revision().0,
-        sandbox: "in process".to_owned(),
+        sandbox: origin.sandbox.to_owned(),
         simd: simd().to_owned(),
         date: honami_store::now(),
         honami_version: env!("CARGO_PKG_VERSION").to_owned(),
+    }
+}
+
+fn narrow(version: u32) -> u16 {
+    u16::try_from(version).unwrap_or(u16::MAX)
+}
+
+fn kept(value: &honami_host::Value) -> Value {
+    match value {
+        honami_host::Value::Bool(v) => Value::Bool(*v),
+        honami_host::Value::Int(v) => Value::Int(*v),
+        honami_host::Value::Float(v) => Value::Float(*v),
+        honami_host::Value::Text(v) => Value::Text(v.clone()),
+        honami_host::Value::List(v) => Value::List(v.clone()),
     }
 }
 
@@ -39,8 +59,4 @@ fn simd() -> &'static str {
         }
     }
     "baseline"
-}
-
-fn values(params: &Values) -> BTreeMap<String, Value> {
-    params.iter().map(|(id, value)| (id.clone(), value.clone().into())).collect()
 }

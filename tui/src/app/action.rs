@@ -112,8 +112,8 @@ table! {
     RunClusterer "cluster" ["c"] [Review "cluster"] "group the tracks by their movement"
     MoreGroups "more-groups" ["+" "="] [Review ""] "cut the hierarchy into one group more"
     FewerGroups "fewer-groups" ["-"] [Review ""] "cut the hierarchy into one group fewer"
-    Undo "undo" ["u"] [Review ""] "undo"
-    Redo "redo" ["Ctrl-r"] [Review ""] "redo"
+    Undo "undo" ["u"] [Review ""] "undo: take the last edit back"
+    Redo "redo" ["Ctrl-r"] [Review ""] "redo: do again what was undone"
     // Looking.
     ZoomIn "zoom-in" ["z"] [Review "" Place "" Move ""] "look closer, at the selected track or the cursor"
     ZoomOut "zoom-out" ["Z"] [Review "" Place "" Move ""] "look from farther away"

@@ -97,6 +97,7 @@ impl Mode {
             Self::Review => Context::Review,
             Self::Place(_) => Context::Place,
             Self::Move { .. } => Context::Move,
+            Self::Form(form) if form.typed.is_some() => Context::Prompt,
             Self::Form(_) => Context::Form,
             Self::Menu(_) => Context::Menu,
             Self::Prompt(_) => Context::Prompt,

@@ -24,7 +24,7 @@ pub struct TrackRow {
 impl TrackRow {
     /// A row of a shown track.
     #[must_use]
-    pub fn new(id: TrackId, name: Option<String>, span: Span) -> Self {
+    pub fn new(id: TrackId, name: Option<String>, span: Arc<Span>) -> Self {
         let frames = || span.frames().zip(&span.samples);
         let keys = frames().filter(|(_, s)| s.source == Source::Key).map(|(f, _)| f).collect();
         let worst = frames()
@@ -32,7 +32,7 @@ impl TrackRow {
             .filter(|(doubt, _)| *doubt > 0.0)
             .max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)))
             .map(|(_, frame)| frame);
-        Self { id, name, keys, worst, span: Arc::new(span) }
+        Self { id, name, keys, worst, span }
     }
 
     /// Where it is in a frame, image pixels.

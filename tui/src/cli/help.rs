@@ -6,7 +6,7 @@ use std::path::Path;
 use anyhow::Context as _;
 use clap::CommandFactory as _;
 use honami_workbench::doctor;
-use honami_workbench::plugins::{Param, PluginInfo, Registry};
+use honami_workbench::plugins::{Param, PluginInfo, Registry, Trust};
 use serde_json::json;
 
 use super::args::{Cli, Common, Plugin};
@@ -49,6 +49,85 @@ pub(super) fn plugin(command: &Plugin, common: &Common) -> anyhow::Result<Answer
     let registry = Registry::scan(&common.plugins);
     match command {
         Plugin::List => Ok(list(&registry)),
-        Plugin::Info { name } => Ok(info(registry.find_any(name)?)),
+        Plugin::Info { name } => info(named(&registry, name)?),
     }
+}
+
+/// The plugin of that name, whatever its kind.
+fn named<'r>(registry: &'r Registry, name: &str) -> anyhow::Result<&'r PluginInfo> {
+    let is_it = |plugin: &&PluginInfo| plugin.id == name || plugin.short_name == name;
+    let known = || registry.plugins().iter().map(|plugin| plugin.short_name.as_str()).collect::<Vec<_>>().join(", ");
+    registry.plugins().iter().find(is_it).with_context(|| format!("there is no plugin {name:?}; there are: {}", known()))
+}
+
+fn list(registry: &Registry) -> Answer {
+    let head = ["name", "kind", "version", "", "what it is"].map(str::to_owned).to_vec();
+    let row = |plugin: &PluginInfo| {
+        let cells = [&plugin.short_name, &plugin.kind.to_string(), &plugin.version, trust(plugin), &plugin.name];
+        cells.map(ToString::to_string).to_vec()
+    };
+    let mut text = report::table(&std::iter::once(head).chain(registry.plugins().iter().map(row)).collect::<Vec<_>>());
+    if registry.plugins().is_empty() {
+        text = "no plugins found: `cargo build --release` builds the shipped ones beside the program".to_owned();
+    }
+    for plugin in registry.plugins() {
+        if let Trust::No(why) = &plugin.trust {
+            text += &format!("\n{}: {why}", plugin.short_name);
+        }
+    }
+    for problem in registry.problems() {
+        text += &format!("\n{problem}");
+    }
+    let json = json!({
+        "plugins": registry.plugins().iter().map(describe).collect::<Vec<_>>(),
+        "problems": registry.problems().iter().map(ToString::to_string).collect::<Vec<_>>(),
+    });
+    Answer { json, text }
+}
+
+fn trust(plugin: &PluginInfo) -> &'static str {
+    match plugin.trust {
+        Trust::Shipped => "shipped",
+        Trust::Named => "named by you",
+        Trust::No(_) => "not trusted",
+    }
+}
+
+fn describe(plugin: &PluginInfo) -> serde_json::Value {
+    json!({
+        "id": plugin.id,
+        "short_name": plugin.short_name,
+        "kind": plugin.kind,
+        "name": plugin.name,
+        "version": plugin.version,
+        "license": plugin.license,
+        "abi": [plugin.abi.0, plugin.abi.1],
+        "library": plugin.library,
+        "trust": trust(plugin),
+        "interfaces": plugin.interfaces,
+        "params": plugin.params,
+        "cite": plugin.cite,
+    })
+}
+
+fn info(plugin: &PluginInfo) -> anyhow::Result<Answer> {
+    let sha256 = plugin.sha256()?;
+    let mut text = format!("{} {} · {} · {}\n", plugin.name, plugin.version, plugin.kind, trust(plugin));
+    text += &format!("{}\nid {} · ABI {}.{} · {}\n", plugin.doc, plugin.id, plugin.abi.0, plugin.abi.1, plugin.license);
+    text += &format!("{} sha256 {}\n", plugin.library.display(), &sha256[..16]);
+    for source in &plugin.cite {
+        text += &format!("from {source}\n");
+    }
+    text += "\n";
+    let head = ["parameter", "default", "takes", ""].map(str::to_owned).to_vec();
+    let row = |param: &Param| vec![param.id.clone(), param.default().to_string(), param.wanted(), first_line(&param.doc)];
+    text += &report::table(&std::iter::once(head).chain(plugin.params.iter().map(row)).collect::<Vec<_>>());
+    let mut json = describe(plugin);
+    json["sha256"] = sha256.into();
+    json["doc"] = plugin.doc.clone().into();
+    Ok(Answer { json, text })
+}
+
+fn first_line(text: &str) -> String {
+    text.lines().next().unwrap_or_default().to_owned()
 }

@@ -4,7 +4,7 @@ use std::io::IsTerminal as _;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use honami_workbench::progress::{Control, Progress};
+use honami_workbench::progress::{Flow, Progress};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 /// A progress bar on standard error; Ctrl-C asks the job to stop and keep what it has.
@@ -38,13 +38,13 @@ impl Drop for Bar {
 }
 
 impl Progress for Bar {
-    fn report(&self, done: u64, total: u64, what: &str) -> Control {
+    fn report(&self, done: u64, total: u64, what: &str) -> Flow {
         self.bar.set_length(total);
         self.bar.set_position(done);
         if self.bar.message() != what {
             self.bar.set_message(what.to_owned());
         }
-        if self.stop.load(Ordering::Relaxed) { Control::Stop } else { Control::Continue }
+        if self.stop.load(Ordering::Relaxed) { Flow::Stop } else { Flow::Continue }
     }
 }
 

@@ -67,6 +67,12 @@ impl Encoder {
         Self { depth, columns: 0, shown: Vec::new(), pen: Pen::default(), thrift: 1.0 }
     }
 
+    /// The colours it paints in.
+    #[must_use]
+    pub fn depth(&self) -> Depth {
+        self.depth
+    }
+
     /// Forgets what the terminal shows: the next frame paints every cell.
     pub fn forget(&mut self) {
         self.shown.clear();

@@ -106,6 +106,12 @@ impl Screen {
         self.signals.waker()
     }
 
+    /// Whether the terminal shows no colours.
+    #[must_use]
+    pub fn is_mono(&self) -> bool {
+        self.writer.depth() == Depth::Mono
+    }
+
     /// What is known of the link.
     #[must_use]
     pub fn link(&self) -> &Link {

@@ -45,6 +45,12 @@ impl Writer {
         }
     }
 
+    /// The colours that frames are painted in.
+    #[must_use]
+    pub fn depth(&self) -> Depth {
+        self.encoder.depth()
+    }
+
     /// What is known of the link.
     #[must_use]
     pub fn link(&self) -> &Link {

@@ -9,7 +9,9 @@ fn depths_round_to_nearest() {
     for sample in 0..=u16::MAX {
         assert_eq!(narrow_image(sample), (f64::from(sample) / 257.0).round() as u8, "{sample}");
     }
-    for (bits, sample, want) in [(10, 64, 16), (10, 65, 16), (10, 66, 17), (10, 1023, 255), (16, 0xffff, 255), (9, 3, 2)] {
+    for (bits, sample, want) in
+        [(10, 64, 16), (10, 65, 16), (10, 66, 17), (10, 1023, 255), (16, 0xffff, 255), (9, 3, 2)]
+    {
         assert_eq!(narrow(sample, bits), want, "{sample} of {bits} bits");
     }
 }

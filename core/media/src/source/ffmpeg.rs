@@ -54,7 +54,15 @@ struct Running {
 impl Running {
     fn start(video: &Video) -> Result<Self, MediaError> {
         let mut command = Command::new("ffmpeg");
-        command.args(["-nostdin", "-hide_banner", "-nostats", "-loglevel", "level+info", "-noautorotate", "-i"]);
+        command.args([
+            "-nostdin",
+            "-hide_banner",
+            "-nostats",
+            "-loglevel",
+            "level+info",
+            "-noautorotate",
+            "-i",
+        ]);
         command.arg(programs::file_url(&video.path)).args(["-map", "0:v:0"]);
         // `showinfo` reports the coded size of each frame: ffmpeg itself would scale later sizes to the first.
         command.args(["-vf", "showinfo=checksum=0"]).args(programs::every_frame());
@@ -104,7 +112,8 @@ impl Decode for Running {
     fn next(&mut self, frame: &mut [u8]) -> Result<bool, MediaError> {
         let raw = self.coded.is_planes();
         let target = if raw { &mut *frame } else { &mut self.stored };
-        let read = fill(&mut self.frames, target).map_err(|e| MediaError::io("read from ffmpeg", &self.path, e))?;
+        let read =
+            fill(&mut self.frames, target).map_err(|e| MediaError::io("read from ffmpeg", &self.path, e))?;
         if read < target.len() {
             return self.end(read);
         }
@@ -167,11 +176,13 @@ impl Log {
         for line in BufReader::new(stderr).split(b'\n').map_while(Result::ok) {
             let line = String::from_utf8_lossy(&line);
             let mut said = self.said.lock().unwrap_or_else(PoisonError::into_inner);
-            if let Some((n, size)) = frame_report(&line) {
+            if let Some(size) = frame_report(&line) {
+                // Counted here: ffmpeg's own count starts again where the size changes.
+                let n = said.n_frames;
                 if said.sizes.last().is_none_or(|&(_, before)| before != size) {
                     said.sizes.push((n, size));
                 }
-                said.n_frames = n + 1;
+                said.n_frames += 1;
                 self.more.notify_all();
             } else if let Some(text) = complaint(&line) {
                 said.complaint.get_or_insert(text);
@@ -197,13 +208,12 @@ impl Log {
     }
 }
 
-/// Frame number and size in a line of `showinfo`: `... n:   8 pts:  16384 ... s:160x120 ...`.
-fn frame_report(line: &str) -> Option<(u32, Size)> {
+/// The size in a line of `showinfo` on a frame: `... n:   8 pts:  16384 ... s:160x120 ...`.
+fn frame_report(line: &str) -> Option<Size> {
     let (_, report) = line.split_once("showinfo")?;
     let (_, after_n) = report.split_once(" n:")?;
-    let n = after_n.split_whitespace().next()?.parse().ok()?;
-    let (width, height) = report.split_once(" s:")?.1.split_whitespace().next()?.split_once('x')?;
-    Some((n, Size(width.parse().ok()?, height.parse().ok()?)))
+    let (width, height) = after_n.split_once(" s:")?.1.split_whitespace().next()?.split_once('x')?;
+    Some(Size(width.parse().ok()?, height.parse().ok()?))
 }
 
 /// The text of an error line, without the `[h264 @ 0x...] [error]` before it.

@@ -20,6 +20,11 @@ pub(crate) fn list(path: &Path) -> Result<(Vec<PathBuf>, Vec<String>), MediaErro
     names::list(path)
 }
 
+/// Whether the name is that of an image.
+pub(crate) fn is_image(path: &Path) -> bool {
+    names::is_image(path)
+}
+
 /// Whether the path can only mean a sequence.
 pub(crate) fn is_pattern(path: &Path) -> bool {
     names::is_pattern(path)
@@ -35,7 +40,12 @@ pub(crate) fn probe(path: &Path, files: Vec<PathBuf>, mut notes: Vec<String>) ->
         let (first_width, first_height) = *size.get_or_insert((width, height));
         if (width, height) != (first_width, first_height) {
             let first = Size(first_width, first_height);
-            return Err(MediaError::SizeChange { path: file.clone(), frame, found: Size(width, height), first });
+            return Err(MediaError::SizeChange {
+                path: file.clone(),
+                frame,
+                found: Size(width, height),
+                first,
+            });
         }
         colour |= decoder.color_type().has_color();
     }
@@ -116,7 +126,8 @@ fn fill(picture: DynamicImage, shape: &Shape, frame: &mut [u8]) {
             return rgb_to_planes(&narrow, shape, frame);
         }
         DynamicImage::ImageRgba16(rgba) => {
-            let narrow: Vec<u8> = rgba.pixels().flat_map(|p| [p.0[0], p.0[1], p.0[2]].map(narrow_image)).collect();
+            let narrow: Vec<u8> =
+                rgba.pixels().flat_map(|p| [p.0[0], p.0[1], p.0[2]].map(narrow_image)).collect();
             return rgb_to_planes(&narrow, shape, frame);
         }
         other => return rgb_to_planes(other.into_rgb8().as_raw(), shape, frame),

@@ -167,7 +167,7 @@ impl Decode for Reading {
         let raw = self.coded.is_planes();
         let target = if raw { &mut *frame } else { &mut self.stored };
         let read = self.file.seek(SeekFrom::Start(start)).and_then(|_| self.file.read_exact(target));
-        read.map_err(|_| MediaError::damaged(&self.path, format!("the file now ends within frame {}", self.next)))?;
+        read.map_err(|e| MediaError::io("read", &self.path, e))?;
         if !raw {
             self.coded.to_planes(&self.stored, &self.shape, frame);
         }

@@ -1,8 +1,12 @@
 //! The cache folder: complete files only, bounded, deletable, rebuilt when damaged, shared by processes.
 
 use std::fs::File;
+use std::sync::Arc;
 
 use super::*;
+use crate::cache::{Folder, Wanted};
+use crate::media::Head;
+use crate::source::sequence;
 
 fn cache_file(place: &Place) -> PathBuf {
     let name = place.names("cache").into_iter().find(|name| name.ends_with(".frames")).unwrap();
@@ -41,7 +45,14 @@ fn damage_is_found_and_mended() {
     let mut other_head = sound.clone();
     other_head[20] ^= 1;
     let incomplete = [&sound[..36], &[0; 4], &sound[40..]].concat();
-    for damaged in [&sound[..100], &sound[..sound.len() - 1], &[], &other_head, &incomplete, &[sound.as_slice(), b"x"].concat()] {
+    for damaged in [
+        &sound[..100],
+        &sound[..sound.len() - 1],
+        &[],
+        &other_head,
+        &incomplete,
+        &[sound.as_slice(), b"x"].concat(),
+    ] {
         std::fs::write(&path, damaged).unwrap();
         assert_eq!(fill(&place, "clip", &place.options()), want);
         assert_eq!(std::fs::read(&path).unwrap(), sound);
@@ -145,4 +156,31 @@ fn two_openings_at_once_each_fill_their_own() {
     });
     assert_eq!(place.cached(), ["frames"]);
     assert_eq!(fill(&place, "clip", &options), want);
+}
+
+#[test]
+fn a_full_disk_costs_speed_only() {
+    let place = Place::new();
+    place.png_folder("clip", 5, 16, 12);
+    let options = OpenOptions { cache_bytes: Some(0), ..place.options() };
+    let like = open(&place.path("clip"), &options).unwrap();
+    let (files, notes) = sequence::list(like.source()).unwrap();
+    let probed = sequence::probe(like.source(), files, notes).unwrap();
+    let wanted = Wanted { key: "key".to_owned(), shape: probed.shape, n_frames: 5 };
+    let mut filling = Folder::find(Some(&place.cache()), None).unwrap().begin(&wanted).unwrap();
+    filling.refuse_writes().unwrap();
+    let head = Head {
+        clip: like.clip().clone(),
+        notes: Vec::new(),
+        sha256: like.sha256(),
+        path: like.source().to_path_buf(),
+        shape: probed.shape,
+        recent_frames: Some(2),
+        miscounted: None,
+    };
+    let media = Media::filling(head, Arc::from(probed.source), filling).unwrap();
+    assert_eq!(bytes_of(&media), bytes_of(&like));
+    assert!(media.late_note().unwrap().contains("cannot be kept any more"), "{:?}", media.late_note());
+    assert_eq!(media.n_ready(), 5);
+    assert!(place.cached().is_empty());
 }

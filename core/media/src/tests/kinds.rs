@@ -1,7 +1,7 @@
 //! Every kind of image and of Y4M against bytes worked out here, in floating point.
 
-use image::codecs::jpeg::JpegEncoder;
 use honami_model::picture::Range;
+use image::codecs::jpeg::JpegEncoder;
 
 use super::*;
 
@@ -15,7 +15,8 @@ fn half(plane: &[u8], width: usize, across: usize, down: usize) -> Vec<u8> {
     let rows: Vec<&[u8]> = plane.chunks(width).collect();
     let blocks = rows.chunks(down).flat_map(|rows| {
         (0..width).step_by(across).map(|x| {
-            let block: Vec<u8> = rows.iter().flat_map(|row| &row[x..(x + across).min(width)]).copied().collect();
+            let block: Vec<u8> =
+                rows.iter().flat_map(|row| &row[x..(x + across).min(width)]).copied().collect();
             mean(&block)
         })
     });
@@ -117,9 +118,12 @@ fn y4m_of_odd_size_in_every_sampling() {
     let place = Place::new();
     let (width, height) = (7_usize, 5_usize);
     let y = gray(7, 5, 1).into_raw();
-    for (samples, chroma_size, across, down) in
-        [("mono", None, 0, 0), ("420jpeg", Some((4, 3)), 1, 1), ("422", Some((4, 5)), 1, 2), ("444", Some((7, 5)), 2, 2)]
-    {
+    for (samples, chroma_size, across, down) in [
+        ("mono", None, 0, 0),
+        ("420jpeg", Some((4, 3)), 1, 1),
+        ("422", Some((4, 5)), 1, 2),
+        ("444", Some((7, 5)), 2, 2),
+    ] {
         let head = format!("YUV4MPEG2 W{width} H{height} F30000:1001 Ip C{samples}\n");
         let mut file = head.into_bytes();
         let mut want = y.clone();

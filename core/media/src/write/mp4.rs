@@ -38,7 +38,18 @@ impl Mp4 {
             Range::Limited => ("yuv420p", "tv"),
         };
         let mut command = Command::new("ffmpeg");
-        command.args(["-nostdin", "-v", "error", "-y", "-f", "yuv4mpegpipe", "-color_range", range, "-i", "pipe:0"]);
+        command.args([
+            "-nostdin",
+            "-v",
+            "error",
+            "-y",
+            "-f",
+            "yuv4mpegpipe",
+            "-color_range",
+            range,
+            "-i",
+            "pipe:0",
+        ]);
         command.args(["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-c:v", "libx264", "-crf", "17"]);
         command.args(["-pix_fmt", pixels, "-color_range", range, "-movflags", "+faststart", "-f", "mp4"]);
         command.arg(programs::file_url(&unfinished.temporary));
@@ -54,7 +65,10 @@ impl Mp4 {
         Ok(movie)
     }
 
-    fn send(&mut self, write: impl FnOnce(&mut BufWriter<ChildStdin>) -> std::io::Result<()>) -> Result<(), MediaError> {
+    fn send(
+        &mut self,
+        write: impl FnOnce(&mut BufWriter<ChildStdin>) -> std::io::Result<()>,
+    ) -> Result<(), MediaError> {
         let sent = self.pipe.as_mut().map_or(Ok(()), write);
         // A broken pipe means that ffmpeg gave up; it knows better why.
         sent.or_else(|_| self.end())
@@ -65,7 +79,8 @@ impl Mp4 {
         let flushed = self.pipe.take().map_or(Ok(()), |mut pipe| pipe.flush());
         let mut complaint = String::new();
         if let Some(mut stderr) = self.child.stderr.take() {
-            std::io::Read::read_to_string(&mut stderr, &mut complaint).map_err(|e| self.unfinished.fail("read about", e))?;
+            std::io::Read::read_to_string(&mut stderr, &mut complaint)
+                .map_err(|e| self.unfinished.fail("read about", e))?;
         }
         let status = self.child.wait().map_err(|e| self.unfinished.fail("wait for ffmpeg on", e))?;
         if status.success() && flushed.is_ok() {

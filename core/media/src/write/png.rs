@@ -32,7 +32,10 @@ impl PngFolder {
         let unfinished = Unfinished::beside(path);
         let is_free = std::fs::read_dir(path).map_or(!path.exists(), |mut entries| entries.next().is_none());
         if !is_free {
-            let exists = std::io::Error::new(std::io::ErrorKind::AlreadyExists, "it exists and is not an empty folder");
+            let exists = std::io::Error::new(
+                std::io::ErrorKind::AlreadyExists,
+                "it exists and is not an empty folder",
+            );
             return Err(unfinished.fail("write images", exists));
         }
         std::fs::create_dir_all(&unfinished.temporary).map_err(|e| unfinished.fail("create", e))?;

@@ -96,6 +96,7 @@ fn refuses_and_says_why() {
     let cases = [
         (Edit::AddTrack { track: TrackId(3) }, "track 3 exists already; reserve a new number"),
         (Edit::RemoveTrack { track: TrackId(0) }, "track 0 has hand work; delete it instead"),
+        (Edit::RemoveTrack { track: TrackId(1) }, "track 1 is in run 1; delete it instead"),
         (Edit::DeleteTracks { tracks: set(4..7) }, "there is no track 5"),
         (Edit::RestoreTracks { tracks: set(1..2) }, "track 1 is not deleted"),
         (

@@ -42,3 +42,24 @@ fn refuses_rows_that_are_no_tree() {
     }
     assert!(Dendrogram::new(0, vec![]).is_ok() && Dendrogram::new(1, vec![]).is_ok());
 }
+
+#[test]
+fn the_clearest_cut_lies_at_the_largest_factor() {
+    let chain = |heights: &[f64]| {
+        let rows = (0_u32..).zip(heights).map(|(r, &height)| {
+            merge(if r == 0 { 0 } else { heights.len() as u32 + r }, r + 1, height, r + 2)
+        });
+        Dendrogram::new(heights.len() as u32 + 1, rows.collect()).unwrap()
+    };
+    let cases = [
+        (chain(&[1.0, 1.1, 9.0]), 12, 2),
+        (chain(&[1.0, 8.0, 9.0]), 12, 3),
+        (chain(&[1.0, 8.0, 9.0]), 2, 2),
+        (chain(&[0.0, 0.0, 5.0]), 12, 2),
+        (chain(&[3.0]), 12, 2),
+        (Dendrogram::new(1, vec![]).unwrap(), 12, 1),
+    ];
+    for (tree, k_max, want) in cases {
+        assert_eq!(tree.clearest_cut(k_max), want, "{tree:?}");
+    }
+}

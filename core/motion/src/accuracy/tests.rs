@@ -20,10 +20,13 @@ fn truth(visible: &[bool]) -> TruePath {
     TruePath { first_frame: 10, positions: visible.iter().map(|&v| (0.0, 0.0, v)).collect() }
 }
 
+/// Visibility, offsets, and what they give: delta_avg, survival, ok.
+type Case<'a> = (&'a [bool], &'a [Option<f32>], f64, f64, f64);
+
 #[test]
 fn counts_misses_by_hand() {
-    // (visible, offsets, delta_avg, survival, ok): the first frame is the query and never counts.
-    let cases: [(&[bool], &[Option<f32>], f64, f64, f64); 5] = [
+    // The first frame is the query and never counts.
+    let cases: [Case<'_>; 5] = [
         (&[true, true], &[Some(9.0), Some(0.5)], 1.0, 1.0, 1.0),
         (&[true, true], &[Some(0.0), Some(3.0)], 0.6, 1.0, 1.0),
         (&[true, true, true], &[Some(0.0), Some(0.0), None], 0.5, 0.5, 0.0),

@@ -106,11 +106,13 @@ impl Steps {
         let mut steps = vec![Step::default(); n_tracks * n_steps];
         for track in 0..n_tracks {
             for frame in 0..n_steps {
-                let (Some(here), Some(there)) = (positions.get(track, frame), positions.get(track, frame + 1))
+                let (Some(here), Some(there)) =
+                    (positions.get(track, frame), positions.get(track, frame + 1))
                 else {
                     continue;
                 };
-                let (u, v) = (f64::from(there[0]) - f64::from(here[0]), f64::from(there[1]) - f64::from(here[1]));
+                let (u, v) =
+                    (f64::from(there[0]) - f64::from(here[0]), f64::from(there[1]) - f64::from(here[1]));
                 let moves = u != 0.0 || v != 0.0;
                 let heading = moves.then(|| v.atan2(u) as f32);
                 steps[frame * n_tracks + track] = Step { place: Some(here), heading };
@@ -177,7 +179,8 @@ impl Steps {
             }
         }
         let row = |track: usize| &bits[track * n_words..][..n_words];
-        let totals = (0..self.n_tracks).map(|track| row(track).iter().map(|w| w.count_ones()).sum()).collect();
+        let totals =
+            (0..self.n_tracks).map(|track| row(track).iter().map(|w| w.count_ones()).sum()).collect();
         Counts { n_words, n_steps: chosen.len(), bits, totals }
     }
 }
@@ -202,36 +205,58 @@ impl Counts {
     }
 }
 
-/// Sums a distance over the steps for every pair, and hands each pair's element and sum to `put`.
-///
-/// Returns the sum over all pairs for every step (zeros where the distance does not ask for it).
-pub(super) fn add<D: Distance>(
-    blocks: &[Block],
+/// Threads that go through all pairs of n tracks.
+pub(super) struct Pool {
     n_tracks: usize,
-    condensed: &mut [f64],
-    put: impl Fn(&mut f64, usize, usize, f64) + Sync,
-    keep_going: &mut dyn FnMut(f64) -> bool,
-) -> Result<Vec<f64>, MotionError> {
-    let n_steps = blocks.first().map_or(0, Vec::len);
-    let mut rows = rows_by_block(condensed, n_tracks);
-    let mut step_sums = vec![0.0; n_steps];
-    let n_pairs = (n_tracks * (n_tracks - 1) / 2) as f64;
-    let mut n_done = 0;
-    for batch in rows.chunks_mut(BATCH) {
-        let sums: Vec<Vec<f64>> = batch
-            .par_iter_mut()
-            .map(|(block, rows)| {
-                let job = BlockRow::<D, _> { blocks, first: *block, n_tracks, rows, put: &put, distance: PhantomData };
-                pulp::Arch::new().dispatch(job)
-            })
-            .collect();
-        sums.iter().for_each(|sums| step_sums.iter_mut().zip(sums).for_each(|(total, sum)| *total += sum));
-        n_done += batch.iter().map(|(_, rows)| rows.len()).sum::<usize>();
-        if !keep_going(n_done as f64 / n_pairs) {
-            return Err(MotionError::Stopped);
-        }
+    /// `None`: the pool that is there.
+    own: Option<rayon::ThreadPool>,
+}
+
+impl Pool {
+    pub(super) fn new(n_tracks: usize, n_threads: usize) -> Self {
+        // A system without threads to spare still has the pool that is there.
+        let build = || rayon::ThreadPoolBuilder::new().num_threads(n_threads).build().ok();
+        Self { n_tracks, own: if n_threads > 0 { build() } else { None } }
     }
-    Ok(step_sums)
+
+    /// Sums a distance over the steps for every pair, and hands each pair's element and sum to `put`.
+    ///
+    /// Returns the sum over all pairs for every step (zeros where the distance does not ask for it).
+    pub(super) fn add<D: Distance>(
+        &self,
+        blocks: &[Block],
+        condensed: &mut [f64],
+        put: impl Fn(&mut f64, usize, usize, f64) + Sync,
+        keep_going: &mut dyn FnMut(f64) -> bool,
+    ) -> Result<Vec<f64>, MotionError> {
+        let n_tracks = self.n_tracks;
+        let n_pairs = condensed.len() as f64;
+        let mut rows = rows_by_block(condensed, n_tracks);
+        let mut step_sums = vec![0.0; blocks.first().map_or(0, Vec::len)];
+        let mut n_done = 0;
+        for batch in rows.chunks_mut(BATCH) {
+            let mut work = || -> Vec<Vec<f64>> {
+                let sum = |(block, rows): &mut (usize, &mut [f64])| {
+                    let (first, put, distance) = (*block, &put, PhantomData);
+                    let job = BlockRow::<D, _> { blocks, first, n_tracks, rows, put, distance };
+                    pulp::Arch::new().dispatch(job)
+                };
+                batch.par_iter_mut().map(sum).collect()
+            };
+            let sums = match &self.own {
+                Some(pool) => pool.install(work),
+                None => work(),
+            };
+            for sums in sums {
+                step_sums.iter_mut().zip(sums).for_each(|(total, sum)| *total += sum);
+            }
+            n_done += batch.iter().map(|(_, rows)| rows.len()).sum::<usize>();
+            if !keep_going(n_done as f64 / n_pairs) {
+                return Err(MotionError::Stopped);
+            }
+        }
+        Ok(step_sums)
+    }
 }
 
 /// Splits the condensed matrix where a new block of 16 rows starts.
@@ -285,6 +310,9 @@ fn block_row<D: Distance>(
             let tile = tile::<D>(&blocks[first], group * ROWS, &blocks[second], &mut lanes);
             for (r, sums) in tile.iter().enumerate() {
                 let i = first * LANES + group * ROWS + r;
+                if i >= n_tracks {
+                    break; // the last block may not be full
+                }
                 // Start of row i within these rows, less the i + 1 columns it does not have.
                 let row = (first * LANES..i).map(|k| n_tracks - 1 - k).sum::<usize>();
                 for (lane, &sum) in sums.iter().enumerate() {
@@ -296,7 +324,7 @@ fn block_row<D: Distance>(
             }
         }
         // A block against itself counts every pair twice. Sums of few blocks at a time keep f32 exact enough.
-        if second == first || (second - first) % 16 == 0 || second + 1 == blocks.len() {
+        if second == first || (second - first).is_multiple_of(16) || second + 1 == blocks.len() {
             let share = if second == first { 0.5 } else { 1.0 };
             for (total, lanes) in totals.iter_mut().zip(&mut lanes) {
                 *total += share * lanes.0.iter().map(|&sum| f64::from(sum)).sum::<f64>();
@@ -320,13 +348,16 @@ fn tile<D: Distance>(a: &Block, row: usize, b: &Block, step_sums: &mut [Lanes]) 
         let step_sums = if D::SUM_STEPS { &mut step_sums[run] } else { &mut [] };
         let mut step_sums = step_sums.iter_mut();
         for (a, b) in a.iter().zip(b) {
-            let [u, v, w] = a.each_ref().map(|lanes| lanes.0[row..row + ROWS].try_into().unwrap_or([0.0; ROWS]));
+            let [u, v, w] =
+                a.each_ref().map(|lanes| lanes.0[row..row + ROWS].try_into().unwrap_or([0.0; ROWS]));
             let d0 = distances::<D>([u[0], v[0]], w[0], b);
             let d1 = distances::<D>([u[1], v[1]], w[1], b);
             let d2 = distances::<D>([u[2], v[2]], w[2], b);
             let d3 = distances::<D>([u[3], v[3]], w[3], b);
             (s0, s1, s2, s3) = (plus(s0, d0), plus(s1, d1), plus(s2, d2), plus(s3, d3));
-            if D::SUM_STEPS && let Some(sum) = step_sums.next() {
+            if D::SUM_STEPS
+                && let Some(sum) = step_sums.next()
+            {
                 *sum = plus(*sum, plus(plus(d0, d1), plus(d2, d3)));
             }
         }

@@ -22,6 +22,9 @@ fn a_new_project_is_one_file_and_is_never_made_over_another() {
     assert_eq!(project.clip().clip, bench.record().clip);
     drop(project);
     assert_eq!(bench.names(), ["plant.honami"]);
+    let open = Project::open(&bench.path(), Access::Write).unwrap();
+    assert!(matches!(Project::create(&bench.path(), &bench.record()), Err(StoreError::Exists(_))));
+    drop(open);
     for _ in 0..2 {
         let refused = Project::create(&bench.path(), &bench.record());
         assert!(matches!(refused, Err(StoreError::Exists(_))));
@@ -48,6 +51,9 @@ fn what_is_no_project_is_told_apart() {
     Connection::open(&other).unwrap().execute_batch("CREATE TABLE t (x)").unwrap();
     let newer = put("newer.honami", &bytes);
     Connection::open(&newer).unwrap().pragma_update(None, "user_version", 9).unwrap();
+    let rootless = put("rootless.honami", &bytes);
+    let conn = Connection::open(&rootless).unwrap();
+    conn.execute_batch("PRAGMA foreign_keys = off; DELETE FROM clip").unwrap();
     let damaged = put("damaged.honami", &[&bytes[..4096], &vec![0xA5; bytes.len() - 4096]].concat());
     let cases = [
         (
@@ -55,12 +61,14 @@ fn what_is_no_project_is_told_apart() {
             "not a honami project",
         ),
         (put("empty.honami", b""), "not a honami project"),
-        (put("short.honami", &bytes[..50]), "not a honami project"),
+        (put("short.honami", &bytes[..50]), "damaged"),
+        (put("half.honami", &bytes[..bytes.len() / 2]), "damaged"),
         (other, "not a honami project"),
         (bench.folder.path().to_owned(), "not a honami project"),
         (bench.folder.path().join("gone.honami"), "cannot open the project"),
         (newer, "schema 9, this honami knows up to 1; update honami"),
         (damaged, "damaged"),
+        (rootless, "damaged"),
     ];
     for (path, want) in cases {
         for access in [Access::Write, Access::Read] {
@@ -152,8 +160,8 @@ fn hand_work_lies_over_runs_and_stays() {
     let at = |frame: u32| *shown.get(frame).unwrap();
     assert_eq!((at(39), at(60)), (*before.get(39).unwrap(), *before.get(60).unwrap()));
     assert_eq!((at(45).y, at(50).y, at(50).source), (77.0, 9.0, Source::Key));
-    let runs = [39, 45, 50].map(|frame| project.run_at(track, frame).unwrap().map(|run| run.0));
-    assert_eq!(runs, [Some(1), Some(2), None]);
+    let runs = project.sample_runs(track).unwrap();
+    assert_eq!([39, 45, 50].map(|frame| runs[frame].map(|run| run.0)), [Some(1), Some(2), None]);
     project.commit(Transaction::hide_run(run)).unwrap();
     assert_eq!(project.shown(track).unwrap().unwrap().get(50).unwrap().source, Source::Key);
     project.commit(Transaction::delete_tracks(tracks(1..2))).unwrap();
@@ -181,7 +189,7 @@ fn a_full_disk_changes_nothing() {
     let pages: u32 = project.conn.pragma_query_value(None, "page_count", |row| row.get(0)).unwrap();
     project.conn.pragma_update_and_check(None, "max_page_count", pages, |_| Ok(())).unwrap();
     let document = project.document().clone();
-    let label = "x".repeat(9000);
+    let label = "x".repeat(1 << 20);
     let mut transaction = Transaction::set_key(TrackId(0), 3, [1.0, 1.0], None);
     transaction.label = label;
     let error = project.commit(transaction.clone()).unwrap_err();

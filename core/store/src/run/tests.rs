@@ -140,6 +140,6 @@ fn only_what_exists_and_has_ended_is_shown() {
     ));
     assert_eq!(project.revision().0, 0, "nothing happened");
     project.commit(show(0..2)).unwrap();
-    assert_eq!(project.run_at(TrackId(1), 3).unwrap(), Some(run));
-    assert_eq!(project.run_at(TrackId(1), 9).unwrap(), None);
+    assert_eq!(project.sample_runs(TrackId(1)).unwrap(), [Some(run); 9]);
+    assert_eq!([3, 9].map(|frame| project.run_at(TrackId(1), frame).unwrap()), [Some(run), None]);
 }

@@ -38,11 +38,17 @@ impl Frames {
         names.sort();
         names.truncate(n);
         if names.len() < 2 {
-            return Err(format!("two or more .pgm frames wanted, {} found in {}", names.len(), folder.display()).into());
+            return Err(format!(
+                "two or more .pgm frames wanted, {} found in {}",
+                names.len(),
+                folder.display()
+            )
+            .into());
         }
         let mut frames = Self { width: 0, height: 0, data: Vec::new(), made: false };
         for name in names {
-            let (width, height, data) = parse(&std::fs::read(&name)?).ok_or("a binary 8-bit PGM (P5) is wanted")?;
+            let (width, height, data) =
+                parse(&std::fs::read(&name)?).ok_or("a binary 8-bit PGM (P5) is wanted")?;
             if frames.data.is_empty() {
                 (frames.width, frames.height) = (width, height);
             } else if (frames.width, frames.height) != (width, height) {
@@ -106,7 +112,10 @@ impl Motion {
     fn back(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let (x, y) = (x - CENTRE[0] - self.shift[0], y - CENTRE[1] - self.shift[1]);
         let square = self.cos * self.cos + self.sin * self.sin;
-        [(self.cos * x + self.sin * y) / square + CENTRE[0], (self.cos * y - self.sin * x) / square + CENTRE[1]]
+        [
+            (self.cos * x + self.sin * y) / square + CENTRE[0],
+            (self.cos * y - self.sin * x) / square + CENTRE[1],
+        ]
     }
 }
 

@@ -51,7 +51,9 @@ impl Peer {
         let answers = BufReader::new(child.stdout.take().ok_or("no standard output")?);
         let n_points = points.first().map_or(0, Vec::len);
         let mut peer = Self { child, commands, answers, folder, name: String::new(), n_points };
-        let hello = peer.answer().map_err(|_| "OpenCV is missing: pip install opencv-python-headless numpy")?;
+        let hello = peer
+            .answer()
+            .map_err(|e| format!("is OpenCV there (pip install opencv-python-headless numpy)? {e}"))?;
         peer.name = hello["peer"].as_str().unwrap_or("OpenCV").into();
         Ok(peer)
     }
@@ -63,7 +65,8 @@ impl Peer {
     /// One turn over all pairs.
     pub(super) fn time(&mut self) -> Result<PeerTimes, Failure> {
         let answer = self.ask("time")?;
-        let list = |key: &str| answer[key].as_array().into_iter().flatten().filter_map(Value::as_f64).collect();
+        let list =
+            |key: &str| answer[key].as_array().into_iter().flatten().filter_map(Value::as_f64).collect();
         Ok(PeerTimes { full: list("full_ms"), pyramids: list("pyramids_ms") })
     }
 

@@ -43,12 +43,13 @@ pub(super) fn map(picture: &Gray<'_>, params: &Params) -> Vec<f32> {
             let [xx, xy, yy] = &means;
             let terms = xx.iter().zip(xy).zip(yy).map(|((&xx, &xy), &yy)| (xx, xy, yy));
             match params.method {
-                Method::ShiTomasi => map.extend(terms.map(|(xx, xy, yy)| {
-                    (xx + yy - ((xx - yy) * (xx - yy) + 4.0 * xy * xy).sqrt()) / 2.0
-                })),
-                Method::Harris => map.extend(
-                    terms.map(|(xx, xy, yy)| xx * yy - xy * xy - HARRIS_K * (xx + yy) * (xx + yy)),
-                ),
+                Method::ShiTomasi => map
+                    .extend(terms.map(|(xx, xy, yy)| {
+                        (xx + yy - ((xx - yy) * (xx - yy) + 4.0 * xy * xy).sqrt()) / 2.0
+                    })),
+                Method::Harris => {
+                    map.extend(terms.map(|(xx, xy, yy)| xx * yy - xy * xy - HARRIS_K * (xx + yy) * (xx + yy)))
+                }
             }
         }
     }

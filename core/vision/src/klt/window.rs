@@ -59,7 +59,7 @@ struct Mask([i16; LANES]);
 #[derive(Clone, Copy, Debug)]
 struct Kernel {
     cut: unsafe fn(&mut Window, Source<'_>, Range<usize>) -> Sums,
-    mismatch: unsafe fn(&Window, Source<'_>) -> [i64; 2],
+    mismatch: unsafe fn(&mut Window, Source<'_>) -> [i64; 2],
 }
 
 impl Kernel {
@@ -83,7 +83,7 @@ pub(super) struct Window {
     blocks: Vec<Block>,
     /// Blocks in a row.
     strips: usize,
-    /// Brightness of the window and one pixel around it: `(side + 2, patch_stride)`.
+    /// Brightness of the window and one pixel around it, and a row more to work in: `(side + 3, patch_stride)`.
     patch: Vec<i16>,
     patch_stride: usize,
     /// Which columns lie on the picture, `(strips)`.
@@ -101,7 +101,7 @@ impl Window {
             side,
             blocks: vec![BLANK; side * strips],
             strips,
-            patch: vec![0; (side + 2) * patch_stride],
+            patch: vec![0; (side + 3) * patch_stride],
             patch_stride,
             mask: vec![Mask([0; LANES]); strips],
         }
@@ -126,67 +126,82 @@ impl Window {
     }
 
     /// Sums of mismatch times gradient, `Σ (J - I) (I_x, I_y)`, with the other picture's window at a corner.
-    pub(super) fn mismatch(&self, level: &Level, corner: Corner) -> [i64; 2] {
+    pub(super) fn mismatch(&mut self, level: &Level, corner: Corner) -> [i64; 2] {
         let picture = Source::at(level, corner.x, corner.y, corner.fraction);
         // SAFETY: as in `cut`.
         unsafe { (self.kernel.mismatch)(self, picture) }
     }
 
     fn cut_plainly(&mut self, picture: Source<'_>, rows: Range<usize>) -> Sums {
-        self.interpolate(picture);
+        self.interpolate(picture, self.side + 2);
         self.differentiate(rows)
     }
 
-    /// Fills the patch, the plain way.
-    fn interpolate(&mut self, picture: Source<'_>) {
-        let n = self.side + 2;
-        for (y, row) in self.patch.chunks_exact_mut(self.patch_stride).enumerate() {
-            for (x, value) in row[..n].iter_mut().enumerate() {
-                *value = picture.sample(x, y);
+    /// Brightness of `n` by `n` pixels, filled up to whole blocks, from the start of a picture on into the patch:
+    /// linear along the rows, then between them.
+    fn interpolate(&mut self, picture: Source<'_>, n: usize) {
+        let stride = self.patch_stride;
+        let [fx, fy] = picture.fraction;
+        let width = n.next_multiple_of(LANES);
+        for (y, row) in self.patch.chunks_exact_mut(stride).enumerate().take(n + 1) {
+            let bytes = &picture.bytes[y * picture.stride..][..=width];
+            for ((value, left), right) in row.iter_mut().zip(bytes).zip(&bytes[1..]) {
+                let [left, right] = [left, right].map(|byte| i16::from(*byte) << BITS);
+                *value = left + scaled(right - left, fx);
+            }
+        }
+        for y in 0..n {
+            let (upper, lower) = self.patch[y * stride..].split_at_mut(stride);
+            for (upper, lower) in upper[..width].iter_mut().zip(lower) {
+                *upper += scaled(*lower - *upper, fy);
             }
         }
     }
 
-    /// Brightness and gradients of the window from the patch, the plain way.
+    /// Brightness and gradients of the window from the patch.
     fn differentiate(&mut self, rows: Range<usize>) -> Sums {
+        let slope = |side: i16, middle: i16| scaled(side, SIDE_WEIGHT) + scaled(middle, MIDDLE_WEIGHT);
         let mut sums = Sums::default();
         for y in rows {
-            let [above, here, below] = [0, 1, 2].map(|dy| &self.patch[(y + dy) * self.patch_stride..]);
-            for x in 0..self.side {
-                let [left, right] = [x, x + 2];
-                let slope = |side: i16, middle: i16| {
-                    scaled(side, SIDE_WEIGHT) + scaled(middle, MIDDLE_WEIGHT)
-                };
-                let on = self.mask[x / LANES].0[x % LANES];
-                let dx = on
-                    & slope(
-                        above[right] - above[left] + (below[right] - below[left]),
-                        here[right] - here[left],
-                    );
-                let dy = on
-                    & slope(
-                        below[left] - above[left] + (below[right] - above[right]),
-                        below[x + 1] - above[x + 1],
-                    );
-                let block = &mut self.blocks[y * self.strips + x / LANES];
-                block.value[x % LANES] = here[x + 1];
-                block.dx[x % LANES] = dx;
-                block.dy[x % LANES] = dy;
-                let (dx, dy) = (i64::from(dx), i64::from(dy));
-                sums = Sums { xx: sums.xx + dx * dx, xy: sums.xy + dx * dy, yy: sums.yy + dy * dy };
+            let blocks = &mut self.blocks[y * self.strips..][..self.strips];
+            for (strip, (block, mask)) in blocks.iter_mut().zip(&self.mask).enumerate() {
+                let row =
+                    |dy: usize| &self.patch[(y + dy) * self.patch_stride + strip * LANES..][..LANES + 2];
+                let (above, here, below) = (row(0), row(1), row(2));
+                // 32 squares of at most 4080 fit 32 bits.
+                let mut few = [0_i32; 3];
+                for (i, on) in mask.0.iter().enumerate() {
+                    let across = |row: &[i16]| row[i + 2] - row[i];
+                    let down = |dx: usize| below[i + dx] - above[i + dx];
+                    let dx = on & slope(across(above) + across(below), across(here));
+                    let dy = on & slope(down(0) + down(2), down(1));
+                    (block.value[i], block.dx[i], block.dy[i]) = (here[i + 1], dx, dy);
+                    let (dx, dy) = (i32::from(dx), i32::from(dy));
+                    few = [few[0] + dx * dx, few[1] + dx * dy, few[2] + dy * dy];
+                }
+                let [xx, xy, yy] = few.map(i64::from);
+                sums = Sums { xx: sums.xx + xx, xy: sums.xy + xy, yy: sums.yy + yy };
             }
         }
         sums
     }
 
-    fn mismatch_plainly(&self, picture: Source<'_>) -> [i64; 2] {
+    fn mismatch_plainly(&mut self, picture: Source<'_>) -> [i64; 2] {
+        self.interpolate(picture, self.side);
         let mut sums = [0; 2];
-        for (y, row) in self.blocks.chunks_exact(self.strips).enumerate() {
-            for x in 0..self.side {
-                let (block, lane) = (&row[x / LANES], x % LANES);
-                let difference = i64::from(picture.sample(x, y) - block.value[lane]);
-                sums[0] += difference * i64::from(block.dx[lane]);
-                sums[1] += difference * i64::from(block.dy[lane]);
+        for (row, blocks) in
+            self.patch.chunks_exact(self.patch_stride).zip(self.blocks.chunks_exact(self.strips))
+        {
+            for (values, block) in row.chunks_exact(LANES).zip(blocks) {
+                // 32 products of at most 8160 · 4080 fit 32 bits.
+                let mut few = [0_i32; 2];
+                for (i, value) in values.iter().enumerate() {
+                    let difference = i32::from(value - block.value[i]);
+                    few[0] += difference * i32::from(block.dx[i]);
+                    few[1] += difference * i32::from(block.dy[i]);
+                }
+                sums[0] += i64::from(few[0]);
+                sums[1] += i64::from(few[1]);
             }
         }
         sums
@@ -213,17 +228,6 @@ struct Source<'a> {
 impl<'a> Source<'a> {
     fn at(level: &'a Level, x: i32, y: i32, fraction: [i16; 2]) -> Self {
         Self { bytes: level.bytes_from(x, y), stride: level.stride(), fraction }
-    }
-
-    /// Brightness at a column and row from the start: linear along the rows, then between them.
-    fn sample(&self, x: usize, y: usize) -> i16 {
-        let [fx, fy] = self.fraction;
-        let row = |y: usize| {
-            let [left, right] = [0, 1].map(|dx| i16::from(self.bytes[y * self.stride + x + dx]) << BITS);
-            left + scaled(right - left, fx)
-        };
-        let (upper, lower) = (row(y), row(y + 1));
-        upper + scaled(lower - upper, fy)
     }
 
     /// Whether reading `rows` rows of `columns` bytes stays within the picture's memory.

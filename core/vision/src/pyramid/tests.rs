@@ -18,7 +18,10 @@ fn halved_plainly(data: &[u8], width: usize, height: usize) -> Vec<u8> {
         }
         (sum >> 8) as u8
     };
-    (0..height.div_ceil(2)).flat_map(|y| (0..width.div_ceil(2)).map(move |x| (x, y))).map(|(x, y)| at(x, y)).collect()
+    (0..height.div_ceil(2))
+        .flat_map(|y| (0..width.div_ceil(2)).map(move |x| (x, y)))
+        .map(|(x, y)| at(x, y))
+        .collect()
 }
 
 fn packed(level: &Level) -> Vec<u8> {
@@ -26,7 +29,7 @@ fn packed(level: &Level) -> Vec<u8> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
+    #![proptest_config(crate::cases(64))]
     #[test]
     fn levels_are_the_filtered_pictures(width in 1_u32..40, height in 1_u32..40, pad in 0_usize..5, seed in 0_u64..99) {
         let stride = width as usize + pad;
@@ -49,9 +52,13 @@ proptest! {
 #[test]
 fn opencv_gives_the_same_bytes() {
     // cv2.pyrDown(np.fromfunction(lambda y, x: (x*x*7 + y*13 + x*y*3) % 256, (7, 9)).astype(np.uint8)), OpenCV 5.0.
-    let data: Vec<u8> = (0..63).map(|i| (i % 9, i / 9)).map(|(x, y)| ((x * x * 7 + y * 13 + x * y * 3) % 256) as u8).collect();
+    let data: Vec<u8> = (0..63)
+        .map(|i| (i % 9, i / 9))
+        .map(|(x, y)| ((x * x * 7 + y * 13 + x * y * 3) % 256) as u8)
+        .collect();
     let pyramid = Pyramid::new(&Gray::packed(&data, 9, 7), 2, 1);
-    let want: [u8; 20] = [18, 49, 128, 140, 141, 38, 73, 134, 120, 121, 68, 110, 137, 110, 118, 87, 129, 134, 104, 89];
+    let want: [u8; 20] =
+        [18, 49, 128, 140, 141, 38, 73, 134, 120, 121, 68, 110, 137, 110, 118, 87, 129, 134, 104, 89];
     assert_eq!(packed(&pyramid.levels()[1]), want);
 }
 
@@ -65,8 +72,13 @@ fn the_border_mirrors_the_picture() {
         let border = level.border_px() as i32;
         for y in -border..height as i32 + border {
             for x in -border..width as i32 + border {
-                let (column, row) = (mirrored(x as isize, width as usize), mirrored(y as isize, height as usize));
-                assert_eq!(level.bytes_from(x, y)[0], picture.row(row as u32)[column], "({x}, {y}) of {width}x{height}");
+                let (column, row) =
+                    (mirrored(x as isize, width as usize), mirrored(y as isize, height as usize));
+                assert_eq!(
+                    level.bytes_from(x, y)[0],
+                    picture.row(row as u32)[column],
+                    "({x}, {y}) of {width}x{height}"
+                );
             }
         }
     }
@@ -75,9 +87,14 @@ fn the_border_mirrors_the_picture() {
 #[test]
 fn levels_end_where_a_window_no_longer_fits() {
     let data = vec![0; 960 * 720];
-    for (width, height, n_levels, radius, want) in
-        [(960, 720, 4, 10, 4), (960, 720, 9, 10, 6), (40, 40, 4, 10, 1), (44, 44, 4, 10, 2), (7, 5, 4, 10, 1), (1, 1, 0, 0, 1)]
-    {
+    for (width, height, n_levels, radius, want) in [
+        (960, 720, 4, 10, 4),
+        (960, 720, 9, 10, 6),
+        (40, 40, 4, 10, 1),
+        (44, 44, 4, 10, 2),
+        (7, 5, 4, 10, 1),
+        (1, 1, 0, 0, 1),
+    ] {
         let picture = Gray { data: &data, width, height, stride: width as usize };
         assert_eq!(Pyramid::new(&picture, n_levels, radius).levels().len(), want, "{width}x{height}");
     }

@@ -147,7 +147,12 @@ fn ffprobe(path: &Path, entries: &str) -> Result<(Answer, Option<String>), Media
 }
 
 /// Refuses a file that ends before its index says.
-fn check_whole(path: &Path, answer: &Answer, stream: &Stream, complaint: Option<&str>) -> Result<(), MediaError> {
+fn check_whole(
+    path: &Path,
+    answer: &Answer,
+    stream: &Stream,
+    complaint: Option<&str>,
+) -> Result<(), MediaError> {
     if let Some(text) = complaint.filter(|text| {
         ["partial file", "prematurely", "truncated"].iter().any(|sign| text.to_lowercase().contains(sign))
     }) {
@@ -230,7 +235,8 @@ fn times(
         return Ok((seconds(ticks, numerator, denominator), notes));
     }
     let (rate, per) = fraction(&stream.r_frame_rate).unwrap_or((25, 1));
-    notes.push(format!("the stream has no usable times: {:.6} fps from its header", rate as f64 / per as f64));
+    notes
+        .push(format!("the stream has no usable times: {:.6} fps from its header", rate as f64 / per as f64));
     Ok(((0..frames.frames.len()).map(|k| k as f64 * per as f64 / rate as f64).collect(), notes))
 }
 

@@ -26,7 +26,9 @@ impl Sps {
         bits.take(16)?; // constraints, level
         bits.unsigned()?; // id
         let (chroma_format, eight_bits) = match profile {
-            100 | 110 | 122 | 244 | 44 | 83 | 86 | 118 | 128 | 138 | 139 | 134 | 135 => high_profile(&mut bits)?,
+            100 | 110 | 122 | 244 | 44 | 83 | 86 | 118 | 128 | 138 | 139 | 134 | 135 => {
+                high_profile(&mut bits)?
+            }
             _ => (1, true),
         };
         bits.unsigned()?; // log2_max_frame_num

@@ -13,6 +13,8 @@ use crate::error::MediaError;
 pub(super) struct Sample {
     pub(super) offset: u64,
     pub(super) len: u32,
+    /// Its place in display order.
+    pub(super) place: usize,
 }
 
 #[derive(Debug)]
@@ -28,7 +30,12 @@ pub(super) struct Table {
 }
 
 impl Table {
-    pub(super) fn read(path: &Path, moov: &MoovBox, trak: &TrakBox, file_len: u64) -> Result<Self, MediaError> {
+    pub(super) fn read(
+        path: &Path,
+        moov: &MoovBox,
+        trak: &TrakBox,
+        file_len: u64,
+    ) -> Result<Self, MediaError> {
         let damaged = |why: &str| MediaError::damaged(path, why);
         let stbl = &trak.mdia.minf.stbl;
         let timescale = u64::from(trak.mdia.mdhd.timescale);
@@ -36,11 +43,17 @@ impl Table {
             return Err(damaged("its index gives no unit of time"));
         }
         let lens = lens(stbl);
-        let samples = places(stbl, &lens).ok_or_else(|| damaged("its index places samples in no chunk"))?;
+        let mut samples =
+            places(stbl, &lens).ok_or_else(|| damaged("its index places samples in no chunk"))?;
         if let Some(at) = samples.iter().position(|s| s.offset.saturating_add(u64::from(s.len)) > file_len) {
             return Err(damaged(&format!("the file ends before sample {at} of {}", samples.len())));
         }
         let mut times = times(stbl, samples.len()).ok_or_else(|| damaged("its index gives too few times"))?;
+        let mut order: Vec<usize> = (0..times.len()).collect();
+        order.sort_by_key(|&at| times[at]);
+        for (place, at) in order.into_iter().enumerate() {
+            samples[at].place = place;
+        }
         times.sort_unstable();
         let shown = shown(path, trak, u64::from(moov.mvhd.timescale), timescale)?;
         Ok(Self { samples, timescale, times, shown })
@@ -84,7 +97,7 @@ fn places(stbl: &StblBox, lens: &[u32]) -> Option<Vec<Sample>> {
         let mut offset = start;
         for _ in 0..per_chunk {
             let Some(len) = lens.next() else { return Some(samples) };
-            samples.push(Sample { offset, len });
+            samples.push(Sample { offset, len, place: samples.len() });
             offset = offset.checked_add(u64::from(len))?;
         }
     }
@@ -93,7 +106,8 @@ fn places(stbl: &StblBox, lens: &[u32]) -> Option<Vec<Sample>> {
 
 /// Presentation times in decoding order: sums of the steps (stts) plus offsets (ctts).
 fn times(stbl: &StblBox, n: usize) -> Option<Vec<i64>> {
-    let steps = stbl.stts.entries.iter().flat_map(|e| std::iter::repeat_n(e.sample_delta, e.sample_count as usize));
+    let steps =
+        stbl.stts.entries.iter().flat_map(|e| std::iter::repeat_n(e.sample_delta, e.sample_count as usize));
     let mut decoded = 0_i64;
     let mut times: Vec<i64> = steps
         .take(n)

@@ -53,7 +53,7 @@ fn images_in(folder: &Path, wanted: impl Fn(&str) -> bool) -> Result<Vec<PathBuf
     Ok(files)
 }
 
-fn is_image(path: &Path) -> bool {
+pub(super) fn is_image(path: &Path) -> bool {
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
     EXTENSIONS.contains(&extension.as_str())
 }
@@ -69,18 +69,20 @@ fn series(folder: &Path, files: Vec<PathBuf>) -> Result<(Vec<PathBuf>, Vec<Strin
     }
     let mut by_pattern: BTreeMap<String, Vec<PathBuf>> = BTreeMap::new();
     for file in &files {
-        by_pattern.entry(numberless(&file_name(file))).or_default().push(file.clone());
+        by_pattern.entry(numberless(&file_name(file)).to_lowercase()).or_default().push(file.clone());
     }
     let longest = by_pattern.values().map(Vec::len).max().unwrap_or(0);
     if longest == 1 {
         return Ok((files, Vec::new()));
     }
-    let mut longest_ones: Vec<_> = by_pattern.into_iter().filter(|(_, run)| run.len() == longest).collect();
+    let pattern_of = |run: &Vec<PathBuf>| numberless(&file_name(&run[0]));
+    let mut longest_ones: Vec<_> = by_pattern.into_values().filter(|run| run.len() == longest).collect();
     if longest_ones.len() > 1 {
-        let series = longest_ones.into_iter().map(|(pattern, _)| pattern).collect();
+        let series = longest_ones.iter().map(pattern_of).collect();
         return Err(MediaError::Ambiguous { path: folder.to_path_buf(), series });
     }
-    let (pattern, chosen) = longest_ones.remove(0);
+    let chosen = longest_ones.remove(0);
+    let pattern = pattern_of(&chosen);
     let left_out: Vec<String> = files.iter().filter(|f| !chosen.contains(f)).map(|f| file_name(f)).collect();
     let note = match left_out.as_slice() {
         [] => None,
@@ -97,9 +99,9 @@ fn series(folder: &Path, files: Vec<PathBuf>) -> Result<(Vec<PathBuf>, Vec<Strin
 fn numberless(name: &str) -> String {
     let (stem, extension) = name.rsplit_once('.').unwrap_or((name, ""));
     let Some(end) = stem.rfind(|c: char| c.is_ascii_digit()) else { return name.to_owned() };
-    let start = stem[..end].rfind(|c: char| !c.is_ascii_digit()).map_or(0, |at| {
-        at + stem[at..].chars().next().map_or(1, char::len_utf8)
-    });
+    let start = stem[..end]
+        .rfind(|c: char| !c.is_ascii_digit())
+        .map_or(0, |at| at + stem[at..].chars().next().map_or(1, char::len_utf8));
     format!("{}*{}.{extension}", &stem[..start], &stem[end + 1..])
 }
 
@@ -156,7 +158,8 @@ impl Numbered<'_> {
         let digits = name.strip_prefix(self.before).and_then(|rest| rest.strip_suffix(self.after));
         digits.is_some_and(|digits| {
             digits.bytes().all(|c| c.is_ascii_digit())
-                && (digits.len() == self.width.max(1) || digits.len() > self.width && !digits.starts_with('0'))
+                && (digits.len() == self.width.max(1)
+                    || digits.len() > self.width && !digits.starts_with('0'))
         })
     }
 }

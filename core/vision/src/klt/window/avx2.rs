@@ -83,7 +83,7 @@ fn differentiate(window: &mut Window, rows: Range<usize>) -> Sums {
 
 /// Compares a picture with a window; see [`Window::mismatch`].
 #[target_feature(enable = "avx2")]
-pub(super) fn mismatch(window: &Window, picture: Source<'_>) -> [i64; 2] {
+pub(super) fn mismatch(window: &mut Window, picture: Source<'_>) -> [i64; 2] {
     let Window { side, strips, .. } = *window;
     assert!(picture.covers(side + 1, strips * LANES + 1), "picture too small for its window");
     let [fx, fy] = picture.fraction.map(|f| _mm256_set1_epi16(f));

@@ -14,7 +14,13 @@ fn picture(kind: u8, seed: u64, width: u32, height: u32) -> Vec<u8> {
         0 => texture::value(seed, x, y),
         1 => 128.0 + 127.0 * noise(x, y),
         2 => 128.0 + 127.0 * noise(x, y).signum(),
-        _ => if (x + y) % 4.0 < 2.0 { 255.0 } else { 0.0 },
+        _ => {
+            if (x + y) % 4.0 < 2.0 {
+                255.0
+            } else {
+                0.0
+            }
+        }
     })
 }
 
@@ -23,7 +29,7 @@ fn pyramid(data: &[u8], width: u32, height: u32, radius: u32) -> Pyramid {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
+    #![proptest_config(crate::cases(400))]
     #[test]
     fn every_level_gives_the_same_bits(
         size in (1_u32..90, 1_u32..90), kinds in (0_u8..4, 0_u8..4), seed in 0_u64..1000,
@@ -57,7 +63,9 @@ proptest! {
 /// Brightness and gradients of the window's own pixels.
 fn gradients(window: &Window) -> Vec<[i16; 3]> {
     let pixels = window.blocks.chunks_exact(window.strips).flat_map(|row| {
-        (0..window.side).map(move |x| (&row[x / LANES], x % LANES)).map(|(b, i)| [b.value[i], b.dx[i], b.dy[i]])
+        (0..window.side)
+            .map(move |x| (&row[x / LANES], x % LANES))
+            .map(|(b, i)| [b.value[i], b.dx[i], b.dy[i]])
     });
     // Rows beyond the picture keep no brightness.
     pixels.map(|[v, dx, dy]| if dx == 0 && dy == 0 { [0; 3] } else { [v, dx, dy] }).collect()

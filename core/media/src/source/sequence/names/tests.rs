@@ -4,9 +4,13 @@ use super::*;
 
 #[test]
 fn numbers_sort_by_value() {
-    let mut names = ["img10.png", "img2.png", "IMG1.png", "img02.png", "a.png", "img2b.png", "img2", "10.png", "9.png"];
+    let mut names =
+        ["img10.png", "img2.png", "IMG1.png", "img02.png", "a.png", "img2b.png", "img2", "10.png", "9.png"];
     names.sort_by(|a, b| natural(a, b));
-    assert_eq!(names, ["9.png", "10.png", "a.png", "IMG1.png", "img2", "img02.png", "img2.png", "img2b.png", "img10.png"]);
+    assert_eq!(
+        names,
+        ["9.png", "10.png", "a.png", "IMG1.png", "img2", "img02.png", "img2.png", "img2b.png", "img10.png"]
+    );
 }
 
 #[test]

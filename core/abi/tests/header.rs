@@ -1,0 +1,151 @@
+//! The header, its frozen copy and the mirror say the same: sizes, offsets, numbers, ids.
+#![expect(clippy::unwrap_used, reason = "helpers of tests fail the test")]
+#![expect(clippy::print_stderr, reason = "a test that is skipped says so")]
+
+use honami_abi::layout::{DRAFT, FLOATS, IDS, NUMBERS, STABLE, Struct};
+use sha2::{Digest, Sha256};
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Of `abi/1.0/honami.h`. It never changes: what grows is `include/honami.h`, under another minor.
+const FROZEN_1_0_SHA256: &str = "2c2dc1eeb9df65b2b1c5c85af35a0948c4073109a9adac9846e97de6a1e3f8d3";
+
+fn root(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
+}
+
+fn read(path: &str) -> String {
+    std::fs::read_to_string(root(path)).unwrap()
+}
+
+/// Compiles a text as C99 and as C++11; says so where there is no compiler.
+fn check(name: &str, source: &str) {
+    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    std::fs::write(&file, source).unwrap();
+    for (compiler, language, standard) in [("cc", "c", "-std=c99"), ("c++", "c++", "-std=c++11")] {
+        let output = Command::new(compiler)
+            .args([
+                "-x",
+                language,
+                standard,
+                "-pedantic",
+                "-Wall",
+                "-Wextra",
+                "-Werror",
+                "-fsyntax-only",
+                "-I",
+            ])
+            .args([root("include"), file.clone()])
+            .output();
+        match output {
+            Err(_) => eprintln!("skipped: needs {compiler}"),
+            Ok(output) => {
+                assert!(output.status.success(), "{compiler}: {}", String::from_utf8_lossy(&output.stderr))
+            }
+        }
+    }
+}
+
+/// C99 has no `_Static_assert`: an array of negative size will do.
+fn assert_c(source: &mut String, condition: &str) {
+    let n = source.lines().count();
+    writeln!(source, "typedef char assert_{n}[({condition}) ? 1 : -1];").unwrap();
+}
+
+fn assert_struct(source: &mut String, of: &Struct) {
+    let c = of.c_name;
+    assert_c(source, &format!("sizeof({c}) == {}", of.size));
+    // The alignment is the offset after one byte.
+    writeln!(source, "typedef struct {{ char one; {c} it; }} align_{c};").unwrap();
+    assert_c(source, &format!("offsetof(align_{c}, it) == {}", of.align));
+    for field in of.fields {
+        let f = field.c_name;
+        assert_c(source, &format!("offsetof({c}, {f}) == {}", field.offset));
+        assert_c(source, &format!("sizeof((({c} *)0)->{f}) == {}", field.size));
+    }
+    if of.fields[0].c_name == "struct_size" {
+        let last = of.fields[of.fields.len() - 1].c_name;
+        assert_c(source, &format!("HONAMI_SIZE_TO({c}, {last}) == sizeof({c})"));
+    }
+}
+
+#[test]
+fn c_lays_everything_out_as_the_table_says() {
+    let mut source = "#include \"honami_draft.h\"\n".to_owned();
+    for of in STABLE.iter().chain(DRAFT) {
+        assert_struct(&mut source, of);
+    }
+    for (name, number) in NUMBERS {
+        assert_c(&mut source, &format!("(long long)({name}) == {number}LL"));
+    }
+    for (name, id) in IDS {
+        assert_c(&mut source, &format!("sizeof({name}) == {}", id.to_bytes_with_nul().len()));
+    }
+    check("layout.c", &source);
+}
+
+#[test]
+fn the_table_has_every_struct_number_and_id_of_the_headers() {
+    let mut structs = BTreeSet::new();
+    let mut numbers = BTreeSet::new();
+    for header in ["include/honami.h", "include/honami_draft.h"] {
+        let text = read(header);
+        for line in text.lines() {
+            if let Some(name) = line.strip_prefix("typedef struct ") {
+                structs.insert(name.split([' ', '{', ';']).next().unwrap().to_owned());
+            }
+            let Some((name, value)) = line.strip_prefix("#define ").and_then(|rest| rest.split_once(' '))
+            else {
+                continue;
+            };
+            if let Some(id) = value.trim().strip_prefix('"') {
+                let (_, mirrored) = IDS.iter().find(|(c_name, _)| *c_name == name).unwrap();
+                assert_eq!(mirrored.to_str().unwrap(), id.trim_end_matches('"'), "{name}");
+            } else if let Some((_, mirrored)) = FLOATS.iter().find(|(c_name, _)| *c_name == name) {
+                assert_eq!(value.trim_matches(['(', ')', 'f']).parse(), Ok(*mirrored), "{name}");
+            } else if name.starts_with("HONAMI_") && !name.contains('(') && name != "HONAMI_EXPORT" {
+                numbers.insert(name.to_owned());
+            }
+        }
+    }
+    let in_table = STABLE.iter().chain(DRAFT).map(|of| of.c_name.to_owned()).collect();
+    assert_eq!(structs, in_table);
+    assert_eq!(numbers, NUMBERS.iter().map(|(name, _)| (*name).to_owned()).collect());
+}
+
+#[test]
+fn the_frozen_header_is_the_one_that_was_frozen() {
+    let frozen = read("abi/1.0/honami.h");
+    let hash: String = Sha256::digest(&frozen).iter().map(|byte| format!("{byte:02x}")).collect();
+    assert_eq!(
+        hash, FROZEN_1_0_SHA256,
+        "abi/1.0/honami.h is frozen: bring it back, and grow include/honami.h"
+    );
+    if honami_abi::ABI_MINOR == 0 {
+        assert_eq!(read("include/honami.h"), frozen, "at minor 0 both are the same");
+    }
+}
+
+#[test]
+fn the_headers_and_the_example_compile_by_themselves() {
+    check("alone.c", "#include \"honami.h\"\n");
+    check("alone_draft.c", "#include \"honami_draft.h\"\n");
+    check("null_tracker.c", &read("examples/null_tracker.c"));
+}
+
+#[test]
+fn a_shorter_struct_lacks_the_fields_behind_its_size() {
+    let shorter = honami_abi::TrackerV1 {
+        struct_size: honami_abi::size_to!(honami_abi::TrackerV1, retire) as u32,
+        latency: 0,
+        begin: None,
+        seed: None,
+        retire: None,
+        push: None,
+        end: None,
+    };
+    assert!(honami_abi::has!(shorter, honami_abi::TrackerV1, retire));
+    assert!(!honami_abi::has!(shorter, honami_abi::TrackerV1, push));
+}

@@ -1,0 +1,133 @@
+//! The seam between typed handles and what hosts a plugin: requests go in, unchecked replies come out.
+//!
+//! Handles know only [`Instance`]. Today there is one that calls the library in this process; one that asks another
+//! process would answer the same requests.
+
+use crate::context::CallContext;
+use crate::draft::{Gust, Node};
+use crate::error::{Code, HostError};
+use crate::reply::{self, Reply, Schema};
+use crate::types::{DetectRequest, FrameView, Point, StreamInfo, Tracks};
+use crate::values::Value;
+use honami_abi::code;
+
+/// A function of the ABI with what it is given.
+#[derive(Debug)]
+pub(crate) enum Request<'a> {
+    SetParams(&'a [(&'a str, &'a Value, u32)]),
+    Begin(&'a StreamInfo),
+    Seed(&'a [Point]),
+    Retire(&'a [u32]),
+    Push(&'a FrameView<'a>),
+    End,
+    Detect(&'a DetectRequest<'a>),
+    Field { from: &'a FrameView<'a>, to: &'a FrameView<'a>, max_threads: u32 },
+    Cluster(&'a Tracks),
+    Grow(&'a Tracks),
+    Prepare { nodes: &'a [Node], n_instances: u32, max_threads: u32, seed: u64 },
+    Reset,
+    Step { dt: f64, n_steps: u32, wind: &'a [Gust] },
+}
+
+impl Request<'_> {
+    /// The function's name in the header.
+    pub(crate) fn function(&self) -> &'static str {
+        match self {
+            Self::SetParams(_) => "set_params",
+            Self::Begin(_) => "begin",
+            Self::Seed(_) => "seed",
+            Self::Retire(_) => "retire",
+            Self::Push(_) => "push",
+            Self::End => "end",
+            Self::Detect(_) => "detect",
+            Self::Field { .. } => "field",
+            Self::Cluster(_) | Self::Grow(_) => "run",
+            Self::Prepare { .. } => "prepare",
+            Self::Reset => "reset",
+            Self::Step { .. } => "step",
+        }
+    }
+
+    /// The tables that it may commit.
+    pub(crate) fn schemas(&self) -> &'static [&'static Schema] {
+        match self {
+            Self::Push(_) | Self::End => &[&reply::POINTS],
+            Self::Detect(_) => &[&reply::FEATURES],
+            Self::Field { .. } => &[&reply::VECTORS, &reply::GRID],
+            Self::Cluster(_) => &[&reply::DENDROGRAM, &reply::FRAMES],
+            Self::Grow(_) => &[&reply::SKELETON],
+            Self::Step { .. } => &[&reply::MOTION],
+            _ => &[],
+        }
+    }
+}
+
+/// One plugin at work, wherever it runs.
+pub(crate) trait Instance: Send {
+    /// Passes on a request and fills the reply. Types and sizes of its tables are right; nothing else is sure.
+    fn invoke(&mut self, request: &Request<'_>, cx: &CallContext<'_>, reply: &mut Reply);
+}
+
+/// What every typed handle does: asks, reads the code, and gives up on an instance that failed.
+pub(crate) struct Handle {
+    pub(crate) plugin: String,
+    instance: Box<dyn Instance>,
+    failed: bool,
+}
+
+/// How a call ended that did not fail.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Done {
+    Ok,
+    /// Accepted; the result comes later.
+    Again,
+}
+
+impl Handle {
+    pub(crate) fn new(plugin: String, instance: Box<dyn Instance>) -> Self {
+        Self { plugin, instance, failed: false }
+    }
+
+    pub(crate) fn ask(
+        &mut self,
+        request: &Request<'_>,
+        cx: &CallContext<'_>,
+        reply: &mut Reply,
+    ) -> Result<Done, HostError> {
+        if self.failed {
+            return Err(self.usage("has failed before; make it anew"));
+        }
+        self.instance.invoke(request, cx, reply);
+        let function = request.function();
+        if let Some(what) = reply.faults.first() {
+            return Err(self.misbehaved(function, what.clone()));
+        }
+        match reply.code {
+            code::AGAIN => Ok(Done::Again),
+            0.. => Ok(Done::Ok),
+            code::CANCELLED if reply.stopped => Err(HostError::Cancelled { plugin: self.plugin.clone() }),
+            failure => {
+                // Refused parameters leave the former ones in force; everything else ends the instance.
+                self.failed = !matches!(request, Request::SetParams(_));
+                let text = if reply.text.is_empty() { "gives no reason".into() } else { reply.text.clone() };
+                Err(HostError::Failed { plugin: self.plugin.clone(), function, code: Code(failure), text })
+            }
+        }
+    }
+
+    /// The error of a broken contract; ends the instance.
+    pub(crate) fn misbehaved(&mut self, function: &'static str, what: impl Into<String>) -> HostError {
+        self.failed = true;
+        HostError::Misbehaved { plugin: self.plugin.clone(), function, what: what.into() }
+    }
+
+    pub(crate) fn usage(&self, what: impl Into<String>) -> HostError {
+        HostError::Usage { plugin: self.plugin.clone(), what: what.into() }
+    }
+}
+
+impl std::fmt::Debug for Handle {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Handle").field("plugin", &self.plugin).field("failed", &self.failed).finish()
+    }
+}

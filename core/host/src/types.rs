@@ -1,0 +1,279 @@
+//! What goes to plugins and comes back from them, in Rust's own types.
+
+/// An 8-bit luma picture; rows are `stride` bytes apart.
+#[derive(Clone, Copy, Debug)]
+pub struct Gray<'a> {
+    /// At least `(height - 1) * stride + width` bytes.
+    pub data: &'a [u8],
+    /// Pixels.
+    pub width: u32,
+    /// Pixels.
+    pub height: u32,
+    /// Bytes from a row to the next, at least `width`.
+    pub stride: usize,
+}
+
+impl Gray<'_> {
+    /// Whether `data` holds what the numbers say.
+    pub(crate) fn is_whole(&self) -> bool {
+        let bytes = (self.height as usize).saturating_sub(1).checked_mul(self.stride);
+        let bytes = bytes.and_then(|bytes| bytes.checked_add(self.width as usize));
+        self.width > 0
+            && self.height > 0
+            && self.stride >= self.width as usize
+            && bytes.is_some_and(|n| n <= self.data.len())
+    }
+}
+
+/// A frame on its way to a plugin.
+#[derive(Clone, Copy, Debug)]
+pub struct FrameView<'a> {
+    /// The picture.
+    pub gray: Gray<'a>,
+    /// Frame number in the clip.
+    pub index: i64,
+    /// Presentation time, seconds.
+    pub time_s: f64,
+}
+
+/// What is known of a stream before its first frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StreamInfo {
+    /// Width of every frame, pixels.
+    pub width: u32,
+    /// Height of every frame, pixels.
+    pub height: u32,
+    /// Nominal frames per second, if known.
+    pub fps: Option<f64>,
+    /// Frames to come, if known.
+    pub n_frames: Option<u64>,
+    /// Whether index and time fall from frame to frame.
+    pub reversed: bool,
+    /// Threads that the plugin may use.
+    pub max_threads: u32,
+    /// Seed of every random choice.
+    pub seed: u64,
+    /// Ids that the plugin may give to points of its own; empty: no births.
+    pub births: std::ops::Range<u32>,
+}
+
+/// A point to follow, or to keep a distance from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// Number of its track.
+    pub id: u32,
+    /// Pixels, right.
+    pub x: f32,
+    /// Pixels, down.
+    pub y: f32,
+}
+
+/// What is known of a point in a frame. The numbers are those of the ABI and of the tables.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Status {
+    /// The tracker has lost it; the position is its last guess.
+    Lost = 0,
+    /// Seen and followed.
+    Tracked = 1,
+    /// Hidden; the position is predicted.
+    Occluded = 2,
+    /// Has left the picture.
+    Outside = 3,
+    /// Judged wrong.
+    Rejected = 4,
+    /// Born in this frame by the tracker itself.
+    Newborn = 5,
+}
+
+impl Status {
+    /// The status with this number.
+    #[must_use]
+    pub fn from_u8(n: u8) -> Option<Self> {
+        [Self::Lost, Self::Tracked, Self::Occluded, Self::Outside, Self::Rejected, Self::Newborn]
+            .get(usize::from(n))
+            .copied()
+    }
+}
+
+/// A point in a frame, checked: known id, once a frame, finite numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointRow {
+    /// Number of its track.
+    pub id: u32,
+    /// Pixels, right.
+    pub x: f32,
+    /// Pixels, down.
+    pub y: f32,
+    /// What is known of it.
+    pub status: Status,
+    /// Forward-backward error of the step that led here, pixels, if measured.
+    pub fb: Option<f32>,
+    /// Normalised cross-correlation with the template, -1..=1, if measured.
+    pub ncc: Option<f32>,
+}
+
+/// The points of one frame.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Points {
+    /// Frame number in the clip.
+    pub frame: i64,
+    /// One row a live point, in the plugin's order.
+    pub rows: Vec<PointRow>,
+    /// Points that the tracker follows no longer: their last row was an earlier frame's.
+    pub ended: Vec<u32>,
+}
+
+/// Where features are wanted.
+#[derive(Clone, Copy, Debug)]
+pub struct DetectRequest<'a> {
+    /// The frame to look at.
+    pub frame: FrameView<'a>,
+    /// At most so many.
+    pub max_features: u32,
+    /// Non-zero where features may be, of the frame's size; `None`: everywhere.
+    pub mask: Option<Gray<'a>>,
+    /// Points that are there already.
+    pub points: &'a [Point],
+    /// Threads that the plugin may use.
+    pub max_threads: u32,
+    /// Seed of every random choice.
+    pub seed: u64,
+}
+
+/// A place worth following.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Feature {
+    /// Pixels, right.
+    pub x: f32,
+    /// Pixels, down.
+    pub y: f32,
+    /// Larger is better.
+    pub score: f32,
+}
+
+/// Dense motion: displacements at the nodes of a grid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Field {
+    /// Position of node (0,0), pixels.
+    pub origin: [f32; 2],
+    /// Distance between nodes, pixels.
+    pub step: f32,
+    /// Nodes in x.
+    pub nx: u32,
+    /// Nodes in y.
+    pub ny: u32,
+    /// Displacement to the right, pixels, `(ny, nx)` row-major.
+    pub u: Vec<f32>,
+    /// Displacement down, pixels, `(ny, nx)` row-major.
+    pub v: Vec<f32>,
+}
+
+/// Tracks to group: samples of all tracks one after the other.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Tracks {
+    pub(crate) ids: Vec<u32>,
+    pub(crate) first_frames: Vec<i64>,
+    pub(crate) lens: Vec<u32>,
+    pub(crate) offsets: Vec<u64>,
+    pub(crate) x: Vec<f32>,
+    pub(crate) y: Vec<f32>,
+    pub(crate) status: Vec<u8>,
+    pub(crate) frames: Vec<i64>,
+    pub(crate) times_s: Vec<f64>,
+    /// Width of the frames, pixels.
+    pub width: u32,
+    /// Height of the frames, pixels.
+    pub height: u32,
+    /// Threads that the plugin may use.
+    pub max_threads: u32,
+    /// Seed of every random choice.
+    pub seed: u64,
+}
+
+impl Tracks {
+    /// No tracks yet, over frames of this size; `times_s` are those of consecutive frames from `first_frame` on.
+    #[must_use]
+    pub fn new(width: u32, height: u32, first_frame: i64, times_s: Vec<f64>) -> Self {
+        let frames = (first_frame..).take(times_s.len()).collect();
+        Self { width, height, frames, times_s, max_threads: 1, ..Self::default() }
+    }
+
+    /// Adds a track with one sample a frame: x, y, status. It becomes leaf number `len()` of a clustering.
+    pub fn push(&mut self, id: u32, first_frame: i64, samples: impl IntoIterator<Item = (f32, f32, Status)>) {
+        let start = self.x.len();
+        for (x, y, status) in samples {
+            self.x.push(x);
+            self.y.push(y);
+            self.status.push(status as u8);
+        }
+        self.ids.push(id);
+        self.first_frames.push(first_frame);
+        self.offsets.push(start as u64);
+        self.lens.push(u32::try_from(self.x.len() - start).unwrap_or(u32::MAX));
+    }
+
+    /// Number of tracks.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.ids.len()
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.ids.is_empty()
+    }
+
+    /// Ids in the order of the leaves.
+    #[must_use]
+    pub fn ids(&self) -> &[u32] {
+        &self.ids
+    }
+
+    /// Why a plugin must not be given these; `None` when it may.
+    pub(crate) fn fault(&self) -> Option<String> {
+        let (first, n) = (self.frames.first().copied().unwrap_or(0), self.frames.len() as i64);
+        for (k, (&start, &len)) in self.first_frames.iter().zip(&self.lens).enumerate() {
+            if start < first || start + i64::from(len) > first + n {
+                return Some(format!("track {} has samples in frames without a time", self.ids[k]));
+            }
+        }
+        let finite =
+            self.x.iter().chain(&self.y).all(|v| v.is_finite()) && self.times_s.iter().all(|t| t.is_finite());
+        (!finite).then(|| "a position or time is not finite".into())
+    }
+}
+
+/// Two clusters become one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Merge {
+    /// First cluster: leaf k is k, the result of merge r is n + r.
+    pub a: u32,
+    /// Second cluster.
+    pub b: u32,
+    /// Dissimilarity at which they merge.
+    pub height: f64,
+    /// Leaves below.
+    pub size: u32,
+}
+
+/// What was found of a frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameNote {
+    /// Frame number in the clip.
+    pub frame: i64,
+    /// Whether it was left out.
+    pub outlier: bool,
+    /// How far it lies from the other frames, at least 0.
+    pub distance: f64,
+}
+
+/// A hierarchy over n tracks, checked: a tree of n-1 merges, each cluster used once, sizes right, heights finite.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Clustering {
+    /// The merges, in SciPy's linkage convention.
+    pub merges: Vec<Merge>,
+    /// What is known of frames; empty if the plugin does not judge them.
+    pub frames: Vec<FrameNote>,
+}

@@ -1,0 +1,132 @@
+/* bad.c - a tracker with one fault, chosen by -DFAULT=NAME. Without a fault it leaves every point where it is. */
+#include "honami.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum fault {
+  NONE, NULL_RECORD, SMALL_RECORD, NULL_CREATE, OTHER_MANIFEST, NO_INSTANCE, NULL_FUNCTION, SMALL_TABLE,
+  NULL_TABLE, OTHER_LATENCY, NAN_POSITION, UNKNOWN_ID, TWICE, NO_ROWS, FEWER, NEGATIVE, SILENT, OVERCOMMIT, COMMIT_ONLY,
+  COMMIT_TWICE, PAST_THE_END, BAD_STATUS, BAD_QUALITY, WRONG_TYPE, MISSING_COLUMN, OTHER_SCHEMA, TOO_MUCH, PRINTS,
+  UNASKED_CANCEL, AGAIN, SEED_RESULT, REFUSES_PARAMS
+};
+
+#ifndef KNOWN
+#define KNOWN "\"honami\":1,\"abi\":[1,0],"
+#endif
+#define MANIFEST                                                                                            \
+  "{" KNOWN "\"library\":{\"id\":\"org.honami.bad\",\"version\":\"0\"},\"plugins\":[{\"id\":\"org.honami.bad\"," \
+  "\"kind\":\"tracker\",\"name\":\"Bad\",\"interfaces\":[\"honami.tracker/1\"]}]}"
+#ifndef NO_NOTE
+HONAMI_MANIFEST(MANIFEST);
+#endif
+
+static uint32_t ids[64];
+static float xs[64], ys[64];
+static uint64_t n_points;
+
+static void destroy(honami_instance *instance) { free(instance); }
+
+static honami_code set_params(honami_instance *instance, const honami_call *call, const honami_value *values, uint32_t n) {
+  (void)instance, (void)values, (void)n;
+  return FAULT == REFUSES_PARAMS ? call->fail(call, HONAMI_E_ARGUMENT, "not these") : HONAMI_OK;
+}
+
+static honami_code begin(honami_instance *instance, const honami_call *call, const honami_stream_info *stream) {
+  (void)instance, (void)call, (void)stream;
+  n_points = 0;
+  return HONAMI_OK;
+}
+
+static honami_code seed(honami_instance *instance, const honami_call *call, const honami_table *points) {
+  (void)instance;
+  n_points = points->rows < 64 ? points->rows : 64;
+  for (uint32_t c = 0; c < points->ncols; c++) {
+    const honami_column *col = &points->cols[c];
+    if (strcmp(col->name, "id") == 0) memcpy(ids, col->data, n_points * 4);
+    if (strcmp(col->name, "x") == 0) memcpy(xs, col->data, n_points * 4);
+    if (strcmp(col->name, "y") == 0) memcpy(ys, col->data, n_points * 4);
+  }
+  if (FAULT == SEED_RESULT) {
+    honami_column col = {"id", HONAMI_U32, 1, NULL, 0};
+    call->reserve(call, HONAMI_POINTS, 1, 1, &col);
+  }
+  return HONAMI_OK;
+}
+
+static honami_code retire(honami_instance *instance, const honami_call *call, const uint32_t *gone, uint64_t n) {
+  (void)instance, (void)call, (void)gone, (void)n;
+  return HONAMI_OK;
+}
+
+static honami_code push(honami_instance *instance, const honami_call *call, const honami_frame *frame) {
+  honami_column c[5] = {{"id", HONAMI_U32, 1, NULL, 0}, {"x", HONAMI_F32, 1, NULL, 0}, {"y", HONAMI_F32, 1, NULL, 0},
+                        {"status", FAULT == WRONG_TYPE ? HONAMI_F64 : HONAMI_U8, 1, NULL, 0},
+                        {FAULT == BAD_QUALITY ? "fb" : "whatever", HONAMI_F32, 1, NULL, 0}};
+  uint64_t rows = FAULT == TOO_MUCH ? UINT64_MAX : n_points;
+  honami_code code;
+  (void)instance, (void)frame;
+  if (FAULT == NO_ROWS) return HONAMI_OK;
+  if (FAULT == NEGATIVE) return call->fail(call, HONAMI_E_DATA, "the frame is too dark");
+  if (FAULT == SILENT) return -77;
+  if (FAULT == UNASKED_CANCEL) return HONAMI_E_CANCELLED;
+  if (FAULT == AGAIN) return HONAMI_AGAIN;
+  if (FAULT == COMMIT_ONLY) return call->commit(call, HONAMI_POINTS, n_points);
+  if (FAULT == PRINTS) printf("printed by a plugin\n"), fflush(stdout);
+  code = call->reserve(call, FAULT == OTHER_SCHEMA ? HONAMI_DENDROGRAM : HONAMI_POINTS, rows,
+                       FAULT == MISSING_COLUMN ? 3 : 5, c);
+  if (code < 0) return call->fail(call, code, "the host gives nothing");
+  for (uint64_t i = 0; i < n_points; i++) {
+    ((uint32_t *)c[0].data)[i] = ids[i];
+    ((float *)c[1].data)[i] = xs[i];
+    ((float *)c[2].data)[i] = ys[i];
+    ((uint8_t *)c[3].data)[i] = HONAMI_TRACKED;
+  }
+  if (FAULT == NAN_POSITION) ((float *)c[2].data)[0] = NAN;
+  if (FAULT == UNKNOWN_ID) ((uint32_t *)c[0].data)[0] = 999;
+  if (FAULT == TWICE) ((uint32_t *)c[0].data)[1] = ids[0];
+  if (FAULT == BAD_STATUS) ((uint8_t *)c[3].data)[0] = 6;
+  if (FAULT == BAD_QUALITY) ((float *)c[4].data)[0] = -3;
+  if (FAULT == PAST_THE_END) ((float *)c[1].data)[16] = 0;
+  if (FAULT == COMMIT_TWICE) call->commit(call, HONAMI_POINTS, n_points);
+  return call->commit(call, HONAMI_POINTS, FAULT == OVERCOMMIT ? n_points + 1 : FAULT == FEWER ? 1 : n_points);
+}
+
+static honami_code end(honami_instance *instance, const honami_call *call) {
+  (void)instance, (void)call;
+  return HONAMI_OK;
+}
+
+static const honami_tracker_v1 tracker = {FAULT == SMALL_TABLE ? 16 : HONAMI_SIZE_TO(honami_tracker_v1, end),
+                                          FAULT == OTHER_LATENCY ? 3 : 0, begin, seed, retire,
+                                          FAULT == NULL_FUNCTION ? NULL : push, end};
+
+static const void *get_interface(honami_instance *instance, const char *id) {
+  (void)instance;
+  return FAULT != NULL_TABLE && strcmp(id, HONAMI_TRACKER) == 0 ? &tracker : NULL;
+}
+
+static honami_instance *create(const honami_host_info *host, const honami_call *call, const char *plugin_id) {
+  honami_instance *self = (honami_instance *)calloc(1, sizeof(honami_instance));
+  (void)host, (void)call, (void)plugin_id;
+  if (FAULT == NO_INSTANCE || !self) return NULL;
+  self->struct_size = HONAMI_SIZE_TO(honami_instance, get_interface);
+  self->destroy = destroy;
+  self->set_params = set_params;
+  self->get_interface = get_interface;
+  return self;
+}
+
+#ifndef SYMBOL
+#define SYMBOL honami_library_v1
+#endif
+HONAMI_EXPORT const honami_library *SYMBOL(const honami_host_info *host);
+const honami_library *SYMBOL(const honami_host_info *host) {
+  static const honami_library library = {FAULT == SMALL_RECORD ? 8 : HONAMI_SIZE_TO(honami_library, create), 0,
+                                         FAULT == OTHER_MANIFEST ? "{}" : MANIFEST,
+                                         FAULT == OTHER_MANIFEST ? 2 : sizeof(MANIFEST) - 1,
+                                         FAULT == NULL_CREATE ? NULL : create};
+  (void)host;
+  return FAULT == NULL_RECORD ? NULL : &library;
+}

@@ -1,0 +1,10 @@
+//! The host against real libraries: the zoo (Rust), the bad ones (C), the fossil of ABI 1.0.
+#![expect(clippy::unwrap_used, reason = "helpers of tests fail the test")]
+#![expect(clippy::print_stderr, reason = "a test that is skipped says so")]
+
+mod bad;
+mod fossil;
+mod registry;
+mod threads;
+mod tools;
+mod zoo;

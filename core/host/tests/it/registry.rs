@@ -1,0 +1,116 @@
+//! The search path: who wins, who is trusted, what is said of the rest.
+
+use crate::tools::{named, scratch, start, zoo};
+use honami_host::{HostError, Kind, Registry, SearchPath, Trust};
+use std::fs::{self, Permissions};
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+
+/// A folder with the zoo in it.
+fn folder(name: &str, file: &str) -> PathBuf {
+    let folder = scratch().join(name);
+    fs::create_dir_all(&folder).unwrap();
+    fs::set_permissions(&folder, Permissions::from_mode(0o755)).unwrap();
+    fs::copy(zoo(), folder.join(file)).unwrap();
+    fs::set_permissions(folder.join(file), Permissions::from_mode(0o644)).unwrap();
+    folder
+}
+
+fn trust(registry: &Registry) -> Vec<(&Path, &Trust)> {
+    let drifts = registry.plugins().iter().chain(registry.shadowed()).filter(|p| p.short_name == "drift");
+    drifts.map(|plugin| (plugin.library.as_path(), &plugin.trust)).collect()
+}
+
+#[test]
+fn the_first_of_the_search_path_wins() {
+    let (given, beside) = (folder("given", "a.so"), folder("beside", "b.so"));
+    let third_party = folder("third-party", "c.so");
+    fs::write(beside.join("honami"), "").unwrap();
+    fs::write(beside.join("notes.txt"), "no plugin").unwrap();
+    let all = SearchPath {
+        named: vec![given.clone()],
+        executable: Some(beside.join("honami")),
+        installed: vec![third_party.clone(), scratch().join("nowhere")],
+    };
+    let registry = Registry::scan_path(&all);
+    assert!(registry.problems().is_empty(), "{:?}", registry.problems());
+    let found = trust(&registry);
+    assert_eq!(found[0], (given.join("a.so").as_path(), &Trust::Named));
+    assert_eq!(found[1], (beside.join("b.so").as_path(), &Trust::Shipped));
+    assert_eq!(found[2].0, third_party.join("c.so"));
+    let untrusted =
+        Registry::scan_path(&SearchPath { installed: vec![third_party], ..SearchPath::default() });
+    let refused =
+        start(untrusted.find(Kind::Tracker, "drift").unwrap(), &[]).expect_err("not trusted").to_string();
+    assert!(
+        refused.contains("c.so is not trusted: it is a third party's; name it with --plugin"),
+        "{refused}"
+    );
+}
+
+#[test]
+fn beside_the_executable_nobody_else_may_write() {
+    let beside = folder("writable", "b.so");
+    let executable = beside.join("honami");
+    fs::write(&executable, "").unwrap();
+    let path = SearchPath { executable: Some(executable), ..SearchPath::default() };
+    fs::set_permissions(beside.join("b.so"), Permissions::from_mode(0o646)).unwrap();
+    let registry = Registry::scan_path(&path);
+    let Trust::No(why) = trust(&registry)[0].1 else { panic!("{registry:?}") };
+    assert!(why.contains("others may write it: chmod go-w") && why.ends_with("b.so"), "{why}");
+    fs::set_permissions(beside.join("b.so"), Permissions::from_mode(0o644)).unwrap();
+    fs::set_permissions(&beside, Permissions::from_mode(0o777)).unwrap();
+    assert!(matches!(trust(&Registry::scan_path(&path))[0].1, Trust::No(_)));
+}
+
+#[test]
+fn plugins_are_found_by_short_name_or_id_and_kind() {
+    let registry = named(&[zoo()]);
+    let id =
+        |name| registry.find(Kind::Tracker, name).map(|plugin| plugin.id.clone()).map_err(|e| e.to_string());
+    assert_eq!(id("drift").unwrap(), "org.honami.zoo.drift");
+    assert_eq!(id("org.honami.zoo.drift").unwrap(), "org.honami.zoo.drift");
+    assert_eq!(id("chain").unwrap_err(), "there is no tracker \"chain\"; there are: drift, delayed, panics");
+    let wrong_kind = registry.find(Kind::Clusterer, "drift").unwrap_err();
+    assert!(matches!(wrong_kind, HostError::NotFound { .. }));
+}
+
+#[test]
+fn parameters_are_refused_before_the_plugin_sees_them() {
+    let registry = named(&[zoo()]);
+    let info = registry.find(Kind::Tracker, "drift").unwrap();
+    let refused = [
+        ("speed=11", "speed: wanted a number, -10 to 10 (px/frame), got \"11\""),
+        ("speed=nan", "speed: wanted a number, -10 to 10 (px/frame), got \"NaN\""),
+        ("life=2.5", "life: wanted a whole number, 0 to 100 (frame), got \"2.5\""),
+        ("way=up", "way: wanted one of right, down, got \"up\""),
+        ("corner=1", "corner: wanted x,y, got \"1\""),
+        ("dice=-1", "dice: wanted a whole number from 0, got \"-1\""),
+        ("sped=1", "there is no parameter \"sped\"; there are: speed, way, life, note, corner, dice"),
+        ("speed", "\"speed\" is not of the form name=value"),
+    ];
+    for (setting, wanted) in refused {
+        assert_eq!(start(info, &[setting]).expect_err(setting).to_string(), wanted);
+    }
+}
+
+/// A rebuilt plugin is a new one, also under the old name, while the old one is in use.
+#[test]
+fn a_file_that_changes_is_loaded_anew() {
+    let folder = folder("changing", "zoo.so");
+    let registry = named(&[&folder.join("zoo.so")]);
+    let info = registry.find(Kind::Tracker, "drift").unwrap();
+    let first = start(info, &[]).unwrap();
+    let hash = info.sha256().unwrap();
+    // Trailing bytes belong to no section: another file, the same code. Written in place, as a careless copy would.
+    let mut bytes = fs::read(zoo()).unwrap();
+    bytes.extend(*b"another build");
+    fs::write(folder.join("zoo.so"), &bytes).unwrap();
+    let second = start(info, &[]).unwrap();
+    assert_ne!(info.sha256().unwrap(), hash);
+    drop((first, second));
+    let kept = |hash: &str| fs::metadata(scratch().join("store").join(format!("{hash}.so"))).unwrap();
+    for hash in [hash, info.sha256().unwrap()] {
+        assert_eq!(kept(&hash).permissions().mode() & 0o777, 0o400);
+    }
+}

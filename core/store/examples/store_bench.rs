@@ -1,0 +1,104 @@
+//! Prints how long the store takes on large projects. `cargo run --release -p honami-store --example store_bench`
+//!
+//! The numbers are wall clock on this machine's disk; nothing is asserted.
+#![expect(clippy::print_stdout, reason = "a benchmark prints")]
+
+use std::collections::BTreeMap;
+use std::error::Error;
+use std::path::Path;
+use std::time::Instant;
+
+use honami_model::clip::{Clip, FrameTimes};
+use honami_model::edit::Transaction;
+use honami_model::history::EntryId;
+use honami_model::provenance::Provenance;
+use honami_model::track::{Quality, Sample, Source, Status, TrackId};
+use honami_store::{Access, ClipRecord, Project, RunHead};
+
+type Outcome<T> = Result<T, Box<dyn Error>>;
+
+fn main() -> Outcome<()> {
+    let folder = tempfile::tempdir()?;
+    for (n_tracks, n_frames, n_edits) in [(135, 378, 1000), (10_000, 400, 1000), (2_000, 500, 100_000)] {
+        println!("\n{n_tracks} tracks x {n_frames} frames, {n_edits} edits");
+        let path = folder.path().join(format!("{n_tracks}.honami"));
+        write(&path, n_tracks, n_frames, n_edits)?;
+        read(&path)?;
+    }
+    Ok(())
+}
+
+fn write(path: &Path, n_tracks: u32, n_frames: u32, n_edits: u32) -> Outcome<()> {
+    let clip = Clip { width: 1280, height: 720, times: FrameTimes::constant(n_frames, 25.0)? };
+    let record = ClipRecord { path: "clip.mp4".into(), sha256: String::new(), fps_override: None, clip };
+    let mut project = timed("create", || Project::create(path, &record))?;
+    let numbers = project.reserve_tracks(n_tracks)?;
+    let provenance = Provenance {
+        what: "track".to_owned(),
+        plugin_id: "org.honami.klt".to_owned(),
+        plugin_version: "0.1.0".to_owned(),
+        plugin_sha256: String::new(),
+        abi: (1, 0),
+        params: BTreeMap::new(),
+        seed: 0,
+        input_revision: 0,
+        sandbox: "in process".to_owned(),
+        simd: "none".to_owned(),
+        date: honami_store::now(),
+        honami_version: "0.1.0".to_owned(),
+    };
+    let tracks = numbers.clone().map(TrackId).collect();
+    let mut writer = project.begin_run(&RunHead { provenance, tracks, frames: 0..n_frames })?;
+    let frames: Vec<Vec<_>> = (0..n_frames)
+        .map(|frame| numbers.clone().map(|track| (TrackId(track), sample(track, frame))).collect())
+        .collect();
+    timed("run: append all chunks", || {
+        (0..n_frames)
+            .step_by(64)
+            .zip(frames.chunks(64))
+            .try_for_each(|(first, chunk)| writer.append(first, chunk))
+    })?;
+    let run = timed("run: finish (compact)", || writer.finish())?;
+    let found = project.run(run)?.tracks;
+    timed("show the run", || project.commit(Transaction::show_run(run, found)))?;
+    timed(&format!("commit {n_edits} edits"), || {
+        (0..n_edits).try_for_each(|edit| {
+            let track = TrackId(edit % n_tracks);
+            let key = Transaction::set_key(track, edit * 7 % n_frames, [edit as f32 * 0.37, 2.0], None);
+            project.commit(key).map(drop)
+        })
+    })?;
+    let mut all = timed("shown tracks, first time", || project.shown_all())?;
+    all.truncate(0);
+    let edit = Transaction::set_key(TrackId(0), 3, [1.0, 2.0], None);
+    timed("one edit and shown tracks again", || {
+        project.commit(edit)?;
+        project.shown_all()
+    })?;
+    timed("undo", || project.undo())?;
+    println!("{:>34} {:9.1} MB", "file", std::fs::metadata(path)?.len() as f64 / 1e6);
+    Ok(())
+}
+
+fn read(path: &Path) -> Outcome<()> {
+    let mut project = timed("open", || Project::open(path, Access::Write))?;
+    timed("open for reading", || Project::open(path, Access::Read))?;
+    timed("one shown track", || project.shown(TrackId(7)))?;
+    timed("shown tracks, first time", || project.shown_all())?;
+    timed("shown tracks again", || project.shown_all())?;
+    timed("undo everything", || project.jump(EntryId::ROOT))?;
+    Ok(())
+}
+
+fn sample(track: u32, frame: u32) -> Sample {
+    let quality = Quality { fb_px: Some(0.25), ncc: Some(0.9) };
+    let (x, y) = ((track * 7 % 1280) as f32 + (frame as f32 * 0.1).sin(), (track * 3 % 720) as f32);
+    Sample { x, y, status: Status::Tracked, source: Source::Tracked, quality }
+}
+
+fn timed<T, E>(what: &str, work: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
+    let start = Instant::now();
+    let done = work();
+    println!("{what:>34} {:9.2} ms", start.elapsed().as_secs_f64() * 1e3);
+    done
+}

@@ -1,0 +1,164 @@
+//! A plant, its wind and its camera: the frames, and the truth about them.
+
+use rand::SeedableRng;
+use rand_pcg::Pcg64Mcg;
+use rayon::prelude::*;
+
+use crate::cover::Cover;
+use crate::plant::{Plant, frames_of};
+use crate::pose::Pose;
+use crate::render::{Camera, Picture};
+use crate::settings::{Settings, SynthError};
+use crate::truth::{At, BranchTruth, LeafTruth, Truth};
+use crate::wind::Wind;
+
+/// Steps that one task measures.
+const STRETCH: u32 = 16;
+
+/// A clip that is rendered frame by frame, in any order and from any thread, with the same bits.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    pub(crate) settings: Settings,
+    pub(crate) plant: Plant,
+    wind: Wind,
+    /// Amplitude of all sways.
+    scale: f64,
+    pub(crate) camera: Camera,
+    truth: Truth,
+    mean_step_px: f64,
+}
+
+impl Scene {
+    /// Grows the plant, sets the wind to the level, and finds where every leaf is in every frame.
+    ///
+    /// # Errors
+    /// A setting out of its range; [`SynthError::Level`] where the plant cannot move that far.
+    pub fn new(settings: &Settings) -> Result<Self, SynthError> {
+        settings.check()?;
+        let mut rng = Pcg64Mcg::seed_from_u64(settings.seed);
+        let plant = Plant::grow(settings, &mut rng);
+        let wind = Wind::new(&mut rng, f64::from(settings.width));
+        let camera = Camera::new(settings, &mut rng);
+        let (scale, mean_step_px) = fit_scale(settings, &plant, &wind)?;
+        let truth = observe(settings, &plant, &wind, scale);
+        Ok(Self { settings: settings.clone(), plant, wind, scale, camera, truth, mean_step_px })
+    }
+
+    /// The settings it was grown from.
+    #[must_use]
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Frames in the clip.
+    #[must_use]
+    pub fn n_frames(&self) -> u32 {
+        self.settings.n_frames
+    }
+
+    /// One frame.
+    ///
+    /// # Panics
+    /// When there is no such frame.
+    #[must_use]
+    #[track_caller]
+    pub fn render(&self, frame: u32) -> Picture {
+        assert!(frame < self.n_frames(), "frame {frame} of {}", self.n_frames());
+        self.camera.picture(&self.plant, &self.pose(frame), frame, time_secs(&self.settings, frame))
+    }
+
+    /// Where every leaf is in every frame.
+    #[must_use]
+    pub fn truth(&self) -> &Truth {
+        &self.truth
+    }
+
+    /// Mean displacement of a leaf centre from one frame to the next, pixels, over all leaves and frames.
+    #[must_use]
+    pub fn mean_step_px(&self) -> f64 {
+        self.mean_step_px
+    }
+
+    pub(crate) fn pose(&self, frame: u32) -> Pose {
+        Pose::at(&self.plant, &self.wind, self.scale, time_secs(&self.settings, frame))
+    }
+}
+
+fn time_secs(settings: &Settings, frame: u32) -> f64 {
+    f64::from(frame) / settings.fps
+}
+
+/// The scale of the sways that meets the level, and the step that it gives.
+///
+/// Displacement is all but proportional to the scale, so a few proportional corrections meet the level.
+fn fit_scale(settings: &Settings, plant: &Plant, wind: &Wind) -> Result<(f64, f64), SynthError> {
+    let wanted_px = settings.level.step_px(settings.height, settings.fps);
+    let mut scale = 0.02;
+    let mut reached_px = 0.0;
+    for _ in 0..12 {
+        reached_px = mean_step_px(settings, plant, wind, scale);
+        if (reached_px / wanted_px - 1.0).abs() < 1e-3 {
+            return Ok((scale, reached_px));
+        }
+        scale *= wanted_px / reached_px;
+    }
+    Err(SynthError::Level { wanted_px, reached_px })
+}
+
+fn mean_step_px(settings: &Settings, plant: &Plant, wind: &Wind, scale: f64) -> f64 {
+    let pose = |frame| Pose::at(plant, wind, scale, time_secs(settings, frame));
+    let step_px = |from: &Pose, to: &Pose| -> f64 {
+        from.leaves.iter().zip(&to.leaves).map(|(a, b)| (b.frame.origin - a.frame.origin).norm()).sum()
+    };
+    // Sums of fixed stretches, added in order: the same bits for any number of threads.
+    let n_steps = settings.n_frames - 1;
+    let stretches: Vec<f64> = (0..n_steps.div_ceil(STRETCH))
+        .into_par_iter()
+        .map(|stretch| {
+            let first = stretch * STRETCH;
+            let mut here = pose(first);
+            let mut total_px = 0.0;
+            for frame in first..n_steps.min(first + STRETCH) {
+                let next = pose(frame + 1);
+                total_px += step_px(&here, &next);
+                here = next;
+            }
+            total_px
+        })
+        .collect();
+    stretches.iter().sum::<f64>() / (f64::from(n_steps) * plant.leaves.len() as f64)
+}
+
+fn observe(settings: &Settings, plant: &Plant, wind: &Wind, scale: f64) -> Truth {
+    let seen: Vec<Vec<At>> = (0..settings.n_frames)
+        .into_par_iter()
+        .map(|frame| {
+            let pose = Pose::at(plant, wind, scale, time_secs(settings, frame));
+            Cover::new(settings, plant, &pose).observe()
+        })
+        .collect();
+    let leaves = (0_u32..)
+        .zip(&plant.leaves)
+        .map(|(id, leaf)| LeafTruth {
+            id,
+            branch: leaf.branch as u32,
+            path: seen.iter().map(|frame| frame[id as usize]).collect(),
+        })
+        .collect();
+    let at_rest = frames_of(&plant.branches, |_| 0.0);
+    let branches = (0_u32..)
+        .zip(plant.branches.iter().zip(&at_rest))
+        .map(|(id, (branch, frame))| {
+            let tip = frame.out(branch.along(1.0));
+            BranchTruth {
+                id,
+                parent: branch.parent.map(|p| p as u32),
+                order: branch.order,
+                mode_hz: branch.modes.iter().map(|mode| mode.hz).collect(),
+                base: [frame.origin.x, frame.origin.y],
+                tip: [tip.x, tip.y],
+            }
+        })
+        .collect();
+    Truth { leaves, branches }
+}

@@ -1,0 +1,147 @@
+//! Clustering: a clusterer plugin finds what moves together, and the hierarchy is kept.
+
+use honami_host::{CallContext, Clusterer, Flow, Kind, Level, Status, Tracks, Values};
+use honami_model::document::ClusteringId;
+use honami_model::edit::Transaction;
+use honami_model::hierarchy::{Dendrogram, Merge};
+use honami_model::provenance::Provenance;
+use honami_model::track::{Span, TrackId};
+use honami_store::Clustering;
+
+use crate::error::WorkbenchError;
+use crate::progress::Progress;
+use crate::session::Session;
+use crate::stamp::{SEED, stamp};
+use crate::track::threads;
+
+/// More groups than a person looks at when none were asked for.
+const MAX_GUESS: u32 = 12;
+
+/// What to cluster with.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ClusterRequest {
+    /// The clusterer: short name or full id.
+    pub plugin: String,
+    /// Its parameters; the rest take their defaults.
+    pub params: Values,
+    /// Groups to cut the hierarchy into; `None`: where it is cut most clearly.
+    pub groups: Option<u32>,
+}
+
+/// A clustering that is ready to go.
+pub struct ClusterJob {
+    clusterer: Clusterer,
+    tracks: Tracks,
+    provenance: Provenance,
+    groups: Option<u32>,
+    plugin: String,
+}
+
+/// A clustering that has ended; give it to [`finish`].
+pub struct ClusterDone {
+    clustering: Clustering,
+    plugin: String,
+    seconds: f64,
+}
+
+/// What was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ClusterOutcome {
+    /// The clustering.
+    pub clustering: ClusteringId,
+    /// Tracks that were grouped.
+    pub n_tracks: usize,
+    /// Tracks in each group, numbered from 0 in the order of their first tracks.
+    pub group_sizes: Vec<usize>,
+    /// Frames that were left out as outliers.
+    pub outlier_frames: Vec<u32>,
+    /// Time it took.
+    pub seconds: f64,
+    /// All of that in one line.
+    pub line: String,
+}
+
+/// Loads the clusterer and gathers the shown tracks.
+///
+/// # Errors
+/// [`WorkbenchError::NoTracks`], and when the plugin or its parameters are not what they must be.
+pub fn prepare(session: &Session, request: &ClusterRequest) -> Result<ClusterJob, WorkbenchError> {
+    let plugin = session.registry.find(Kind::Clusterer, &request.plugin)?;
+    let shown = session.project.shown_all()?;
+    // A track that is never seen twice has no movement.
+    let moving = |span: &Span| span.samples.iter().filter(|s| s.status.is_seen()).nth(1).is_some();
+    let clip = session.media.clip();
+    let mut tracks = Tracks::new(clip.width, clip.height, 0, clip.times.as_slice().to_vec());
+    tracks.max_threads = threads();
+    tracks.seed = SEED;
+    for (track, span) in shown.iter().filter(|(_, span)| moving(span)) {
+        let samples = span.samples.iter().map(|s| (s.x, s.y, Status::from_u8(s.status as u8).unwrap_or(Status::Lost)));
+        tracks.push(track.0, i64::from(span.first_frame), samples);
+    }
+    if tracks.is_empty() {
+        return Err(WorkbenchError::NoTracks);
+    }
+    let (clusterer, origin) = honami_host::Host::new().clusterer(plugin, &request.params, &CallContext::silent())?;
+    let provenance = stamp(&session.project, "cluster", plugin, &request.params, origin);
+    let plugin = plugin.short_name.clone();
+    Ok(ClusterJob { clusterer, tracks, provenance, groups: request.groups, plugin })
+}
+
+impl ClusterJob {
+    /// Clusters; stopped, it keeps nothing.
+    ///
+    /// # Errors
+    /// What the plugin says, [`WorkbenchError::Stopped`].
+    pub fn run(mut self, progress: &dyn Progress) -> Result<ClusterDone, WorkbenchError> {
+        let begun = std::time::Instant::now();
+        let watch = |share: f64, _: &str| {
+            let done = (share.clamp(0.0, 1.0) * 1000.0) as u64;
+            progress.report(done, 1000, "comparing movements")
+        };
+        let call = CallContext { progress: &watch, log: &|_: Level, _: &str| {} };
+        if progress.report(0, 1000, "comparing movements") == Flow::Stop {
+            return Err(WorkbenchError::Stopped);
+        }
+        let found = self.clusterer.run(&self.tracks, &call)?;
+        let merges = found.merges.iter().map(|m| Merge { a: m.a, b: m.b, height: m.height, size: m.size });
+        let n_leaves = u32::try_from(self.tracks.len()).unwrap_or(u32::MAX);
+        let dendrogram = Dendrogram::new(n_leaves, merges.collect())
+            .map_err(|error| WorkbenchError::Hierarchy { plugin: self.plugin.clone(), error })?;
+        let outliers = found.frames.iter().filter(|note| note.outlier);
+        let clustering = Clustering {
+            provenance: self.provenance,
+            tracks: self.tracks.ids().iter().map(|&id| TrackId(id)).collect(),
+            cut: self.groups.unwrap_or_else(|| dendrogram.clearest_cut(MAX_GUESS)),
+            dendrogram,
+            outlier_frames: outliers.filter_map(|note| u32::try_from(note.frame).ok()).collect(),
+            notes: Vec::new(),
+        };
+        Ok(ClusterDone { clustering, plugin: self.plugin, seconds: begun.elapsed().as_secs_f64() })
+    }
+}
+
+/// Keeps the clustering and shows it: one edit, which undo takes back.
+///
+/// # Errors
+/// What the project met.
+pub fn finish(session: &mut Session, done: ClusterDone) -> Result<ClusterOutcome, WorkbenchError> {
+    let ClusterDone { clustering, plugin, seconds } = done;
+    let id = session.project.save_clustering(&clustering)?;
+    session.project.commit(Transaction::show_clustering(id, clustering.cut))?;
+    let groups = clustering.dendrogram.cut(clustering.cut);
+    let mut group_sizes = vec![0; groups.iter().max().map_or(0, |&last| last as usize + 1)];
+    for group in groups {
+        group_sizes[group as usize] += 1;
+    }
+    let (n_tracks, n_groups) = (clustering.tracks.len(), group_sizes.len());
+    let n_outliers = clustering.outlier_frames.len();
+    let line = format!("{plugin}: {n_tracks} tracks in {n_groups} groups, {n_outliers} outlier frames, {seconds:.1} s");
+    Ok(ClusterOutcome {
+        clustering: id,
+        n_tracks,
+        group_sizes,
+        outlier_frames: clustering.outlier_frames,
+        seconds,
+        line,
+    })
+}

@@ -1,0 +1,160 @@
+//! Trackers side by side on the same clip and the same points.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use honami_exchange::{PointRow, TruthRow};
+use honami_host::{CallContext, Kind, Registry, Values};
+use honami_media::Media;
+use honami_model::track::{Quality, Sample, Source, Span, Status, TrackId};
+use honami_motion::accuracy::{TruePath, accuracy};
+
+pub use honami_motion::accuracy::Accuracy;
+
+use crate::drive::{self, Driven, Plan, Rows, Seed};
+use crate::error::WorkbenchError;
+use crate::progress::Progress;
+
+/// The name of the row that tracks nothing: every point stays where it was given.
+pub const STATIC: &str = "static";
+
+/// True positions of points, by their number.
+pub type Truth = BTreeMap<TrackId, TruePath>;
+
+/// How one tracker did.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// Short name of the tracker, or [`STATIC`].
+    pub tracker: String,
+    /// Against the truth, where there is one.
+    pub accuracy: Option<Accuracy>,
+    /// Share of the points that are seen in every frame after theirs.
+    pub kept: f64,
+    /// Time in the tracker, milliseconds a frame; decoding is not in it.
+    pub ms_per_frame: Option<f64>,
+}
+
+/// Reads a table of true positions; every frame of a point's path must be there.
+///
+/// # Errors
+/// What the table says of its lines.
+pub fn read_truth(path: &Path) -> Result<Truth, WorkbenchError> {
+    let mut truth = Truth::new();
+    for row in honami_exchange::read::<TruthRow>(path)? {
+        let row = row?;
+        let true_path = truth.entry(TrackId(row.track)).or_default();
+        if true_path.positions.is_empty() {
+            true_path.first_frame = row.frame;
+        }
+        let position = (f64::from(row.x), f64::from(row.y), row.visible);
+        // A table may skip hidden frames: there the point is where it was, unseen.
+        let index = row.frame.saturating_sub(true_path.first_frame) as usize;
+        let (x, y, _) = true_path.positions.last().copied().unwrap_or(position);
+        true_path.positions.resize(index.max(true_path.positions.len()), (x, y, false));
+        true_path.positions.push(position);
+    }
+    Ok(truth)
+}
+
+/// Points to track from a table.
+///
+/// # Errors
+/// What the table says of its lines.
+pub fn read_points(path: &Path) -> Result<Vec<Seed>, WorkbenchError> {
+    let seed = |row: PointRow| Seed { frame: row.frame.unwrap_or(0), track: TrackId(row.id), x: row.x, y: row.y };
+    let rows = honami_exchange::read::<PointRow>(path)?;
+    Ok(rows.map(|row| row.map(seed)).collect::<Result<_, _>>()?)
+}
+
+/// The points of a truth where they can first be seen.
+#[must_use]
+pub fn points_of(truth: &Truth) -> Vec<Seed> {
+    let first_seen = |(&track, path): (&TrackId, &TruePath)| {
+        let (frame, &(x, y, _)) = (path.first_frame..).zip(&path.positions).find(|(_, position)| position.2)?;
+        Some(Seed { frame, track, x: x as f32, y: y as f32 })
+    };
+    truth.iter().filter_map(first_seen).collect()
+}
+
+/// Runs each tracker over the whole clip; the last row is the baseline that tracks nothing.
+///
+/// # Errors
+/// [`WorkbenchError::NoFeatures`], [`WorkbenchError::NoTruth`], [`WorkbenchError::Stopped`], and what the clip
+/// or a tracker met.
+pub fn compare(
+    media: &Media,
+    registry: &Registry,
+    trackers: &[(String, Values)],
+    points: &[Seed],
+    truth: Option<&Truth>,
+    progress: &dyn Progress,
+) -> Result<Vec<Row>, WorkbenchError> {
+    drive::check_seeds(points, media.clip())?;
+    let n_frames = media.clip().n_frames();
+    let mut rows = Vec::new();
+    for (name, params) in trackers {
+        let plugin = registry.find(Kind::Tracker, name)?;
+        let (mut tracker, _) = honami_host::Host::new().tracker(plugin, params, &CallContext::silent())?;
+        let plan = Plan { frames: 0..n_frames, seeds: points.to_vec(), detect: None, max_threads: 1 };
+        let mut spans = BTreeMap::new();
+        let mut collect = |frame: u32, rows: &Rows| {
+            gather(&mut spans, frame, rows);
+            Ok(())
+        };
+        let mut numbers = |_| Ok(0..0);
+        let driven = drive::drive(media, &mut tracker, plan, &mut numbers, &mut collect, progress)?;
+        let Driven { end, tracker_secs } = driven;
+        if end < n_frames {
+            return Err(WorkbenchError::Stopped);
+        }
+        let ms_per_frame = Some(1e3 * tracker_secs / f64::from(n_frames));
+        rows.push(judge(plugin.short_name.clone(), points, &spans, truth, ms_per_frame)?);
+    }
+    let still = points.iter().map(|seed| (seed.track, standing(seed, n_frames))).collect();
+    rows.push(judge(STATIC.to_owned(), points, &still, truth, None)?);
+    Ok(rows)
+}
+
+/// Appends a frame's rows to the spans of their tracks.
+fn gather(spans: &mut BTreeMap<TrackId, Span>, frame: u32, rows: &Rows) {
+    for &(track, sample) in rows {
+        let span = spans.entry(track).or_insert_with(|| Span { first_frame: frame, samples: Vec::new() });
+        span.samples.push(sample);
+    }
+}
+
+/// A point that stays where it was given.
+fn standing(seed: &Seed, n_frames: u32) -> Span {
+    let sample = Sample {
+        x: seed.x,
+        y: seed.y,
+        status: Status::Tracked,
+        source: Source::Tracked,
+        quality: Quality::default(),
+    };
+    Span { first_frame: seed.frame, samples: vec![sample; (n_frames - seed.frame) as usize] }
+}
+
+fn judge(
+    tracker: String,
+    points: &[Seed],
+    spans: &BTreeMap<TrackId, Span>,
+    truth: Option<&Truth>,
+    ms_per_frame: Option<f64>,
+) -> Result<Row, WorkbenchError> {
+    let nothing = Span::default();
+    let span = |track| spans.get(&track).unwrap_or(&nothing);
+    let kept = |seed: &&Seed| {
+        let samples = &span(seed.track).samples;
+        !samples.is_empty() && samples.iter().all(|sample| sample.status.is_seen())
+    };
+    let accuracy = match truth {
+        None => None,
+        Some(truth) => {
+            let pairs = points.iter().filter_map(|s| Some((truth.get(&s.track)?, s.frame, span(s.track))));
+            Some(accuracy(pairs).ok_or(WorkbenchError::NoTruth)?)
+        }
+    };
+    let kept = points.iter().filter(kept).count() as f64 / points.len().max(1) as f64;
+    Ok(Row { tracker, accuracy, kept, ms_per_frame })
+}

@@ -1,0 +1,137 @@
+//! Frequencies of tracks and groups, in Hz from the frame times.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use honami_exchange::TrackRow;
+use honami_model::clip::FrameTimes;
+use honami_model::track::{Span, TrackId};
+use honami_motion::spectrum::{Analyser, Spectrum};
+
+pub use honami_motion::spectrum::Peak;
+
+use crate::error::WorkbenchError;
+use crate::session::Session;
+
+/// How many times the noise around it the power of a peak must be: foliage has broad peaks.
+const OVER_FLOOR: f64 = 3.0;
+
+/// What sways.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Subject {
+    /// All tracks together: the mean of their power.
+    All,
+    /// A group of the shown clustering: the mean power of its tracks.
+    Group(u32),
+    /// One track.
+    Track(TrackId),
+}
+
+/// The sways that stand out of something.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Line {
+    /// What sways.
+    pub subject: Subject,
+    /// Tracks it is the mean of.
+    pub n_tracks: usize,
+    /// Strongest first.
+    pub peaks: Vec<Peak>,
+}
+
+/// Frequencies of a project or of a table of tracks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spectra {
+    /// Two sways closer than this cannot be told apart.
+    pub resolution_hz: f64,
+    /// Nothing above can be seen.
+    pub nyquist_hz: f64,
+    /// Frame rate, where frames are evenly timed.
+    pub fps: Option<f64>,
+    /// All tracks together, then groups, then tracks.
+    pub lines: Vec<Line>,
+    /// Tracks that were seen too briefly to say anything of.
+    pub n_brief: usize,
+}
+
+/// Spectra of a project's shown tracks, its groups and all together.
+///
+/// # Errors
+/// [`WorkbenchError::NoTracks`], and for a clip too short for a spectrum.
+pub fn of_project(session: &Session, n_peaks: usize) -> Result<Spectra, WorkbenchError> {
+    let tracks = session.project.shown_all()?;
+    let group_of = session.project.grouping()?.map(|grouping| grouping.group_of).unwrap_or_default();
+    of(&session.project.clip().clip.times, &tracks, &group_of, n_peaks)
+}
+
+/// Spectra of a table of tracks; its own times count, so every frame of the table needs one.
+///
+/// # Errors
+/// What the table says of its lines, [`WorkbenchError::NoTimes`], and for a table too short for a spectrum.
+pub fn of_table(path: &Path, n_peaks: usize) -> Result<Spectra, WorkbenchError> {
+    let rows = honami_exchange::read::<TrackRow>(path)?.collect::<Result<Vec<_>, _>>()?;
+    let mut times = BTreeMap::new();
+    for row in &rows {
+        let time_s = row.time_s.ok_or_else(|| WorkbenchError::NoTimes { path: path.to_owned() })?;
+        times.insert(row.frame, time_s);
+    }
+    // Frames are counted from the table's first to its last; one that no track has cannot be timed.
+    let (Some(&first), Some(&last)) = (times.keys().next(), times.keys().last()) else {
+        return Err(WorkbenchError::NoTracks);
+    };
+    if times.len() != (last - first + 1) as usize {
+        return Err(WorkbenchError::NoTimes { path: path.to_owned() });
+    }
+    let times = FrameTimes::new(times.into_values().collect())
+        .map_err(|_times| WorkbenchError::NoTimes { path: path.to_owned() })?;
+    let n_frames = times.len();
+    let rows = rows.into_iter().map(|row| Ok(TrackRow { frame: row.frame - first, ..row }));
+    let tracks: Vec<_> =
+        honami_exchange::spans(rows, n_frames)?.into_iter().map(|(id, span)| (id, Arc::new(span))).collect();
+    of(&times, &tracks, &BTreeMap::new(), n_peaks)
+}
+
+fn of(
+    times: &FrameTimes,
+    tracks: &[(TrackId, Arc<Span>)],
+    group_of: &BTreeMap<TrackId, u32>,
+    n_peaks: usize,
+) -> Result<Spectra, WorkbenchError> {
+    let analyser = Analyser::new(times)?;
+    let spectra: Vec<(TrackId, Spectrum)> = tracks
+        .iter()
+        .filter_map(|(id, span)| Some((*id, analyser.track(&positions(span, times.len())).ok()?)))
+        .collect();
+    let mean = |subject, of: Vec<Spectrum>| {
+        let mean = Spectrum::mean(&of)?;
+        Some(Line { subject, n_tracks: mean.n_tracks, peaks: mean.peaks(n_peaks, OVER_FLOOR) })
+    };
+    let all: Vec<Spectrum> = spectra.iter().map(|(_, spectrum)| spectrum.clone()).collect();
+    let first = all.first().cloned().ok_or(WorkbenchError::NoTracks)?;
+    let mut groups = BTreeMap::<u32, Vec<Spectrum>>::new();
+    for (id, spectrum) in &spectra {
+        if let Some(&group) = group_of.get(id) {
+            groups.entry(group).or_default().push(spectrum.clone());
+        }
+    }
+    let mut lines: Vec<Line> = mean(Subject::All, all).into_iter().collect();
+    lines.extend(groups.into_iter().filter_map(|(group, of)| mean(Subject::Group(group), of)));
+    lines.extend(spectra.iter().map(|(id, spectrum)| Line {
+        subject: Subject::Track(*id),
+        n_tracks: 1,
+        peaks: spectrum.peaks(n_peaks, OVER_FLOOR),
+    }));
+    Ok(Spectra {
+        resolution_hz: first.resolution_hz,
+        nyquist_hz: first.nyquist_hz,
+        fps: first.even_fps,
+        n_brief: tracks.len() - spectra.len(),
+        lines,
+    })
+}
+
+/// The position in every frame of the clip where the track is seen.
+fn positions(span: &Span, n_frames: u32) -> Vec<Option<[f32; 2]>> {
+    let seen = |frame| span.get(frame).filter(|s| s.status.is_seen()).map(|s| [s.x, s.y]);
+    (0..n_frames).map(seen).collect()
+}

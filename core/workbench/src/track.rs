@@ -1,0 +1,306 @@
+//! Tracking: a tracker plugin follows features through the clip, and a run is kept.
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Instant;
+
+use honami_host::{CallContext, Kind, PluginInfo, Tracker, Values};
+use honami_media::{Media, OpenOptions};
+use honami_model::clip::Clip;
+use honami_model::document::RunId;
+use honami_model::edit::Transaction;
+use honami_model::track::{TrackId, TrackSet};
+use honami_store::{RunHead, RunWriter};
+
+use crate::drive::{self, Detect, Driven, Plan, Rows, Seed};
+use crate::error::WorkbenchError;
+use crate::progress::Progress;
+use crate::session::Session;
+use crate::stamp::stamp;
+
+/// Frames that are written at a time.
+const CHUNK: usize = 64;
+
+/// Which features are followed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PointSource {
+    /// The project's tracks, each from its first seen sample on and again from each of its key-frames.
+    Existing,
+    /// Those that the tracker finds.
+    Detect,
+    /// These; a number that the project knows is that track.
+    Given(Vec<Seed>),
+}
+
+/// Where features may be found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Area {
+    /// Everywhere.
+    #[default]
+    Whole,
+    /// Where this image is not black.
+    Mask(PathBuf),
+    /// In a rectangle: x, y, width, height in pixels.
+    Rect([f64; 4]),
+}
+
+/// What to track, with what.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrackRequest {
+    /// The tracker: short name or full id.
+    pub plugin: String,
+    /// Its parameters; the rest take their defaults.
+    pub params: Values,
+    /// The features.
+    pub points: PointSource,
+    /// Frames to track.
+    pub frames: Range<u32>,
+    /// Detect again every so many frames.
+    pub every: Option<u32>,
+    /// Where features may be found.
+    pub area: Area,
+}
+
+/// A run that is ready to go.
+pub struct TrackJob {
+    media: Arc<Media>,
+    tracker: Tracker,
+    plan: Plan,
+    writer: RunWriter,
+    plugin: String,
+}
+
+/// A run that has ended; give it to [`finish`].
+pub struct TrackDone {
+    run: RunId,
+    plugin: String,
+    frames: Range<u32>,
+    driven: Driven,
+    seconds: f64,
+    error: Option<WorkbenchError>,
+}
+
+/// What a run found.
+#[derive(Debug)]
+pub struct TrackOutcome {
+    /// The run.
+    pub run: RunId,
+    /// Tracks with samples.
+    pub n_tracks: usize,
+    /// Of these, tracks that are not seen in the last frame that was tracked.
+    pub n_lost: usize,
+    /// Frames tracked.
+    pub frames: Range<u32>,
+    /// Whether it ended before the frames that were asked for.
+    pub stopped: bool,
+    /// Time it took, decoding included.
+    pub seconds: f64,
+    /// Time in the tracker alone.
+    pub tracker_secs: f64,
+    /// Why it ended early, when nobody stopped it; the frames before are kept.
+    pub error: Option<WorkbenchError>,
+    /// All of that in one line.
+    pub line: String,
+}
+
+/// Loads the tracker and begins a run.
+///
+/// # Errors
+/// When the plugin, its parameters, the frames or the points are not what they must be.
+pub fn prepare(session: &mut Session, request: &TrackRequest) -> Result<TrackJob, WorkbenchError> {
+    let clip = session.media.clip();
+    let Range { start, end } = request.frames;
+    if start >= end || end > clip.n_frames() {
+        return Err(WorkbenchError::Frames { start, end, n_frames: clip.n_frames() });
+    }
+    let registry = Arc::clone(&session.registry);
+    let plugin = registry.find(Kind::Tracker, &request.plugin)?;
+    let mask = mask(&request.area, clip)?;
+    let (seeds, detect) = match &request.points {
+        PointSource::Existing => (existing(session, &request.frames)?, None),
+        PointSource::Given(seeds) => (given(session, seeds)?, None),
+        PointSource::Detect if plugin.offers("honami.detect/1") => {
+            (Vec::new(), Some(Detect { every: request.every, mask }))
+        }
+        PointSource::Detect => return Err(WorkbenchError::CannotDetect { plugin: plugin.short_name.clone() }),
+    };
+    if detect.is_none() {
+        drive::check_seeds(&seeds, session.media.clip())?;
+    }
+    begin(session, plugin, request, seeds, detect)
+}
+
+fn begin(
+    session: &mut Session,
+    plugin: &PluginInfo,
+    request: &TrackRequest,
+    seeds: Vec<Seed>,
+    detect: Option<Detect>,
+) -> Result<TrackJob, WorkbenchError> {
+    let (tracker, origin) = honami_host::Host::new().tracker(plugin, &request.params, &CallContext::silent())?;
+    let head = RunHead {
+        provenance: stamp(&session.project, "track", plugin, &request.params, origin),
+        tracks: seeds.iter().map(|seed| seed.track).collect(),
+        frames: request.frames.clone(),
+    };
+    let writer = session.project.begin_run(&head)?;
+    let max_threads = threads();
+    Ok(TrackJob {
+        media: Arc::clone(&session.media),
+        tracker,
+        plan: Plan { frames: request.frames.clone(), seeds, detect, max_threads },
+        writer,
+        plugin: plugin.short_name.clone(),
+    })
+}
+
+impl TrackJob {
+    /// Tracks to the end, or until a person stops it. What was tracked is kept in any case.
+    #[must_use]
+    pub fn run(mut self, progress: &dyn Progress) -> Result<TrackDone, WorkbenchError> {
+        let begun = Instant::now();
+        let frames = self.plan.frames.clone();
+        let mut kept = Kept { writer: self.writer, first_frame: frames.start, frames: Vec::new() };
+        let driven = kept.track(&self.media, &mut self.tracker, self.plan, progress);
+        let run = kept.writer.run();
+        let reached = kept.first_frame;
+        let (driven, error) = match driven {
+            Ok(driven) => (driven, None),
+            Err(error) => (Driven { end: reached, tracker_secs: 0.0 }, Some(error)),
+        };
+        match &error {
+            Some(error) => kept.writer.abandon(&error.to_string())?,
+            None if driven.end < frames.end => kept.writer.abandon("stopped")?,
+            None => kept.writer.finish()?,
+        };
+        let seconds = begun.elapsed().as_secs_f64();
+        Ok(TrackDone { run, plugin: self.plugin, frames, driven, seconds, error })
+    }
+}
+
+/// Frames that are tracked, and the pen that keeps them a chunk at a time.
+struct Kept {
+    writer: RunWriter,
+    first_frame: u32,
+    frames: Vec<Rows>,
+}
+
+impl Kept {
+    fn track(
+        &mut self,
+        media: &Media,
+        tracker: &mut Tracker,
+        plan: Plan,
+        progress: &dyn Progress,
+    ) -> Result<Driven, WorkbenchError> {
+        let kept = std::cell::RefCell::new(self);
+        let mut numbers = |n| Ok(kept.borrow_mut().writer.reserve_tracks(n)?);
+        let mut sink = |_: u32, rows: &Rows| kept.borrow_mut().add(rows);
+        let driven = drive::drive(media, tracker, plan, &mut numbers, &mut sink, progress);
+        kept.borrow_mut().flush()?;
+        driven
+    }
+
+    fn add(&mut self, rows: &Rows) -> Result<(), WorkbenchError> {
+        self.frames.push(rows.clone());
+        if self.frames.len() == CHUNK { self.flush() } else { Ok(()) }
+    }
+
+    fn flush(&mut self) -> Result<(), WorkbenchError> {
+        self.writer.append(self.first_frame, &self.frames)?;
+        self.first_frame += u32::try_from(self.frames.len()).unwrap_or(u32::MAX);
+        self.frames.clear();
+        Ok(())
+    }
+}
+
+/// Shows what a run found: one edit, which undo takes back.
+///
+/// # Errors
+/// What the project met.
+pub fn finish(session: &mut Session, done: TrackDone) -> Result<TrackOutcome, WorkbenchError> {
+    let TrackDone { run, plugin, frames, driven, seconds, error } = done;
+    let found = session.project.run(run)?.tracks;
+    let n_tracks = found.len();
+    let reached = frames.start..driven.end;
+    let last = reached.end.saturating_sub(1);
+    let spans = session.project.run_tracks(run)?;
+    let is_seen = |track: TrackId| {
+        spans.iter().any(|(id, span)| *id == track && span.get(last).is_some_and(|s| s.status.is_seen()))
+    };
+    let n_lost = found.iter().filter(|&track| !is_seen(track)).count();
+    if n_tracks > 0 {
+        session.project.commit(Transaction::show_run(run, found))?;
+    }
+    let stopped = driven.end < frames.end;
+    let mut line = format!("{plugin}: {n_tracks} tracks, frames {}-{last}, {n_lost} lost, {seconds:.1} s", reached.start);
+    if stopped {
+        line = format!("{plugin}: stopped at frame {}; {n_tracks} tracks up to there are kept", driven.end);
+    }
+    if let Some(error) = &error {
+        line = format!("{plugin} failed at frame {}, what came before is kept: {error}", driven.end);
+    }
+    let tracker_secs = driven.tracker_secs;
+    Ok(TrackOutcome { run, n_tracks, n_lost, frames: reached, stopped, seconds, tracker_secs, error, line })
+}
+
+/// Seeds of the project's own tracks: where each is first seen, and each of its key-frames.
+fn existing(session: &Session, frames: &Range<u32>) -> Result<Vec<Seed>, WorkbenchError> {
+    let mut seeds = Vec::new();
+    for (track, span) in session.project.shown_all()? {
+        let keys = session.project.document().track(track).map(|known| &known.keys);
+        let keyed: BTreeSet<u32> = keys.into_iter().flat_map(|keys| keys.range(frames.clone())).map(|k| *k.0).collect();
+        let first_seen = span.frames().zip(&span.samples).find(|(f, s)| frames.contains(f) && s.status.is_seen());
+        for frame in first_seen.map(|(frame, _)| frame).into_iter().chain(keyed).collect::<BTreeSet<_>>() {
+            if let Some(sample) = span.get(frame) {
+                seeds.push(Seed { frame, track, x: sample.x, y: sample.y });
+            }
+        }
+    }
+    Ok(seeds)
+}
+
+/// A user's points; numbers that no track has yet are set aside for them.
+fn given(session: &mut Session, seeds: &[Seed]) -> Result<Vec<Seed>, WorkbenchError> {
+    drive::check_seeds(seeds, session.media.clip())?;
+    let document = session.project.document();
+    let new: TrackSet =
+        seeds.iter().map(|seed| seed.track).filter(|&track| document.track(track).is_none()).collect();
+    session.project.claim_tracks(&new)?;
+    Ok(seeds.to_vec())
+}
+
+/// A byte a pixel, non-zero where features may be.
+fn mask(area: &Area, clip: &Clip) -> Result<Option<Vec<u8>>, WorkbenchError> {
+    let wanted = (clip.width, clip.height);
+    match area {
+        Area::Whole => Ok(None),
+        Area::Mask(path) => {
+            let options = OpenOptions { cache_bytes: Some(0), ..OpenOptions::default() };
+            let image = honami_media::open(path, &options)?;
+            let came = (image.clip().width, image.clip().height);
+            if came != wanted {
+                return Err(WorkbenchError::MaskSize { wanted, came, path: path.clone() });
+            }
+            let frame = image.frame(0)?;
+            let gray = frame.planes().y;
+            Ok(Some((0..gray.height).flat_map(|y| gray.row(y)).copied().collect()))
+        }
+        Area::Rect([x, y, width, height]) => {
+            let inside = |v: u32, from: f64, size: f64| (from..from + size).contains(&f64::from(v));
+            let pixel = |k: u64| {
+                let (px, py) = (k % u64::from(wanted.0), k / u64::from(wanted.0));
+                u8::from(inside(px as u32, *x, *width) && inside(py as u32, *y, *height))
+            };
+            Ok(Some((0..u64::from(wanted.0) * u64::from(wanted.1)).map(pixel).collect()))
+        }
+    }
+}
+
+/// How many threads a plugin may use.
+pub(crate) fn threads() -> u32 {
+    let n = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    u32::try_from(n).unwrap_or(1)
+}

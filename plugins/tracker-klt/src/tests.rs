@@ -1,0 +1,151 @@
+//! The plugin as a host drives it, on pictures whose motion is known.
+
+use honami_plugin::{Gray, testing};
+use honami_vision::texture;
+
+use super::*;
+
+const WIDTH: u32 = 240;
+const HEIGHT: u32 = 180;
+/// Motion from each frame to the next, pixels.
+const STEP: [f64; 2] = [1.7, -0.9];
+
+/// Frames of a texture that drifts; a gray disc, still, hides it around (60, 60) from frame 3 on.
+fn clip(n: usize) -> Vec<Vec<u8>> {
+    let frame = |t: usize| {
+        texture::render(WIDTH, HEIGHT, |x, y| {
+            if t >= 3 && (x - 60.0).hypot(y - 60.0) < 25.0 {
+                return 128.0;
+            }
+            texture::value(2, x - STEP[0] * t as f64, y - STEP[1] * t as f64)
+        })
+    };
+    (0..n).map(frame).collect()
+}
+
+fn frames(clip: &[Vec<u8>]) -> impl Iterator<Item = Frame<'_>> {
+    clip.iter().enumerate().map(|(t, data)| Frame {
+        gray: Gray::packed(data, WIDTH, HEIGHT),
+        index: t as i64,
+        time_s: t as f64 / 25.0,
+    })
+}
+
+fn seed(id: u32, x: f32, y: f32) -> Seed {
+    Seed { id, x, y }
+}
+
+fn truth(from: &Seed, t: usize) -> [f32; 2] {
+    [from.x + (STEP[0] * t as f64) as f32, from.y + (STEP[1] * t as f64) as f32]
+}
+
+#[test]
+fn points_are_followed_measured_lost_and_left() {
+    let clip = clip(8);
+    let seeds = [seed(4, 150.2, 100.8), seed(9, 57.0, 62.0), seed(7, 232.0, 90.0)];
+    let strict = Settings { lose_fb: 2.0, ..Settings::default() };
+    let stream = testing::stream(WIDTH, HEIGHT);
+    let rows = testing::track::<Klt>(&strict, &stream, &seeds, frames(&clip)).unwrap();
+    for (t, rows) in rows[..8].iter().enumerate() {
+        assert_eq!(rows.iter().map(|r| r.id).collect::<Vec<_>>(), [4, 7, 9], "frame {t}");
+        let [plain, leaving, hidden] = [rows[0], rows[1], rows[2]];
+        let [x, y] = truth(&seeds[0], t);
+        assert!((plain.x - x).hypot(plain.y - y) < 0.1, "frame {t}: {plain:?} for {x}, {y}");
+        assert_eq!(plain.status, Status::Tracked);
+        // Quality belongs to a step: the first frame has none.
+        assert_eq!((plain.fb.is_some(), plain.ncc.is_some()), (t > 0, t > 0));
+        assert!(plain.fb.is_none_or(|fb| fb < 0.05) && plain.ncc.is_none_or(|ncc| ncc > 0.99), "{plain:?}");
+        assert_eq!(leaving.status, if t < 5 { Status::Tracked } else { Status::Outside }, "frame {t}");
+        assert_eq!(hidden.status, if t < 3 { Status::Tracked } else { Status::Lost }, "frame {t}");
+        assert!(rows.iter().all(|r| r.x.is_finite() && r.y.is_finite()));
+    }
+    // A lost point waits where it was seen last.
+    assert_eq!((rows[7][2].x, rows[7][2].y), (rows[2][2].x, rows[2][2].y));
+    assert_eq!(rows[7][2].fb, None);
+}
+
+#[test]
+fn seeding_again_revives_and_retiring_ends() {
+    let clip = clip(8);
+    let mut tracker =
+        Klt::begin(&Settings::default(), &testing::stream(WIDTH, HEIGHT), &testing::cx()).unwrap();
+    let push = |tracker: &mut Klt, t: usize| {
+        let mut out = Points::default();
+        tracker.push(&frames(&clip).nth(t).unwrap(), &mut out, &testing::cx()).unwrap();
+        out.rows().to_vec()
+    };
+    tracker.seed(&[seed(1, 57.0, 62.0), seed(2, 150.0, 100.0)], &testing::cx()).unwrap();
+    for t in 0..5 {
+        push(&mut tracker, t);
+    }
+    // Seeds hold in the frame pushed last.
+    let revived = seed(1, 120.0, 120.0);
+    tracker.seed(&[revived, seed(3, 200.0, 120.0)], &testing::cx()).unwrap();
+    tracker.retire(&[2, 77]);
+    let rows = push(&mut tracker, 5);
+    assert_eq!(
+        rows.iter().map(|r| (r.id, r.status)).collect::<Vec<_>>(),
+        [(1, Status::Tracked), (3, Status::Tracked)]
+    );
+    let [x, y] = truth(&revived, 1);
+    assert!((rows[0].x - x).hypot(rows[0].y - y) < 0.1, "{:?}", rows[0]);
+}
+
+#[test]
+fn limits_lose_points() {
+    let clip = clip(2);
+    let seeds: Vec<Seed> = (0..40).map(|i| seed(i, 40.0 + 4.0 * i as f32, 40.0 + 2.5 * i as f32)).collect();
+    let tracked = |settings: &Settings| {
+        let rows =
+            testing::track::<Klt>(settings, &testing::stream(WIDTH, HEIGHT), &seeds, frames(&clip)).unwrap();
+        rows[1].iter().filter(|r| r.status == Status::Tracked).count()
+    };
+    assert_eq!(tracked(&Settings::default()), 40);
+    assert_eq!(tracked(&Settings { lose_fb: 0.5, lose_ncc: 0.9, ..Settings::default() }), 40);
+    assert!(tracked(&Settings { lose_fb: 1e-4, ..Settings::default() }) < 20);
+    assert!(tracked(&Settings { lose_ncc: 1.0, ..Settings::default() }) < 20);
+}
+
+#[test]
+fn threads_do_not_change_a_bit() {
+    let clip = clip(3);
+    let seeds: Vec<Seed> = (0..300).map(|i| seed(i, (i * 17 % 240) as f32, (i * 29 % 180) as f32)).collect();
+    let rows = [1, 2, 7].map(|max_threads| {
+        let stream = Stream { max_threads, ..testing::stream(WIDTH, HEIGHT) };
+        testing::track::<Klt>(&Settings::default(), &stream, &seeds, frames(&clip)).unwrap()
+    });
+    assert_eq!(rows[0], rows[1]);
+    assert_eq!(rows[0], rows[2]);
+}
+
+#[test]
+fn detection_minds_mask_points_and_both_maxima() {
+    let clip = clip(1);
+    let frame = frames(&clip).next().unwrap();
+    // Only the left half; rows of the mask are padded.
+    let mask: Vec<u8> = (0..(WIDTH + 3) * HEIGHT).map(|i| u8::from(i % (WIDTH + 3) < 120)).collect();
+    let mask = Gray { data: &mask, width: WIDTH, height: HEIGHT, stride: WIDTH as usize + 3 };
+    let there = [seed(0, 60.0, 90.0)];
+    let wanted =
+        Detect { frame, max_features: 500, mask: Some(mask), points: &there, max_threads: 1, seed: 0 };
+    let settings = Settings { distance: 10.0, quality: 0.001, ..Settings::default() };
+    let found = features(&settings, &wanted, &testing::cx()).unwrap();
+    assert!(found.len() > 20 && found.is_sorted_by(|a, b| a.score >= b.score));
+    assert!(found.iter().all(|f| f.x < 120.0 && (f.x - 60.0).hypot(f.y - 90.0) >= 10.0));
+    let few = Settings { max_features: 7, ..settings };
+    assert_eq!(features(&few, &wanted, &testing::cx()).unwrap(), found[..7]);
+    assert_eq!(features(&few, &Detect { max_features: 3, ..wanted }, &testing::cx()).unwrap(), found[..3]);
+}
+
+#[test]
+fn a_frame_of_another_size_is_refused() {
+    let clip = clip(1);
+    let mut tracker =
+        Klt::begin(&Settings::default(), &testing::stream(WIDTH, HEIGHT), &testing::cx()).unwrap();
+    let frame = frames(&clip).next().unwrap();
+    let mut out = Points::default();
+    tracker.push(&frame, &mut out, &testing::cx()).unwrap();
+    let smaller = Frame { gray: Gray { width: 100, ..frame.gray }, ..frame };
+    let error = tracker.push(&smaller, &mut out, &testing::cx()).unwrap_err();
+    assert!(error.to_string().contains("100x180"), "{error}");
+}

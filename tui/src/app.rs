@@ -1,0 +1,24 @@
+//! The workbench in a terminal: one state, actions in one table, a pure update, drawing, effects.
+//!
+//! `state` knows nothing of the terminal device and nothing of files; `update` turns a message into the next state
+//! and the effects it asks for; `view` draws a state; `effects` is the only door to the project, the clip and
+//! the plugins; `run` turns the wheel.
+
+pub mod action;
+#[cfg(test)]
+mod fixture;
+mod effects;
+pub mod form;
+mod fuzzy;
+mod jobs;
+pub mod keymap;
+pub mod layout;
+pub mod menu;
+mod pictures;
+mod run;
+pub mod state;
+pub mod tracks;
+pub mod update;
+pub mod view;
+
+pub use run::run;

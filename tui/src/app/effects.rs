@@ -1,0 +1,279 @@
+//! The only door to the world: what the state wants done is done here, and what comes of it becomes facts.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::time::Duration;
+
+use honami_model::edit::Transaction;
+use honami_model::track::TrackId;
+use honami_workbench::WorkbenchError;
+use honami_workbench::cluster::{self, ClusterRequest};
+use honami_workbench::plugins::{Kind, PluginInfo, Values};
+use honami_workbench::session::Session;
+use honami_workbench::track::{self, Area, PointSource, TrackRequest};
+
+use super::form::{Plugin, Task};
+use super::jobs::{Done, Running, Work};
+use super::state::{Job, Notice, State};
+use super::tracks::{Groups, TrackRow};
+use super::update::{Effect, Fact};
+use crate::term::signals::Waker;
+
+/// The world: the project, the clip, the plugins, and the job that runs.
+pub(super) struct World {
+    session: Session,
+    waker: Waker,
+    running: Option<(Running, Job)>,
+    rows: BTreeMap<TrackId, TrackRow>,
+}
+
+/// Facts, or the line that says why there are none.
+type Facts = Result<Vec<Fact>, WorkbenchError>;
+
+impl World {
+    pub(super) fn new(session: Session, waker: Waker) -> Self {
+        Self { session, waker, running: None, rows: BTreeMap::new() }
+    }
+
+    /// The state to begin with.
+    pub(super) fn state(&mut self, size: (u16, u16)) -> Result<State, WorkbenchError> {
+        let project = &self.session.project;
+        let name = project.path().file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+        let mut state = State::new(name, self.session.media.clip().clone(), size);
+        if project.access() == honami_workbench::store::Access::Read {
+            let holder = project.holder();
+            state.read_only = Some(holder.map_or_else(|| "somebody else".to_owned(), |h| h.to_string()));
+        }
+        state.plugins = self.session.registry.plugins().iter().filter_map(plugin).collect();
+        state.n_ready = self.session.media.n_ready();
+        let notes = self.session.media.notes();
+        if !notes.is_empty() {
+            state.notice = Some(Notice { text: notes.join(" · "), is_error: false });
+        }
+        for fact in self.shown()? {
+            super::update::update(&mut state, super::update::Msg::Fact(fact));
+        }
+        Ok(state)
+    }
+
+    /// Frames decoded so far.
+    pub(super) fn n_ready(&self) -> u32 {
+        self.session.media.n_ready()
+    }
+
+    pub(super) fn media(&self) -> Arc<honami_workbench::media::Media> {
+        Arc::clone(&self.session.media)
+    }
+
+    /// Does what the state wants; what fails becomes a line.
+    pub(super) fn carry_out(&mut self, effect: Effect, now: Duration) -> Vec<Fact> {
+        let done = match effect {
+            Effect::Commit(transaction) => self.commit(transaction),
+            Effect::AddFeature { frame, at } => self.add_feature(frame, at),
+            Effect::Undo => self.travel("undone", |project| project.undo()),
+            Effect::Redo => self.travel("redone", |project| project.redo()),
+            Effect::Run { task, plugin, values, existing, every } => {
+                self.run(task, plugin, values, existing, every, now)
+            }
+            Effect::StopJob => {
+                self.running.iter().for_each(|(running, _)| running.stop());
+                Ok(Vec::new())
+            }
+            // The loop's own.
+            Effect::Redraw | Effect::Suspend | Effect::Leave => Ok(Vec::new()),
+        };
+        done.unwrap_or_else(|error| vec![failed(&error)])
+    }
+
+    fn commit(&mut self, transaction: Transaction) -> Facts {
+        let line = format!("{} (u undoes)", transaction.label);
+        self.session.project.commit(transaction)?;
+        self.shown_and(said(line))
+    }
+
+    fn add_feature(&mut self, frame: u32, [x, y]: [f32; 2]) -> Facts {
+        let track = TrackId(self.session.project.reserve_tracks(1)?.start);
+        let mut facts = self.commit(Transaction::add_track(track, frame, x, y))?;
+        facts.push(Fact::Placed(track));
+        Ok(facts)
+    }
+
+    fn travel<E>(
+        &mut self,
+        word: &str,
+        go: impl FnOnce(
+            &mut honami_workbench::store::Project,
+        ) -> Result<Option<honami_model::history::Entry>, E>,
+    ) -> Facts
+    where
+        WorkbenchError: From<E>,
+    {
+        let line = match go(&mut self.session.project)? {
+            Some(entry) => format!("{word}: {}", entry.label),
+            None => format!("nothing to be {word}"),
+        };
+        self.shown_and(said(line))
+    }
+
+    fn run(
+        &mut self,
+        task: Task,
+        plugin: String,
+        params: Values,
+        existing: bool,
+        every: Option<u32>,
+        now: Duration,
+    ) -> Facts {
+        let job = Job {
+            plugin: plugin.clone(),
+            what: "starting".to_owned(),
+            done: (0, 0),
+            since: now,
+            keeps_frames: task == Task::Track,
+            is_stopping: false,
+        };
+        let work = match task {
+            Task::Track => {
+                let request = TrackRequest {
+                    plugin,
+                    params,
+                    points: if existing { PointSource::Existing } else { PointSource::Detect },
+                    frames: 0..self.session.media.clip().n_frames(),
+                    every,
+                    area: Area::default(),
+                };
+                Work::Track(track::prepare(&mut self.session, &request)?)
+            }
+            Task::Cluster => {
+                let request = ClusterRequest { plugin, params, groups: None };
+                Work::Cluster(cluster::prepare(&self.session, &request)?)
+            }
+        };
+        match Running::start(work, self.waker.clone()) {
+            Ok(running) => {
+                self.running = Some((running, job.clone()));
+                Ok(vec![Fact::Job(Some(job))])
+            }
+            Err(error) => Ok(vec![said_wrong(format!("no thread for the job: {error}"))]),
+        }
+    }
+
+    /// What has become of the running job.
+    pub(super) fn news(&mut self) -> Vec<Fact> {
+        let Some((running, job)) = &mut self.running else { return Vec::new() };
+        if !running.is_finished() {
+            let step = running.step();
+            let done = (step.done, step.total);
+            if done == job.done && step.what == job.what {
+                return Vec::new();
+            }
+            job.done = done;
+            job.what = step.what;
+            return vec![Fact::Job(Some(job.clone()))];
+        }
+        let mut facts = vec![Fact::Job(None)];
+        facts.extend(self.finish().unwrap_or_else(|error| vec![failed(&error)]));
+        facts
+    }
+
+    /// Takes the ended job's result into the project.
+    fn finish(&mut self) -> Facts {
+        let Some((running, job)) = self.running.take() else { return Ok(Vec::new()) };
+        let notice = match running.join() {
+            Some(Done::Track(done)) => {
+                let outcome = track::finish(&mut self.session, done?)?;
+                Notice { is_error: outcome.error.is_some(), text: format!("{} (u undoes)", outcome.line) }
+            }
+            Some(Done::Cluster(Err(WorkbenchError::Stopped))) => {
+                Notice { text: format!("{} stopped; nothing was changed", job.plugin), is_error: false }
+            }
+            Some(Done::Cluster(done)) => {
+                let outcome = cluster::finish(&mut self.session, done?)?;
+                Notice { text: format!("{} (u undoes)", outcome.line), is_error: false }
+            }
+            None => {
+                let text = format!("{} stopped by a fault of its own; the session's log has its report", job.plugin);
+                Notice { text, is_error: true }
+            }
+        };
+        self.shown_and(Fact::Said(notice))
+    }
+
+    /// Stops what runs and keeps what it has found.
+    pub(super) fn close(mut self) -> Result<(), WorkbenchError> {
+        if let Some((running, _)) = &self.running {
+            running.stop();
+            self.finish()?;
+        }
+        Ok(())
+    }
+
+    fn shown_and(&mut self, fact: Fact) -> Facts {
+        let mut facts = self.shown()?;
+        facts.push(fact);
+        Ok(facts)
+    }
+
+    /// Tracks and groups as the project shows them now. Rows whose samples are the same are kept.
+    fn shown(&mut self) -> Facts {
+        let project = &self.session.project;
+        let mut old = std::mem::take(&mut self.rows);
+        for (id, span) in project.shown_all()? {
+            let name = project.document().track(id).and_then(|track| track.name.clone());
+            let row = match old.remove(&id) {
+                Some(row) if Arc::ptr_eq(&row.span, &span) => TrackRow { name, ..row },
+                _ => TrackRow::new(id, name, span),
+            };
+            self.rows.insert(id, row);
+        }
+        let groups = match project.document().clustering() {
+            None => None,
+            Some(shown) => {
+                let clustering = project.clustering(shown.id)?;
+                let stale = project.is_stale(shown.id)?.map_or("", |_| ", stale");
+                let id = &clustering.provenance.plugin_id;
+                let what = format!("by {}{stale}", id.rsplit('.').next().unwrap_or(id));
+                let (tracks, dendrogram) = (clustering.tracks, clustering.dendrogram);
+                Some(Groups::new(what, tracks, dendrogram, shown.k, clustering.outlier_frames))
+            }
+        };
+        let tracker = match project.document().runs().last() {
+            None => None,
+            Some(shown) => {
+                let provenance = project.run(shown.run)?.head.provenance;
+                let id = &provenance.plugin_id;
+                Some(format!("{} {}", id.rsplit('.').next().unwrap_or(id), provenance.plugin_version))
+            }
+        };
+        let rows = self.rows.values().cloned().collect();
+        Ok(vec![Fact::Tracks(rows), Fact::Groups(groups), Fact::Tracker(tracker)])
+    }
+}
+
+fn said(text: String) -> Fact {
+    Fact::Said(Notice { text, is_error: false })
+}
+
+fn said_wrong(text: String) -> Fact {
+    Fact::Said(Notice { text, is_error: true })
+}
+
+fn failed(error: &WorkbenchError) -> Fact {
+    said_wrong(error.to_string())
+}
+
+/// A plugin as forms know it; `None` for kinds without a form.
+fn plugin(info: &PluginInfo) -> Option<Plugin> {
+    let task = match info.kind {
+        Kind::Tracker => Task::Track,
+        Kind::Clusterer => Task::Cluster,
+        _ => return None,
+    };
+    Some(Plugin {
+        task,
+        name: info.short_name.clone(),
+        version: info.version.clone(),
+        params: info.params.clone(),
+        can_detect: info.offers("honami.detect/1"),
+    })
+}

@@ -1,0 +1,89 @@
+//! A small project for tests: 100 frames at 25 per second, tracks 1, 2 and 7, three leaves of a hierarchy.
+
+use std::sync::Arc;
+
+use honami_model::clip::{Clip, FrameTimes};
+use honami_model::hierarchy::{Dendrogram, Merge};
+use honami_model::track::{Quality, Sample, Source, Span, Status, TrackId};
+use honami_workbench::plugins::Param;
+use ratatui::layout::Rect;
+
+use super::form::{Plugin, Task};
+use super::layout::Lens;
+use super::state::State;
+use super::tracks::{Groups, TrackRow};
+use super::view::Shot;
+
+/// The state that tests begin with.
+pub(super) fn state() -> State {
+    let times = FrameTimes::constant(100, 25.0).expect("a rate");
+    let mut state = State::new("malva".to_owned(), Clip { width: 320, height: 240, times }, (80, 24));
+    state.tracks = vec![row(1, 0..100, &[10, 50]), row(2, 0..60, &[]), row(7, 20..100, &[30])];
+    state.tracks[0].name = Some("bud-left".to_owned());
+    state.selected = Some(TrackId(1));
+    state.groups = Some(groups(2));
+    state.tracker = Some("klt 0.1.0".to_owned());
+    state.plugins = plugins();
+    state.n_ready = 100;
+    state
+}
+
+/// A track on a sway, with key-frames; frames 70 to 79 of it are lost, 40 is doubtful.
+fn row(id: u32, frames: std::ops::Range<u32>, keys: &[u32]) -> TrackRow {
+    let sample = |frame: u32| {
+        let sway = 20.0 * (f64::from(frame) * 0.2).sin() as f32;
+        let (status, source) = match frame {
+            f if keys.contains(&f) => (Status::Tracked, Source::Key),
+            70..80 => (Status::Lost, Source::Tracked),
+            _ => (Status::Tracked, Source::Tracked),
+        };
+        let fb_px = if frame == 40 { 2.4 } else { 0.02 };
+        let quality = match source {
+            Source::Key => Quality::default(),
+            _ => Quality { fb_px: Some(fb_px), ncc: Some(0.97) },
+        };
+        Sample { x: 40.0 * id as f32 + sway, y: 120.0, status, source, quality }
+    };
+    let span = Span { first_frame: frames.start, samples: frames.map(sample).collect() };
+    TrackRow::new(TrackId(id), None, Arc::new(span))
+}
+
+pub(super) fn groups(k: u32) -> Groups {
+    let merges = vec![Merge { a: 0, b: 1, height: 1.0, size: 2 }, Merge { a: 2, b: 3, height: 2.0, size: 3 }];
+    let tracks = [1, 2, 7].map(TrackId).to_vec();
+    Groups::new("by movement".to_owned(), tracks, Dendrogram::new(3, merges).expect("a tree"), k, vec![90, 91])
+}
+
+fn plugins() -> Vec<Plugin> {
+    let params = |json: &str| serde_json::from_str::<Vec<Param>>(json).expect("a schema");
+    let plugin = |task, name: &str, params, can_detect| Plugin {
+        task,
+        name: name.to_owned(),
+        version: "0.1.0".to_owned(),
+        params,
+        can_detect,
+    };
+    let klt = r#"[
+        {"id":"radius","label":"window radius","doc":"half side of the window","unit":"px","type":"int",
+         "default":10,"min":2,"max":50,"soft_min":null,"soft_max":40,"step":1},
+        {"id":"motion","label":"motion model","type":"enum","default":"translation",
+         "entries":[{"id":"translation","label":"translation"},{"id":"affine","label":"affine"}]},
+        {"id":"check","label":"check backwards","type":"bool","default":true},
+        {"id":"expire","label":"expire at NCC","advanced":true,"when":{"check":true},"type":"float",
+         "default":0.55,"min":0.0,"max":1.0,"soft_min":null,"soft_max":null,"step":0.05},
+        {"id":"label","label":"note","type":"string","default":"none"}
+    ]"#;
+    vec![
+        plugin(Task::Track, "klt", params(klt), true),
+        plugin(Task::Track, "flow", params("[]"), false),
+        plugin(Task::Cluster, "movement", params("[]"), false),
+    ]
+}
+
+/// A picture of bands for a state.
+pub(super) fn shot(state: &State, area: Rect) -> Shot {
+    let lens = Lens::of(state, area);
+    let (columns, rows) = lens.size();
+    let pixels = (0..rows).flat_map(|y| (0..columns).map(move |x| [(x / 8 * 8) as u8, (y / 8 * 16) as u8, 40]));
+    Shot { frame: state.frame, lens, pixels: pixels.collect() }
+}

@@ -1,0 +1,285 @@
+//! The form of a plugin, drawn from its parameter schema; a plugin never draws.
+
+use honami_workbench::plugins::{Entry, Numeric, Param, ParamKind, Value, Values};
+
+/// What a plugin does for the terminal UI.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Task {
+    /// Follows features.
+    Track,
+    /// Groups tracks.
+    Cluster,
+}
+
+/// A plugin that was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plugin {
+    /// What it does.
+    pub task: Task,
+    /// Its short name.
+    pub name: String,
+    /// Its version.
+    pub version: String,
+    /// Its parameters.
+    pub params: Vec<Param>,
+    /// Whether it can find features by itself.
+    pub can_detect: bool,
+}
+
+/// Where a tracker's features come from: id of a parameter of ours.
+pub const FEATURES: &str = "@features";
+/// Every how many frames new features are looked for: id of a parameter of ours.
+pub const EVERY: &str = "@every";
+/// [`FEATURES`]: found by the plugin.
+pub const DETECT: &str = "detect";
+/// [`FEATURES`]: the tracks that are there.
+pub const EXISTING: &str = "existing";
+
+/// A form being filled in.
+#[derive(Clone, Debug)]
+pub struct Form {
+    /// The task.
+    pub task: Task,
+    /// The plugins that do it.
+    pub plugins: Vec<Plugin>,
+    /// Which of them.
+    pub which: usize,
+    /// The row that keys work on.
+    pub at: usize,
+    /// Whether the advanced parameters are shown.
+    pub unfolded: bool,
+    /// What is being typed into the row.
+    pub typed: Option<String>,
+    /// Whether there are tracks to follow.
+    has_tracks: bool,
+    values: Values,
+}
+
+/// A row of a form.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Row<'a> {
+    /// Which plugin.
+    Plugin(&'a Plugin),
+    /// A parameter and its value.
+    Param(&'a Param, &'a Value),
+    /// So many advanced parameters, folded or not.
+    Fold(usize),
+}
+
+impl Form {
+    /// The form of a task; `None` when no plugin does it.
+    #[must_use]
+    pub fn new(task: Task, plugins: &[Plugin], has_tracks: bool) -> Option<Self> {
+        let mut plugins: Vec<Plugin> = plugins.iter().filter(|p| p.task == task).cloned().collect();
+        for plugin in plugins.iter_mut().filter(|p| p.task == Task::Track) {
+            let ours = own_params(plugin.can_detect, has_tracks);
+            plugin.params.splice(0..0, ours);
+        }
+        let values = Values::defaults(&plugins.first()?.params);
+        Some(Self { task, plugins, which: 0, at: 0, unfolded: false, typed: None, has_tracks, values })
+    }
+
+    /// The chosen plugin.
+    #[must_use]
+    pub fn plugin(&self) -> &Plugin {
+        &self.plugins[self.which]
+    }
+
+    /// The values of the plugin's own parameters.
+    #[must_use]
+    pub fn values(&self) -> Values {
+        let params: Vec<Param> =
+            self.plugin().params.iter().filter(|p| !p.id.starts_with('@')).cloned().collect();
+        let mut values = Values::defaults(&params);
+        for param in &params {
+            if let Some(value) = self.values.get(&param.id) {
+                // It was checked when it was set.
+                values.set(&params, &param.id, value.clone()).ok();
+            }
+        }
+        values
+    }
+
+    /// Whether the features are those of the tracks that are there.
+    #[must_use]
+    pub fn follows_existing(&self) -> bool {
+        self.values.get(FEATURES) == Some(&Value::Text(EXISTING.to_owned()))
+    }
+
+    /// Every how many frames new features are looked for; `None`: only at the first.
+    #[must_use]
+    pub fn every(&self) -> Option<u32> {
+        match self.values.get(EVERY) {
+            Some(Value::Int(n)) => u32::try_from(*n).ok().filter(|n| *n > 0),
+            _ => None,
+        }
+    }
+
+    /// The rows that count now.
+    #[must_use]
+    pub fn rows(&self) -> Vec<Row<'_>> {
+        let active = || self.plugin().params.iter().filter(|p| self.values.is_active(p));
+        let row = |p| self.values.get(&Param::clone(p).id).map(|value| Row::Param(p, value));
+        let mut rows = vec![Row::Plugin(self.plugin())];
+        rows.extend(active().filter(|p| !p.advanced).filter_map(row));
+        let advanced: Vec<Row<'_>> = active().filter(|p| p.advanced).filter_map(row).collect();
+        if !advanced.is_empty() {
+            rows.push(Row::Fold(advanced.len()));
+        }
+        if self.unfolded {
+            rows.extend(advanced);
+        }
+        rows
+    }
+
+    /// Moves to another row.
+    pub fn step(&mut self, rows: i64) {
+        let last = self.rows().len().saturating_sub(1);
+        let at = i64::try_from(self.at).unwrap_or(0) + rows;
+        self.at = usize::try_from(at).unwrap_or(0).min(last);
+    }
+
+    /// Changes the row's value by so many steps, or by tenths of its range.
+    pub fn change(&mut self, steps: i64, coarse: bool) {
+        match self.rows().get(self.at).copied() {
+            Some(Row::Plugin(_)) => {
+                let n = i64::try_from(self.plugins.len()).unwrap_or(1);
+                let which = (i64::try_from(self.which).unwrap_or(0) + steps).rem_euclid(n);
+                self.which = usize::try_from(which).unwrap_or(0);
+                self.values = Values::defaults(&self.plugin().params);
+            }
+            Some(Row::Fold(_)) => self.unfolded = !self.unfolded,
+            Some(Row::Param(param, value)) => match changed(param, value, steps, coarse) {
+                Some(value) => {
+                    let id = param.id.clone();
+                    let params = self.plugins[self.which].params.clone();
+                    // A step beyond the range stays where it was.
+                    self.values.set(&params, &id, value).ok();
+                }
+                None => self.typed = Some(value.to_string()),
+            },
+            None => {}
+        }
+    }
+
+    /// Begins to type a value with its first character.
+    pub fn type_first(&mut self, c: char) {
+        let is_param = matches!(self.rows().get(self.at), Some(Row::Param(..)));
+        if is_param && (c.is_ascii_digit() || c == '.' || c == '-') {
+            self.typed = Some(c.to_string());
+        }
+    }
+
+    /// Takes what was typed into the row.
+    ///
+    /// # Errors
+    /// A line that says what the parameter takes; then the typed text stays.
+    pub fn take_typed(&mut self) -> Result<(), String> {
+        let Some(typed) = self.typed.clone() else { return Ok(()) };
+        if let Some(Row::Param(param, _)) = self.rows().get(self.at).copied() {
+            let assignment = format!("{}={typed}", param.id);
+            let params = self.plugins[self.which].params.clone();
+            self.values.set_text(&params, &assignment).map_err(|error| error.to_string())?;
+        }
+        self.typed = None;
+        Ok(())
+    }
+
+    /// Whether there are tracks to follow.
+    #[must_use]
+    pub fn has_tracks(&self) -> bool {
+        self.has_tracks
+    }
+}
+
+/// Parameters of every tracking, whatever the plugin.
+fn own_params(can_detect: bool, has_tracks: bool) -> Vec<Param> {
+    let param = |id: &str, label: &str, doc: &str, kind| Param {
+        id: id.to_owned(),
+        label: label.to_owned(),
+        group: String::new(),
+        doc: doc.to_owned(),
+        unit: String::new(),
+        affects: String::new(),
+        advanced: false,
+        when: std::collections::BTreeMap::new(),
+        kind,
+    };
+    let entry = |id: &str, label: &str| Entry { id: id.to_owned(), label: label.to_owned(), doc: String::new() };
+    let mut entries = Vec::new();
+    if has_tracks {
+        entries.push(entry(EXISTING, "the tracks here"));
+    }
+    if can_detect {
+        entries.insert(0, entry(DETECT, "found anew"));
+    }
+    let Some(first) = entries.first() else { return Vec::new() };
+    let features = ParamKind::Enum { default: first.id.clone(), entries: entries.clone() };
+    let mut ours = vec![param(FEATURES, "features", "where the features to follow come from", features)];
+    if can_detect {
+        let range = Numeric {
+            default: 0,
+            min: Some(0),
+            max: None,
+            soft_min: None,
+            soft_max: Some(100),
+            step: Some(5),
+            scale: String::new(),
+        };
+        let mut every = param(EVERY, "look again", "every so many frames; 0: never", ParamKind::Int(range));
+        every.unit = "frames".to_owned();
+        every.when.insert(FEATURES.to_owned(), Value::Text(DETECT.to_owned()));
+        ours.push(every);
+    }
+    ours
+}
+
+/// A value so many steps on; `None` for what can only be typed.
+fn changed(param: &Param, value: &Value, steps: i64, coarse: bool) -> Option<Value> {
+    Some(match (&param.kind, value) {
+        (ParamKind::Bool { .. }, Value::Bool(b)) => Value::Bool(!b),
+        (ParamKind::Enum { entries, .. }, Value::Text(id)) => {
+            let at = entries.iter().position(|e| e.id == *id).unwrap_or(0);
+            let n = i64::try_from(entries.len()).unwrap_or(1).max(1);
+            let next = (i64::try_from(at).unwrap_or(0) + steps).rem_euclid(n);
+            Value::Text(entries.get(usize::try_from(next).unwrap_or(0))?.id.clone())
+        }
+        (ParamKind::Int(range), Value::Int(i)) => {
+            let span = slider(range).map_or(10, |(low, high)| high - low);
+            let step = range.step.unwrap_or((span / 40).max(1));
+            let step = if coarse { (span / 10).max(step) } else { step };
+            let next = i.saturating_add(steps.saturating_mul(step));
+            Value::Int(next.clamp(range.min.unwrap_or(i64::MIN), range.max.unwrap_or(i64::MAX)))
+        }
+        (ParamKind::Seed { .. }, Value::Int(i)) => Value::Int(i.saturating_add(steps).max(0)),
+        (ParamKind::Float(range), Value::Float(x)) => {
+            let next = if range.scale == "log" && *x > 0.0 {
+                x * (if coarse { 2.0_f64 } else { 1.1 }).powi(i32::try_from(steps).unwrap_or(1))
+            } else {
+                let span = slider(range).map_or(1.0, |(low, high)| high - low);
+                let step = range.step.unwrap_or(span / 40.0);
+                x + steps as f64 * if coarse { (span / 10.0).max(step) } else { step }
+            };
+            Value::Float(tidy(
+                next.clamp(range.min.unwrap_or(f64::NEG_INFINITY), range.max.unwrap_or(f64::INFINITY)),
+            ))
+        }
+        _ => return None,
+    })
+}
+
+/// Ends of a number's slider, where it has any.
+#[must_use]
+pub fn slider<T: Copy + PartialOrd>(range: &Numeric<T>) -> Option<(T, T)> {
+    let low = range.soft_min.or(range.min)?;
+    let high = range.soft_max.or(range.max)?;
+    (low < high).then_some((low, high))
+}
+
+/// The number without the noise of binary fractions: six significant digits.
+fn tidy(x: f64) -> f64 {
+    format!("{x:.5e}").parse().unwrap_or(x)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,101 @@
+//! Work behind the screen: one job at a time, on a thread of its own, with progress and a stop.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use honami_workbench::WorkbenchError;
+use honami_workbench::cluster::{ClusterDone, ClusterJob};
+use honami_workbench::progress::{Flow, Progress};
+use honami_workbench::track::{TrackDone, TrackJob};
+
+use crate::term::signals::Waker;
+
+/// Progress wakes the screen this often at most.
+const TICK: Duration = Duration::from_millis(100);
+
+/// A job that can be run on any thread.
+pub(super) enum Work {
+    Track(TrackJob),
+    Cluster(ClusterJob),
+}
+
+/// What a job has come to.
+pub(super) enum Done {
+    Track(Result<TrackDone, WorkbenchError>),
+    Cluster(Result<ClusterDone, WorkbenchError>),
+}
+
+/// How far a job is.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Step {
+    pub(super) done: u64,
+    pub(super) total: u64,
+    pub(super) what: String,
+}
+
+/// A job that runs.
+pub(super) struct Running {
+    shared: Arc<Shared>,
+    thread: JoinHandle<Done>,
+}
+
+struct Shared {
+    step: Mutex<(Step, Option<Instant>)>,
+    stop: AtomicBool,
+    waker: Waker,
+}
+
+impl Progress for Shared {
+    fn report(&self, done: u64, total: u64, what: &str) -> Flow {
+        let mut step = self.step.lock().unwrap_or_else(PoisonError::into_inner);
+        step.0 = Step { done, total, what: what.to_owned() };
+        if step.1.is_none_or(|last| last.elapsed() >= TICK) {
+            step.1 = Some(Instant::now());
+            self.waker.wake();
+        }
+        if self.stop.load(Ordering::Relaxed) { Flow::Stop } else { Flow::Continue }
+    }
+}
+
+impl Running {
+    pub(super) fn start(work: Work, waker: Waker) -> std::io::Result<Self> {
+        let shared = Arc::new(Shared { step: Mutex::default(), stop: AtomicBool::new(false), waker });
+        let progress = Arc::clone(&shared);
+        let thread = std::thread::Builder::new().name("job".to_owned()).spawn(move || {
+            // Woken also when the job panics: the thread has ended, however.
+            let _wake = WakeAtEnd(progress.waker.clone());
+            match work {
+                Work::Track(job) => Done::Track(job.run(&*progress)),
+                Work::Cluster(job) => Done::Cluster(job.run(&*progress)),
+            }
+        })?;
+        Ok(Self { shared, thread })
+    }
+
+    pub(super) fn stop(&self) {
+        self.shared.stop.store(true, Ordering::Relaxed);
+    }
+
+    pub(super) fn step(&self) -> Step {
+        self.shared.step.lock().unwrap_or_else(PoisonError::into_inner).0.clone()
+    }
+
+    pub(super) fn is_finished(&self) -> bool {
+        self.thread.is_finished()
+    }
+
+    /// Waits for the end; `None` when the job panicked.
+    pub(super) fn join(self) -> Option<Done> {
+        self.thread.join().ok()
+    }
+}
+
+struct WakeAtEnd(Waker);
+
+impl Drop for WakeAtEnd {
+    fn drop(&mut self) {
+        self.0.wake();
+    }
+}

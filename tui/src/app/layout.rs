@@ -1,0 +1,154 @@
+//! Where things are on the screen, and which part of the picture is seen. Shared by drawing and by the mouse.
+
+use ratatui::layout::Rect;
+
+use super::state::State;
+
+/// Width of the column, cells.
+const COLUMN: u16 = 36;
+/// The column needs this much beside it, cells.
+const BESIDE_COLUMN: u16 = 40;
+
+/// The parts of the screen; a part without room is empty.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Layout {
+    /// Clip, tracks, link.
+    pub title: Rect,
+    /// The picture: what the rest leaves.
+    pub picture: Rect,
+    /// Tracks and groups.
+    pub column: Rect,
+    /// The selected track.
+    pub track: Rect,
+    /// The whole clip.
+    pub time: Rect,
+    /// Where we are and what keys do.
+    pub hints: Rect,
+}
+
+impl Layout {
+    /// The parts of a screen.
+    #[must_use]
+    pub fn of(state: &State) -> Self {
+        let (columns, rows) = state.size;
+        let line = |row: u16| Rect::new(0, row.min(rows), columns, u16::from(row < rows));
+        // On low screens the picture gives way last but one: the hints stay.
+        let n_lines = if rows >= 8 { 3 } else { 1 };
+        let below = rows.saturating_sub(n_lines).max(1);
+        let has_column = state.column && columns >= COLUMN + BESIDE_COLUMN;
+        let width = if has_column { columns - COLUMN - 1 } else { columns };
+        let height = below.saturating_sub(1);
+        let nothing = Rect::new(0, 0, 0, 0);
+        Self {
+            title: line(0),
+            picture: Rect::new(0, 1.min(rows), width, height),
+            column: if has_column { Rect::new(width + 1, 1, COLUMN, height) } else { nothing },
+            track: if n_lines == 3 { line(below) } else { nothing },
+            time: if n_lines == 3 { line(below + 1) } else { nothing },
+            hints: line(rows.saturating_sub(1)),
+        }
+    }
+}
+
+/// The part of the picture that is seen, and the cells that show it. A cell holds two pixels, one above the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lens {
+    /// Left edge in the image, pixels; the centre of the first pixel is 0, its edge -0.5.
+    pub x: f64,
+    /// Upper edge in the image, pixels.
+    pub y: f64,
+    /// Width in the image, pixels.
+    pub width: f64,
+    /// Height in the image, pixels.
+    pub height: f64,
+    /// The cells.
+    pub area: Rect,
+}
+
+impl Lens {
+    /// The lens of a state: all of the picture, or a part as large as the zoom says.
+    #[must_use]
+    pub fn of(state: &State, area: Rect) -> Self {
+        let (clip_width, clip_height) = (f64::from(state.clip.width), f64::from(state.clip.height));
+        let (columns, rows) = (f64::from(area.width), f64::from(2 * area.height));
+        // Image pixels per screen pixel that show everything.
+        let whole = (clip_width / columns.max(1.0)).max(clip_height / rows.max(1.0));
+        let scale = whole / f64::from(1_u32 << state.zoom);
+        let n_columns = (clip_width / scale).round().min(columns).max(1.0);
+        let n_rows = ((clip_height / scale / 2.0).round() * 2.0).min(rows).max(2.0);
+        let (width, height) = if state.zoom == 0 {
+            (clip_width, clip_height)
+        } else {
+            ((n_columns * scale).min(clip_width), (n_rows * scale).min(clip_height))
+        };
+        let [cx, cy] = state.centre.map(f64::from);
+        let (n_columns, n_rows) = (n_columns as u16, n_rows as u16 / 2);
+        Self {
+            x: (cx - width / 2.0).clamp(-0.5, clip_width - width - 0.5),
+            y: (cy - height / 2.0).clamp(-0.5, clip_height - height - 0.5),
+            width,
+            height,
+            area: Rect {
+                x: area.x + (area.width.saturating_sub(n_columns)) / 2,
+                y: area.y + (area.height.saturating_sub(n_rows)) / 2,
+                width: n_columns.min(area.width),
+                height: n_rows.min(area.height),
+            },
+        }
+    }
+
+    /// Screen pixels across and down.
+    #[must_use]
+    pub fn size(&self) -> (u32, u32) {
+        (u32::from(self.area.width), 2 * u32::from(self.area.height))
+    }
+
+    /// The screen pixel that shows an image point, from the lens's upper left; `None` outside.
+    #[must_use]
+    pub fn pixel_of(&self, [x, y]: [f32; 2]) -> Option<(u32, u32)> {
+        let (columns, rows) = self.size();
+        let across = (f64::from(x) - self.x) / self.width * f64::from(columns);
+        let down = (f64::from(y) - self.y) / self.height * f64::from(rows);
+        let inside = (0.0..f64::from(columns)).contains(&across) && (0.0..f64::from(rows)).contains(&down);
+        inside.then_some((across as u32, down as u32))
+    }
+
+    /// The image point in the middle of a cell of the screen; `None` outside.
+    #[must_use]
+    pub fn point_of(&self, column: u16, row: u16) -> Option<[f32; 2]> {
+        let inside = self.area.contains((column, row).into());
+        let across = (f64::from(column) - f64::from(self.area.x) + 0.5) / f64::from(self.area.width);
+        let down = (f64::from(row) - f64::from(self.area.y) + 0.5) / f64::from(self.area.height);
+        inside.then_some([(self.x + across * self.width) as f32, (self.y + down * self.height) as f32])
+    }
+
+    /// Image pixels that a cell is wide.
+    #[must_use]
+    pub fn cell_px(&self) -> f32 {
+        (self.width / f64::from(self.area.width.max(1))) as f32
+    }
+}
+
+/// The bar of the time line, between the numbers of the first and the last frame.
+#[must_use]
+pub fn bar(line: Rect, n_frames: u32) -> Rect {
+    let digits = u16::try_from(n_frames.saturating_sub(1).to_string().len()).unwrap_or(u16::MAX);
+    Rect { x: line.x + 1.min(line.width), width: line.width.saturating_sub(1 + digits), ..line }
+}
+
+/// The frame that a column of the bar stands for.
+#[must_use]
+pub fn frame_at(bar: Rect, n_frames: u32, column: u16) -> u32 {
+    let last = u64::from(n_frames.saturating_sub(1));
+    let ends = u64::from(bar.width.saturating_sub(1).max(1));
+    let at = u64::from(column.saturating_sub(bar.x)).min(ends);
+    u32::try_from((last * at + ends / 2) / ends).unwrap_or(u32::MAX)
+}
+
+/// The column of the bar that stands for a frame.
+#[must_use]
+pub fn column_of(bar: Rect, n_frames: u32, frame: u32) -> u16 {
+    let last = u64::from(n_frames.saturating_sub(1).max(1));
+    let ends = u64::from(bar.width.saturating_sub(1));
+    bar.x + u16::try_from((u64::from(frame).min(last) * ends + last / 2) / last).unwrap_or(0)
+}

@@ -1,0 +1,116 @@
+//! Pictures for the screen: at once where the frame is decoded, from a thread where it is not.
+
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+
+use honami_workbench::media::{FrameRef, Media, MediaError, Rect};
+
+use super::layout::Lens;
+use super::view::Shot;
+use crate::term::signals::Waker;
+
+/// What the screen and the decoding thread share: one wish, one fulfilment. The newest wish wins.
+#[derive(Default)]
+struct Desk {
+    wish: Option<u32>,
+    here: Option<(u32, Result<FrameRef, MediaError>)>,
+    is_closed: bool,
+}
+
+type Shared = Arc<(Mutex<Desk>, Condvar)>;
+
+/// Pictures of one clip.
+pub(super) struct Pictures {
+    media: Arc<Media>,
+    shot: Option<Shot>,
+    shared: Shared,
+    thread: Option<JoinHandle<()>>,
+}
+
+fn lock(shared: &Shared) -> MutexGuard<'_, Desk> {
+    shared.0.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Pictures {
+    pub(super) fn new(media: Arc<Media>, waker: Waker) -> std::io::Result<Self> {
+        let shared = Shared::default();
+        let (desk, clip) = (Arc::clone(&shared), Arc::clone(&media));
+        let thread = std::thread::Builder::new()
+            .name("pictures".to_owned())
+            .spawn(move || fulfil(&desk, &clip, &waker))?;
+        Ok(Self { media, shot: None, shared, thread: Some(thread) })
+    }
+
+    /// Brings the picture of a frame to hand, or as near as it is possible without waiting; wakes the screen
+    /// when there is more. Returns whether another picture is at hand than before.
+    ///
+    /// # Errors
+    /// When the frame cannot be decoded.
+    pub(super) fn look(&mut self, frame: u32, lens: Lens) -> Result<bool, MediaError> {
+        if self.shot.as_ref().is_some_and(|shot| shot.frame == frame && shot.lens == lens) {
+            return Ok(false);
+        }
+        let picture = match self.media.try_frame(frame)? {
+            Some(picture) => picture,
+            None => match self.ask(frame)? {
+                Some(picture) => picture,
+                None => return Ok(false),
+            },
+        };
+        let area = Rect { x: lens.x, y: lens.y, width: lens.width, height: lens.height };
+        let (columns, rows) = lens.size();
+        let pixels = picture.rgb_area(area, columns, rows);
+        self.shot = Some(Shot { frame, lens, pixels });
+        Ok(true)
+    }
+
+    /// The picture at hand.
+    pub(super) fn shot(&self) -> Option<&Shot> {
+        self.shot.as_ref()
+    }
+
+    /// Takes a frame from the desk, or puts the wish for it there.
+    fn ask(&self, frame: u32) -> Result<Option<FrameRef>, MediaError> {
+        let mut desk = lock(&self.shared);
+        if desk.here.as_ref().is_some_and(|(n, _)| *n == frame)
+            && let Some((_, picture)) = desk.here.take()
+        {
+            return picture.map(Some);
+        }
+        if desk.wish != Some(frame) {
+            desk.wish = Some(frame);
+            self.shared.1.notify_one();
+        }
+        Ok(None)
+    }
+}
+
+/// The thread: decodes what is wished for, one frame after another.
+fn fulfil(shared: &Shared, media: &Media, waker: &Waker) {
+    let mut desk = lock(shared);
+    while !desk.is_closed {
+        let Some(frame) = desk.wish else {
+            desk = shared.1.wait(desk).unwrap_or_else(PoisonError::into_inner);
+            continue;
+        };
+        drop(desk);
+        let picture = media.frame(frame);
+        desk = lock(shared);
+        desk.here = Some((frame, picture));
+        if desk.wish == Some(frame) {
+            desk.wish = None;
+        }
+        waker.wake();
+    }
+}
+
+impl Drop for Pictures {
+    fn drop(&mut self) {
+        lock(&self.shared).is_closed = true;
+        self.shared.1.notify_one();
+        // A frame being decoded is waited for; a panic there was reported where it happened.
+        if let Some(thread) = self.thread.take() {
+            thread.join().ok();
+        }
+    }
+}

@@ -1,0 +1,183 @@
+//! The wheel: wait, update, carry out, draw, paint. Draws only what changed, sends nothing when nothing does.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use anyhow::Context as _;
+use honami_workbench::session::{Session, SessionOptions};
+
+use super::effects::World;
+use super::layout::{Layout, Lens};
+use super::pictures::Pictures;
+use super::state::{Link, Notice, State};
+use super::update::{Effect, Fact, Msg, update};
+use super::view;
+use crate::term::encode::Frame;
+use crate::term::input::Event;
+use crate::term::screen::Screen;
+
+/// While the clip is being decoded, the time line is looked after this often.
+const DECODING_TICK: Duration = Duration::from_millis(250);
+/// Figures of the link change this often at most.
+const LINK_TICK: Duration = Duration::from_secs(1);
+
+/// Shows a project in the terminal until its user leaves, or the terminal does.
+///
+/// # Errors
+/// When there is no terminal, or the project cannot be read.
+pub fn run(session: Option<Session>, _options: &SessionOptions) -> anyhow::Result<()> {
+    let Some(session) = session else {
+        anyhow::bail!("a project or a clip is wanted: `honami CLIP` opens a clip, `honami demo` makes one");
+    };
+    let mut screen = Screen::open(&log_path()).context("the terminal UI cannot start")?;
+    let mut world = World::new(session, screen.waker());
+    let mut app = App {
+        state: world.state(screen.size())?,
+        pictures: Pictures::new(world.media(), screen.waker())?,
+        frame: None,
+        is_exact: false,
+        link_seen: Duration::ZERO,
+    };
+    app.state.mono = screen.is_mono();
+    let outcome = app.turn(&mut screen, &mut world);
+    let closed = screen.close();
+    drop(app);
+    world.close()?;
+    outcome?;
+    Ok(closed?)
+}
+
+/// Where output goes that would tear the screen: `$XDG_STATE_HOME/honami/session.log`.
+fn log_path() -> PathBuf {
+    let home = || std::env::var_os("HOME").map(|home| PathBuf::from(home).join(".local/state"));
+    let state = std::env::var_os("XDG_STATE_HOME").map(PathBuf::from).filter(|path| path.is_absolute());
+    state.or_else(home).unwrap_or_else(std::env::temp_dir).join("honami/session.log")
+}
+
+struct App {
+    state: State,
+    pictures: Pictures,
+    /// What the screen should show; `None` when the state has changed since.
+    frame: Option<Frame>,
+    is_exact: bool,
+    /// When the figures of the link were last looked at.
+    link_seen: Duration,
+}
+
+impl App {
+    fn turn(&mut self, screen: &mut Screen, world: &mut World) -> anyhow::Result<()> {
+        loop {
+            let until = [self.state.next_tick(), self.decoding_tick(screen.now())].into_iter().flatten().min();
+            let happened = screen.wait(until, self.frame.is_none() || !self.is_exact)?;
+            self.tell(Msg::Clock(screen.now()), screen, world)?;
+            let mut is_leaving = happened.end.is_some();
+            if happened.resized {
+                let (columns, rows) = screen.size();
+                screen.forget();
+                self.tell(Msg::Resize(columns, rows), screen, world)?;
+                self.frame = None;
+            }
+            for event in happened.events {
+                let msg = match event {
+                    Event::Key(key) => Msg::Key(key),
+                    Event::Mouse(mouse) => Msg::Mouse(mouse),
+                    Event::Paste(text) => Msg::Paste(text),
+                    Event::Reply(_) | Event::Focus(_) => continue,
+                };
+                self.frame = None;
+                is_leaving |= self.tell(msg, screen, world)?;
+            }
+            for fact in world.news() {
+                self.frame = None;
+                self.tell(Msg::Fact(fact), screen, world)?;
+            }
+            if is_leaving {
+                return Ok(());
+            }
+            if happened.suspend {
+                screen.suspend()?;
+                self.frame = None;
+            }
+            self.show(screen, world)?;
+        }
+    }
+
+    fn decoding_tick(&self, now: Duration) -> Option<Duration> {
+        (self.state.n_ready < self.state.clip.n_frames()).then_some(now + DECODING_TICK)
+    }
+
+    /// Updates the state and does what it wants; returns whether it wants to leave.
+    fn tell(&mut self, msg: Msg, screen: &mut Screen, world: &mut World) -> anyhow::Result<bool> {
+        let before = self.state.frame;
+        for effect in update(&mut self.state, msg) {
+            match effect {
+                Effect::Leave => return Ok(true),
+                Effect::Suspend => {
+                    screen.suspend()?;
+                    self.frame = None;
+                }
+                Effect::Redraw => screen.forget(),
+                other => {
+                    for fact in world.carry_out(other, screen.now()) {
+                        update(&mut self.state, Msg::Fact(fact));
+                    }
+                }
+            }
+        }
+        if self.state.frame != before {
+            self.frame = None;
+        }
+        Ok(false)
+    }
+
+    /// Paints, if there is anything to paint and the link has room for it.
+    fn show(&mut self, screen: &mut Screen, world: &World) -> anyhow::Result<()> {
+        let n_ready = world.n_ready();
+        if n_ready != self.state.n_ready {
+            update(&mut self.state, Msg::Fact(Fact::Ready(n_ready)));
+            self.frame = None;
+        }
+        let lens = Lens::of(&self.state, Layout::of(&self.state).picture);
+        match self.pictures.look(self.state.frame, lens) {
+            Ok(true) => self.frame = None,
+            Ok(false) => {}
+            Err(error) => {
+                let notice = Notice { text: error.to_string(), is_error: true };
+                if self.state.notice.as_ref() != Some(&notice) {
+                    self.state.notice = Some(notice);
+                    self.frame = None;
+                }
+            }
+        }
+        if !screen.has_slot() || (self.frame.is_some() && self.is_exact) {
+            return Ok(());
+        }
+        if self.frame.is_none() {
+            self.look_at_link(screen);
+        }
+        let (state, shot) = (&self.state, self.pictures.shot());
+        let frame = self.frame.get_or_insert_with(|| view::draw(state, shot));
+        self.is_exact = screen.paint(frame, state.play.is_some())?;
+        Ok(())
+    }
+
+    /// Takes the figures of the link into the state, in round numbers and not too often: they cost bytes.
+    fn look_at_link(&mut self, screen: &Screen) {
+        let now = screen.now();
+        if self.link_seen != Duration::ZERO && now < self.link_seen + LINK_TICK {
+            return;
+        }
+        self.link_seen = now;
+        let link = screen.link();
+        let round = |x: f64| {
+            let unit = 10_f64.powf((x.max(1.0).log10().floor() - 1.0).max(0.0));
+            ((x / unit).round() * unit) as u32
+        };
+        let link = Link {
+            delay_ms: link.delay().map(|delay| round(delay.as_secs_f64() * 1e3)),
+            rate_kbs: link.goodput().map(|rate| round(rate / 1e3)),
+            is_silent: link.is_silent(),
+        };
+        update(&mut self.state, Msg::Fact(Fact::Link(link)));
+    }
+}

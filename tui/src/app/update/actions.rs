@@ -1,0 +1,200 @@
+//! Actions, each by its place.
+
+use super::{Action, Effect, Mode, State, choose, complain, edit, open_menu, say, time};
+use crate::app::form::{Form, Task};
+
+/// Deepest magnification, as a power of two.
+const ZOOM_MAX: u8 = 5;
+
+/// Does an action. The count, if one was typed, is still in the state.
+pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {
+    match action {
+        Action::Left => return steer(state, -1.0, 0.0, 1.0),
+        Action::Right => return steer(state, 1.0, 0.0, 1.0),
+        Action::Up => return steer(state, 0.0, -1.0, 1.0),
+        Action::Down => return steer(state, 0.0, 1.0, 1.0),
+        Action::FineLeft => return steer(state, -1.0, 0.0, 0.25),
+        Action::FineRight => return steer(state, 1.0, 0.0, 0.25),
+        Action::FineUp => return steer(state, 0.0, -1.0, 0.25),
+        Action::FineDown => return steer(state, 0.0, 1.0, 0.25),
+        Action::Accept => return accept(state),
+        Action::Back => return back(state),
+        Action::Quit if matches!(state.mode, Mode::Review) => return vec![Effect::Leave],
+        Action::Quit => return back(state),
+        Action::Leave => return vec![Effect::Leave],
+        Action::Erase => return erase(state),
+        Action::PlayPause => time::play(state, 1.0),
+        Action::PlayBackwards => time::play(state, -1.0),
+        Action::StepForward => time::step(state, count(state)),
+        Action::StepBack => time::step(state, -count(state)),
+        Action::LeapForward => time::step(state, 10 * count(state)),
+        Action::LeapBack => time::step(state, -10 * count(state)),
+        Action::GoStart => time::go(state, 0),
+        Action::GoEnd => time::go(state, state.last_frame()),
+        Action::GoFrame => match state.count {
+            Some(frame) => time::go(state, frame),
+            None => state.mode = Mode::Prompt(String::new()),
+        },
+        Action::GoTrack => time::go_track(state),
+        Action::NextTrack => time::step_track(state, count(state)),
+        Action::PreviousTrack => time::step_track(state, -count(state)),
+        Action::WorstFrame => time::go_worst(state),
+        Action::NextKey => time::go_key(state, count(state)),
+        Action::PreviousKey => time::go_key(state, -count(state)),
+        Action::MoveSample => edit::begin_move(state),
+        Action::AddFeature => edit::begin_place(state),
+        Action::DeleteTrack => return edit::delete(state),
+        Action::MoreGroups => return edit::cut(state, count(state)),
+        Action::FewerGroups => return edit::cut(state, -count(state)),
+        Action::Undo => return edit::repeat(state, &Effect::Undo),
+        Action::Redo => return edit::repeat(state, &Effect::Redo),
+        Action::RunTracker => open_form(state, Task::Track),
+        Action::RunClusterer => open_form(state, Task::Cluster),
+        Action::ZoomIn => zoom(state, 1),
+        Action::ZoomOut => zoom(state, -1),
+        Action::Follow => follow(state),
+        Action::Column => state.column = !state.column,
+        Action::Palette => open_menu(state, "actions"),
+        Action::Help => open_menu(state, "what works here"),
+        Action::Redraw => return vec![Effect::Redraw],
+        Action::Suspend => return vec![Effect::Suspend],
+    }
+    Vec::new()
+}
+
+/// The number typed before the command, 1 if none.
+pub(super) fn count(state: &State) -> i64 {
+    i64::from(state.count.unwrap_or(1))
+}
+
+/// hjkl and the arrows: what they move depends on the place.
+fn steer(state: &mut State, dx: f32, dy: f32, px: f32) -> Vec<Effect> {
+    let n = count(state);
+    let (columns, rows) = (n * dx as i64, n * dy as i64);
+    let by = [dx, dy].map(|d| d * px * n as f32);
+    match &mut state.mode {
+        Mode::Review if columns != 0 => time::step(state, columns),
+        Mode::Review => time::step_track(state, rows),
+        Mode::Place(at) | Mode::Move { to: at, .. } => {
+            *at = edit::within(&state.clip, [at[0] + by[0], at[1] + by[1]]);
+        }
+        Mode::Form(form) if columns != 0 => form.change(columns, px < 1.0),
+        Mode::Form(form) => form.step(rows),
+        Mode::Menu(menu) => menu.step(rows),
+        Mode::Prompt(_) => {}
+    }
+    Vec::new()
+}
+
+fn accept(state: &mut State) -> Vec<Effect> {
+    match &mut state.mode {
+        Mode::Review => edit::confirm(state),
+        Mode::Place(_) => edit::place(state),
+        Mode::Move { .. } => edit::keep(state),
+        Mode::Menu(_) => choose(state),
+        Mode::Prompt(typed) => {
+            let frame = typed.parse().ok();
+            state.mode = Mode::Review;
+            if let Some(frame) = frame {
+                time::go(state, frame);
+            }
+            Vec::new()
+        }
+        Mode::Form(form) if form.typed.is_some() => {
+            if let Err(line) = form.take_typed() {
+                complain(state, line);
+            }
+            Vec::new()
+        }
+        Mode::Form(_) => run(state),
+    }
+}
+
+fn run(state: &mut State) -> Vec<Effect> {
+    if let Some(job) = &state.job {
+        let line = format!("{} is still running: wait for it, or stop it with Esc while reviewing", job.plugin);
+        complain(state, line);
+        return Vec::new();
+    }
+    let Mode::Form(form) = std::mem::replace(&mut state.mode, Mode::Review) else { return Vec::new() };
+    vec![Effect::Run {
+        task: form.task,
+        plugin: form.plugin().name.clone(),
+        values: form.values(),
+        existing: form.follows_existing(),
+        every: form.every(),
+    }]
+}
+
+/// Leaves what is open; while reviewing, stops what runs: first the clip, then the job.
+fn back(state: &mut State) -> Vec<Effect> {
+    match &mut state.mode {
+        Mode::Review if state.play.is_some() => state.play = None,
+        Mode::Review => {
+            if let Some(job) = state.job.as_mut().filter(|job| !job.is_stopping) {
+                job.is_stopping = true;
+                return vec![Effect::StopJob];
+            }
+        }
+        Mode::Form(form) if form.typed.is_some() => form.typed = None,
+        Mode::Menu(menu) => state.mode = std::mem::replace(&mut menu.below, Mode::Review),
+        _ => state.mode = Mode::Review,
+    }
+    Vec::new()
+}
+
+fn erase(state: &mut State) -> Vec<Effect> {
+    match &mut state.mode {
+        Mode::Review => return edit::clear_key(state),
+        Mode::Menu(menu) => menu.retype(|typed| {
+            typed.pop();
+        }),
+        Mode::Prompt(typed) => {
+            typed.pop();
+        }
+        Mode::Form(form) => {
+            if let Some(typed) = &mut form.typed {
+                typed.pop();
+            }
+        }
+        Mode::Place(_) | Mode::Move { .. } => {}
+    }
+    Vec::new()
+}
+
+fn open_form(state: &mut State, task: Task) {
+    let (word, plugin) = match task {
+        Task::Track => ("tracker", "tracker-klt"),
+        Task::Cluster => ("clusterer", "clusterer-movement"),
+    };
+    if let Some(holder) = &state.read_only {
+        let line = format!("read only: {holder} holds this project");
+        return complain(state, line);
+    }
+    if task == Task::Cluster && state.tracks.len() < 2 {
+        return complain(state, "two tracks or more can be grouped; t follows features first");
+    }
+    match Form::new(task, &state.plugins, !state.tracks.is_empty()) {
+        Some(form) => state.mode = Mode::Form(Box::new(form)),
+        None => complain(state, format!("no {word} was found; `honami doctor` says where {plugin} is looked for")),
+    }
+}
+
+fn zoom(state: &mut State, by: i8) {
+    let focus = match state.mode {
+        Mode::Place(at) | Mode::Move { to: at, .. } => Some(at),
+        _ => state.selected_at(),
+    };
+    if let Some(focus) = focus.filter(|_| by > 0) {
+        state.centre = focus;
+    }
+    state.zoom = state.zoom.saturating_add_signed(by).min(ZOOM_MAX);
+}
+
+fn follow(state: &mut State) {
+    state.follow = !state.follow && state.selected.is_some();
+    if state.follow {
+        state.zoom = state.zoom.max(1);
+    }
+    say(state, if state.follow { "following the selected track" } else { "not following" });
+}

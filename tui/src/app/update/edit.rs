@@ -1,0 +1,139 @@
+//! Correcting: each edit is one transaction, and one `u` takes it back.
+
+use honami_model::clip::Clip;
+use honami_model::edit::Transaction;
+use honami_model::track::{Source, TrackSet};
+
+use super::{Effect, Mode, State, complain, say};
+
+/// Whether edits are possible; says why not.
+fn is_writable(state: &mut State) -> bool {
+    match &state.read_only {
+        Some(holder) => {
+            let line = format!("read only: {holder} holds this project; nothing can be changed here");
+            complain(state, line);
+            false
+        }
+        None => true,
+    }
+}
+
+/// The point, or the nearest one of the picture.
+pub(super) fn within(clip: &Clip, [x, y]: [f32; 2]) -> [f32; 2] {
+    let edge = |n: u32| n.saturating_sub(1) as f32;
+    [x.clamp(0.0, edge(clip.width)), y.clamp(0.0, edge(clip.height))]
+}
+
+pub(super) fn begin_place(state: &mut State) {
+    if is_writable(state) {
+        state.play = None;
+        let from = state.selected_at().filter(|_| state.zoom > 0).unwrap_or(state.centre);
+        state.mode = Mode::Place(within(&state.clip, from.map(f32::round)));
+    }
+}
+
+pub(super) fn place(state: &mut State) -> Vec<Effect> {
+    let Mode::Place(at) = std::mem::replace(&mut state.mode, Mode::Review) else { return Vec::new() };
+    vec![Effect::AddFeature { frame: state.frame, at }]
+}
+
+pub(super) fn begin_move(state: &mut State) {
+    if !is_writable(state) {
+        return;
+    }
+    let Some(row) = state.selected_row() else {
+        return complain(state, "select a track first: n takes the next, a click takes the nearest");
+    };
+    // Before its first and after its last sample a track can be continued from the nearest.
+    let frames = row.span.frames();
+    let nearest = state.frame.clamp(frames.start, frames.end.saturating_sub(1).max(frames.start));
+    if let Some(at) = row.at(nearest) {
+        state.play = None;
+        state.mode = Mode::Move { from: at, to: at };
+    }
+}
+
+pub(super) fn keep(state: &mut State) -> Vec<Effect> {
+    let Mode::Move { to, .. } = std::mem::replace(&mut state.mode, Mode::Review) else { return Vec::new() };
+    let Some(row) = state.selected_row() else { return Vec::new() };
+    vec![Effect::Commit(Transaction::set_key(row.id, state.frame, to, row.at(state.frame)))]
+}
+
+/// Confirms the sample shown here.
+pub(super) fn confirm(state: &mut State) -> Vec<Effect> {
+    if !is_writable(state) {
+        return Vec::new();
+    }
+    let Some(row) = state.selected_row() else {
+        say(state, "n selects a track; Enter confirms its sample here");
+        return Vec::new();
+    };
+    let id = row.id;
+    match row.span.get(state.frame) {
+        Some(sample) if sample.source == Source::Key => {
+            say(state, format!("track {id}: frame {} is a key-frame already", state.frame));
+            Vec::new()
+        }
+        Some(sample) => vec![Effect::Commit(Transaction::confirm_key(id, state.frame, [sample.x, sample.y]))],
+        None => {
+            complain(state, format!("track {id} has no sample at {}; m places one", state.frame));
+            Vec::new()
+        }
+    }
+}
+
+/// Takes the key-frame here away.
+pub(super) fn clear_key(state: &mut State) -> Vec<Effect> {
+    if !is_writable(state) {
+        return Vec::new();
+    }
+    let key = state.selected_row().filter(|row| row.keys.contains(&state.frame)).map(|row| row.id);
+    match key {
+        Some(track) => vec![Effect::Commit(Transaction::clear_key(track, state.frame))],
+        None => {
+            complain(state, "no key-frame of the selected track is here; [ and ] go to them");
+            Vec::new()
+        }
+    }
+}
+
+/// Deletes the selected track and selects its neighbour.
+pub(super) fn delete(state: &mut State) -> Vec<Effect> {
+    if !is_writable(state) {
+        return Vec::new();
+    }
+    let at = state.selected.and_then(|id| state.tracks.iter().position(|row| row.id == id));
+    let Some(at) = at else {
+        complain(state, "select a track first: n takes the next");
+        return Vec::new();
+    };
+    let track = state.tracks[at].id;
+    state.selected = state.tracks.get(at + 1).or_else(|| state.tracks.get(at.wrapping_sub(1))).map(|r| r.id);
+    vec![Effect::Commit(Transaction::delete_tracks(TrackSet::from(track)))]
+}
+
+/// Cuts the hierarchy into so many groups more.
+pub(super) fn cut(state: &mut State, by: i64) -> Vec<Effect> {
+    if !is_writable(state) {
+        return Vec::new();
+    }
+    let Some(groups) = &state.groups else {
+        complain(state, "there is no hierarchy to cut; c groups the tracks");
+        return Vec::new();
+    };
+    let k = (i64::from(groups.k) + by).clamp(1, i64::from(groups.dendrogram.n_leaves()).max(1));
+    let k = u32::try_from(k).unwrap_or(1);
+    if k == groups.k {
+        say(state, format!("{k} groups is as far as it goes"));
+        return Vec::new();
+    }
+    vec![Effect::Commit(Transaction::set_cut(k))]
+}
+
+/// Undo or redo as often as the count says.
+pub(super) fn repeat(state: &mut State, effect: &Effect) -> Vec<Effect> {
+    if !is_writable(state) {
+        return Vec::new();
+    }
+    vec![effect.clone(); usize::try_from(super::actions::count(state).min(100)).unwrap_or(1)]
+}

@@ -1,0 +1,51 @@
+//! What the world tells the state.
+
+use super::{Mode, State};
+use crate::app::state::{Job, Link, Notice};
+use crate::app::tracks::{Groups, TrackRow};
+
+/// Something that has changed in the world.
+#[derive(Clone, Debug)]
+pub enum Fact {
+    /// The tracks are these now, in order of their numbers.
+    Tracks(Vec<TrackRow>),
+    /// The shown clustering is this now.
+    Groups(Option<Groups>),
+    /// The tracker whose run is on top.
+    Tracker(Option<String>),
+    /// A new track was placed: it becomes the selected one.
+    Placed(honami_model::track::TrackId),
+    /// A job began, went on, or ended.
+    Job(Option<Job>),
+    /// Something worth a line.
+    Said(Notice),
+    /// What is known of the link.
+    Link(Link),
+    /// So many frames can be shown without waiting.
+    Ready(u32),
+}
+
+pub(super) fn on_fact(state: &mut State, fact: Fact) {
+    match fact {
+        Fact::Tracks(rows) => {
+            state.tracks = rows;
+            if state.selected.is_none_or(|track| state.row(track).is_none()) {
+                state.selected = state.tracks.first().map(|row| row.id);
+            }
+            // The sample being moved is gone: there is nothing to keep.
+            if matches!(state.mode, Mode::Move { .. }) && state.selected_row().is_none() {
+                state.mode = Mode::Review;
+            }
+        }
+        Fact::Groups(groups) => state.groups = groups,
+        Fact::Tracker(tracker) => state.tracker = tracker,
+        Fact::Placed(track) => state.selected = Some(track),
+        Fact::Job(job) => {
+            let was_stopping = state.job.as_ref().is_some_and(|old| old.is_stopping);
+            state.job = job.map(|job| Job { is_stopping: job.is_stopping || was_stopping, ..job });
+        }
+        Fact::Said(notice) => state.notice = Some(notice),
+        Fact::Link(link) => state.link = link,
+        Fact::Ready(n) => state.n_ready = n,
+    }
+}

@@ -1,0 +1,63 @@
+//! The mouse: selects, places, scrubs; whatever it does, keys do too.
+
+use super::{Effect, Mode, State, time};
+use crate::app::layout::{Layout, Lens, bar, frame_at};
+use crate::app::view::column;
+use crate::term::input::{Mouse, MouseKind};
+
+/// A click farther than so many cells from a track selects nothing.
+const REACH_CELLS: f32 = 3.0;
+
+pub(super) fn on_mouse(state: &mut State, mouse: Mouse) -> Vec<Effect> {
+    let layout = Layout::of(state);
+    let lens = Lens::of(state, layout.picture);
+    let here = (mouse.column, mouse.row).into();
+    match mouse.kind {
+        MouseKind::WheelUp | MouseKind::WheelDown => {
+            let by = if mouse.kind == MouseKind::WheelUp { -1 } else { 1 };
+            match &mut state.mode {
+                Mode::Menu(menu) => menu.step(by),
+                Mode::Form(form) => form.step(by),
+                Mode::Review if layout.column.contains(here) => time::step_track(state, by),
+                Mode::Review => time::step(state, by),
+                _ => {}
+            }
+        }
+        MouseKind::Press(0) | MouseKind::Drag(0) if layout.time.contains(here) => {
+            if matches!(state.mode, Mode::Review) {
+                let n_frames = state.clip.n_frames();
+                time::go(state, frame_at(bar(layout.time, n_frames), n_frames, mouse.column));
+            }
+        }
+        MouseKind::Press(0) if layout.column.contains(here) => {
+            if let Some(track) = column::track_at(state, layout.column, mouse.row) {
+                time::select(state, track);
+            }
+        }
+        MouseKind::Press(0) | MouseKind::Drag(0) => {
+            if let Some(point) = lens.point_of(mouse.column, mouse.row) {
+                match &mut state.mode {
+                    Mode::Place(at) | Mode::Move { to: at, .. } => *at = point,
+                    Mode::Review if matches!(mouse.kind, MouseKind::Press(_)) => nearest(state, &lens, point),
+                    _ => {}
+                }
+            }
+        }
+        _ => {}
+    }
+    Vec::new()
+}
+
+/// Selects the track nearest to a point.
+fn nearest(state: &mut State, lens: &Lens, point: [f32; 2]) {
+    let far = |at: [f32; 2]| (at[0] - point[0]).hypot(at[1] - point[1]);
+    let found = state
+        .tracks
+        .iter()
+        .filter_map(|row| Some((row.id, far(row.at(state.frame)?))))
+        .filter(|(_, far)| *far <= REACH_CELLS * lens.cell_px())
+        .min_by(|a, b| a.1.total_cmp(&b.1));
+    if let Some((track, _)) = found {
+        time::select(state, track);
+    }
+}

@@ -1,0 +1,311 @@
+//! What keys do: `(state, keys, state)`, through one door.
+
+use super::*;
+use crate::app::action::TABLE;
+use crate::app::fixture;
+use crate::app::state::{Job, Play};
+use crate::app::update::Fact;
+use crate::term::input::MouseKind;
+use honami_model::track::TrackId;
+
+/// The state that a line of words describes, from the fixture: `frame=10 track=2 zoom=1 playing job …`.
+fn start(words: &str) -> State {
+    let mut state = fixture::state();
+    for word in words.split_whitespace() {
+        let (name, value) = word.split_once('=').unwrap_or((word, "0"));
+        let n = value.parse::<u32>().unwrap();
+        match name {
+            "frame" => state.frame = n,
+            "track" => state.selected = Some(TrackId(n)),
+            "zoom" => state.zoom = n as u8,
+            "empty" => {
+                state.tracks.clear();
+                state.selected = None;
+                state.groups = None;
+            }
+            "locked" => state.read_only = Some("ada on lab2".to_owned()),
+            "playing" => state.play = Some(Play { rate: 1.0, since: state.now, from: state.frame }),
+            "job" => {
+                let (what, plugin) = ("frame".to_owned(), "klt".to_owned());
+                let since = Duration::ZERO;
+                let done = (10, 100);
+                state.job = Some(Job { plugin, what, done, since, keeps_frames: true, is_stopping: false });
+            }
+            "bare" => state.plugins.clear(),
+            _ => panic!("{word}?"),
+        }
+    }
+    state
+}
+
+/// Presses keys; returns what they asked for.
+fn press(state: &mut State, keys: &str) -> Vec<Effect> {
+    keys.split_whitespace().flat_map(|key| update(state, Msg::Key(key.parse().unwrap()))).collect()
+}
+
+/// The state and the effects in one line.
+fn line(state: &State, effects: &[Effect]) -> String {
+    let mut words = vec![match &state.mode {
+        Mode::Review => "review".to_owned(),
+        Mode::Place([x, y]) => format!("place {x} {y}"),
+        Mode::Move { from, to } => format!("move {} {}", to[0] - from[0], to[1] - from[1]),
+        Mode::Form(form) => format!("form {:?} row {} typed {:?}", form.task, form.at, form.typed),
+        Mode::Menu(menu) => format!("menu {:?} of {}", menu.chosen().map(|r| r.label.as_str()), menu.rows().len()),
+        Mode::Prompt(typed) => format!("prompt {typed:?}"),
+    }];
+    words.push(format!("frame {} track {}", state.frame, state.selected.map_or("-".to_owned(), |t| t.to_string())));
+    words.extend(state.count.map(|n| format!("count {n}")));
+    words.extend(state.play.map(|play| format!("play {}", play.rate)));
+    words.extend(state.notice.as_ref().map(|n| format!("{} {}", if n.is_error { "error" } else { "said" }, n.text)));
+    words.extend(effects.iter().map(|effect| match effect {
+        Effect::Commit(transaction) => format!("commit {}", transaction.label),
+        Effect::Run { plugin, values, existing, every, .. } => {
+            let values: Vec<String> = values.iter().map(|(id, value)| format!("{id}={value}")).collect();
+            format!("run {plugin} existing={existing} every={every:?} {}", values.join(" "))
+        }
+        other => format!("{other:?}"),
+    }));
+    words.join(" | ")
+}
+
+/// The one door.
+#[track_caller]
+fn check(from: &str, keys: &str, expect: &str) {
+    let mut state = start(from);
+    let effects = press(&mut state, keys);
+    assert_eq!(line(&state, &effects), expect, "from `{from}` by `{keys}`");
+}
+
+#[test]
+fn moving_in_time() {
+    for (from, keys, expect) in [
+        ("", ".", "review | frame 1 track 1"),
+        ("", "1 2 .", "review | frame 12 track 1"),
+        ("frame=5", "3 ,", "review | frame 2 track 1"),
+        ("", ",", "review | frame 0 track 1"),
+        ("frame=50", ">", "review | frame 60 track 1"),
+        ("frame=50", "2 <", "review | frame 30 track 1"),
+        ("frame=50", "l l h Right Left", "review | frame 51 track 1"),
+        ("frame=50", "g e", "review | frame 99 track 1"),
+        ("frame=50", "Home", "review | frame 0 track 1"),
+        ("", "4 2 g f", "review | frame 42 track 1"),
+        ("", "g f 4 2 Enter", "review | frame 42 track 1"),
+        ("frame=5", "g f 4 x Backspace 7 Esc", "review | frame 5 track 1"),
+        ("", "5 0 0 g f", "review | frame 99 track 1 | error frame 500 is wanted, the last one is 99"),
+        ("frame=20", "]", "review | frame 50 track 1"),
+        ("frame=99", "2 [", "review | frame 10 track 1"),
+        ("frame=60", "]", "review | frame 60 track 1 | said track 1: no key-frame after this"),
+        ("", "w", "review | frame 70 track 1"),
+        ("", "1 2 Esc", "review | frame 0 track 1"),
+        ("", "1 2 F9", "review | frame 0 track 1"),
+        ("", "g x", "review | frame 0 track 1"),
+    ] {
+        check(from, keys, expect);
+    }
+}
+
+#[test]
+fn playing() {
+    check("", "space", "review | frame 0 track 1 | play 1");
+    check("playing frame=3", "space", "review | frame 3 track 1");
+    check("frame=9", "B", "review | frame 9 track 1 | play -1");
+    check("playing", "Esc", "review | frame 0 track 1");
+    check("playing", ".", "review | frame 1 track 1");
+    check("frame=99", "space", "review | frame 0 track 1 | play 1");
+    let mut state = start("frame=10");
+    press(&mut state, "space");
+    for (ms, frame) in [(39, 10), (41, 11), (400, 20), (10_000, 99)] {
+        update(&mut state, Msg::Clock(Duration::from_millis(ms)));
+        assert_eq!(state.frame, frame, "after {ms} ms");
+    }
+    assert_eq!(state.play, None, "the end stops it");
+    press(&mut state, "B");
+    for (ms, frame) in [(10_039, 99), (10_041, 98), (10_400, 89), (90_000, 0)] {
+        update(&mut state, Msg::Clock(Duration::from_millis(ms)));
+        assert_eq!(state.frame, frame, "backwards after {ms} ms");
+    }
+}
+
+#[test]
+fn the_next_tick_shows_the_next_frame() {
+    for keys in ["space", "B"] {
+        let mut state = start("frame=50");
+        press(&mut state, keys);
+        let mut seen = vec![state.frame];
+        while let Some(tick) = state.next_tick() {
+            update(&mut state, Msg::Clock(tick));
+            assert_ne!(seen.last(), Some(&state.frame), "{keys}: a tick without a frame");
+            seen.push(state.frame);
+        }
+        assert_eq!(seen.len(), if keys == "B" { 51 } else { 50 }, "{keys}: every frame once");
+    }
+}
+
+#[test]
+fn selecting_tracks() {
+    for (from, keys, expect) in [
+        ("", "n", "review | frame 0 track 2"),
+        ("", "p", "review | frame 0 track 7"),
+        ("", "2 n", "review | frame 0 track 7"),
+        ("", "j j k", "review | frame 0 track 2"),
+        ("", "7 g t", "review | frame 0 track 7"),
+        ("", "3 g t", "review | frame 0 track 1 | error there is no track 3"),
+        ("", "/ 7 Enter", "review | frame 0 track 7"),
+        ("track=7", "/ b u d Enter", "review | frame 0 track 1"),
+        ("empty", "n", "review | frame 0 track - | error there are no tracks yet: t follows features, a adds one by hand"),
+    ] {
+        check(from, keys, expect);
+    }
+}
+
+#[test]
+fn editing() {
+    let sway = "review | frame 20 track 1";
+    for (from, keys, expect) in [
+        ("frame=20", "m", "move 0 0 | frame 20 track 1"),
+        ("frame=20", "m l l k", "move 2 -1 | frame 20 track 1"),
+        ("frame=20", "m 5 l H", "move 4.75 0 | frame 20 track 1"),
+        ("frame=20", "m l Enter", &format!("{sway} | commit track 1: key-frame at 20 (moved 1.0 px)")),
+        ("frame=20", "m l Esc", sway),
+        ("frame=20", "m l q", sway),
+        ("frame=80 track=2", "m Enter", "review | frame 80 track 2 | commit track 2: key-frame at 80 (placed at 66.1, 120.0)"),
+        ("frame=20", "Enter", &format!("{sway} | commit track 1: key-frame at 20 (confirmed)")),
+        ("frame=50", "Enter", "review | frame 50 track 1 | said track 1: frame 50 is a key-frame already"),
+        ("frame=50", "Backspace", "review | frame 50 track 1 | commit track 1: key-frame at 50 cleared"),
+        ("frame=20", "Backspace", &format!("{sway} | error no key-frame of the selected track is here; [ and ] go to them")),
+        ("", "d", "review | frame 0 track 2 | commit track 1 deleted"),
+        ("track=7", "d", "review | frame 0 track 2 | commit track 7 deleted"),
+        ("", "a", "place 160 120 | frame 0 track 1"),
+        ("", "a 1 0 h J Enter", "review | frame 0 track 1 | AddFeature { frame: 0, at: [150.0, 120.25] }"),
+        ("", "a 9 9 9 h Enter", "review | frame 0 track 1 | AddFeature { frame: 0, at: [0.0, 120.0] }"),
+        ("", "u", "review | frame 0 track 1 | Undo"),
+        ("", "2 Ctrl-r", "review | frame 0 track 1 | Redo | Redo"),
+        ("", "+", "review | frame 0 track 1 | commit cut into 3 groups"),
+        ("", "9 +", "review | frame 0 track 1 | commit cut into 3 groups"),
+        ("", "-", "review | frame 0 track 1 | commit cut into 1 group"),
+        ("empty", "+", "review | frame 0 track - | error there is no hierarchy to cut; c groups the tracks"),
+        ("empty", "m", "review | frame 0 track - | error select a track first: n takes the next, a click takes the nearest"),
+        ("locked", "d", "review | frame 0 track 1 | error read only: ada on lab2 holds this project; nothing can be changed here"),
+    ] {
+        check(from, keys, expect);
+    }
+}
+
+#[test]
+fn every_edit_is_refused_in_a_locked_project() {
+    for keys in ["m", "a", "d", "Enter", "Backspace", "u", "Ctrl-r", "+", "-", "t", "c"] {
+        let mut state = start("locked frame=50");
+        let effects = press(&mut state, keys);
+        assert!(effects.is_empty() && matches!(state.mode, Mode::Review), "{keys}: {effects:?}");
+        assert!(state.notice.is_some_and(|n| n.is_error && n.text.contains("ada on lab2")), "{keys}");
+    }
+}
+
+#[test]
+fn forms() {
+    let klt = "run klt existing=false every=None";
+    let rest = "check=true expire=0.55 label=none motion=translation";
+    for (from, keys, expect) in [
+        ("", "t", "form Track row 0 typed None | frame 0 track 1"),
+        ("", "t Esc", "review | frame 0 track 1"),
+        ("", "t Enter", &format!("review | frame 0 track 1 | {klt} {rest} radius=10")),
+        ("", "t j j j l l Enter", &format!("review | frame 0 track 1 | {klt} {rest} radius=12")),
+        ("", "t j j j 2 5 Enter Enter", &format!("review | frame 0 track 1 | {klt} {rest} radius=25")),
+        ("", "t j j j j j j j j j k", "form Track row 6 typed None | frame 0 track 1"),
+        ("", "t j j j 9 9 Enter", "form Track row 3 typed Some(\"99\") | frame 0 track 1 | error radius: wanted a whole number, 2 to 50 (px), got \"99\""),
+        ("", "t j j j 9 9 Esc Esc", "review | frame 0 track 1"),
+        ("", "t j j j j j l k l l Enter", &format!("review | frame 0 track 1 | {klt} {} radius=10", rest.replace("check=true", "check=false"))),
+        ("", "t j l Enter", &format!("review | frame 0 track 1 | {} {rest} radius=10", klt.replace("false", "true"))),
+        ("", "t j j l l Enter", &format!("review | frame 0 track 1 | {} {rest} radius=10", klt.replace("None", "Some(10)"))),
+        ("", "t l Enter", "review | frame 0 track 1 | run flow existing=true every=None "),
+        ("", "c Enter", "review | frame 0 track 1 | run movement existing=false every=None "),
+        ("job", "t Enter", "form Track row 0 typed None | frame 0 track 1 | error klt is still running: wait for it, or stop it with Esc while reviewing"),
+        ("bare", "t", "review | frame 0 track 1 | error no tracker was found; `honami doctor` says where tracker-klt is looked for"),
+        ("empty", "c", "review | frame 0 track - | error two tracks or more can be grouped; t follows features first"),
+    ] {
+        check(from, keys, expect);
+    }
+}
+
+#[test]
+fn a_text_is_typed_with_every_letter() {
+    let mut state = start("");
+    press(&mut state, "t j j j j j j");
+    press(&mut state, "l Backspace Backspace Backspace Backspace q h j k l Enter");
+    let effects = press(&mut state, "Enter");
+    assert!(line(&state, &effects).contains("label=qhjkl"), "{}", line(&state, &effects));
+}
+
+#[test]
+fn menus_do_what_they_say() {
+    let n_review = TABLE.iter().filter(|i| i.action.word_in(Context::Review).is_some()).count();
+    check("", ":", &format!("menu Some(\"left\") of {n_review} | frame 0 track 1"));
+    check("", ": u n d o Enter", "review | frame 0 track 1 | Undo");
+    check("", ": q q", "menu None of 0 | frame 0 track 1");
+    check("", ": q q Enter", "review | frame 0 track 1");
+    check("frame=20", "m l : z o o m Enter Enter", "review | frame 20 track 1 | commit track 1: key-frame at 20 (moved 1.0 px)");
+    check("frame=20", "m ? Esc", "move 0 0 | frame 20 track 1");
+    check("", "? Down Down Up Enter", "review | frame 0 track 2");
+}
+
+/// Every binding of every place does something or says why not, and none panics; with Esc the way back is short.
+#[test]
+fn every_binding_answers() {
+    let reach = [
+        (Context::Review, ""),
+        (Context::Place, "a"),
+        (Context::Move, "m"),
+        (Context::Form, "t"),
+        (Context::Menu, ":"),
+        (Context::Prompt, "g f"),
+    ];
+    for binding in crate::app::keymap::KeyMap::default().bindings() {
+        let (_, way) = reach.iter().find(|(context, _)| *context == binding.context).unwrap();
+        for from in ["frame=20", "frame=20 empty", "frame=20 job playing", "locked", "bare zoom=2"] {
+            let mut state = start(from);
+            press(&mut state, way);
+            for key in &binding.keys {
+                update(&mut state, Msg::Key(*key));
+            }
+            assert!(state.pending.is_empty(), "{binding:?} from {from}");
+            press(&mut state, "Esc Esc Esc Esc");
+            assert!(matches!(state.mode, Mode::Review), "{binding:?} from {from}: no way back");
+        }
+    }
+}
+
+#[test]
+fn leaving_and_stopping() {
+    check("", "q", "review | frame 0 track 1 | Leave");
+    check("", "Q", "review | frame 0 track 1 | Leave");
+    check("", "t q", "review | frame 0 track 1");
+    check("job", "Esc Esc", "review | frame 0 track 1 | StopJob");
+    check("", "Ctrl-l Ctrl-z", "review | frame 0 track 1 | Redraw | Suspend");
+}
+
+#[test]
+fn the_mouse() {
+    // In 80x24 the picture of 320x240 is 54 cells wide from column 13, 6 px a cell; rows 1 to 20, 12 px each.
+    let mut state = start("");
+    let mut mouse = |kind, column, row| update(&mut state, Msg::Mouse(Mouse { kind, column, row }));
+    mouse(MouseKind::Press(0), 26, 10);
+    mouse(MouseKind::WheelDown, 26, 10);
+    assert_eq!((state.selected, state.frame), (Some(TrackId(2)), 1));
+    let mut state = start("");
+    update(&mut state, Msg::Mouse(Mouse { kind: MouseKind::Press(0), column: 77, row: 22 }));
+    assert_eq!(state.frame, 99, "the end of the time line");
+    press(&mut state, "a");
+    update(&mut state, Msg::Mouse(Mouse { kind: MouseKind::Press(0), column: 40, row: 11 }));
+    let Mode::Place(at) = state.mode else { panic!("not placing") };
+    assert!((at[0] - 162.0).abs() < 6.0 && (at[1] - 126.0).abs() < 12.0, "{at:?}");
+}
+
+#[test]
+fn deleting_what_was_selected_selects_another() {
+    let mut state = start("");
+    let rows = state.tracks[1..].to_vec();
+    update(&mut state, Msg::Fact(Fact::Tracks(rows)));
+    assert_eq!(state.selected, Some(TrackId(2)));
+    update(&mut state, Msg::Fact(Fact::Tracks(Vec::new())));
+    assert_eq!(state.selected, None);
+}

@@ -1,0 +1,102 @@
+//! The form of a plugin, over the lower part of the picture.
+
+use ratatui::layout::Rect;
+use ratatui::style::Style;
+use ratatui::text::{Line, Span};
+
+use honami_workbench::plugins::{Numeric, Param, ParamKind, Value};
+
+use super::{panel, put, style};
+use crate::app::form::{Form, Row, Task, slider};
+use crate::term::encode::Frame;
+
+/// Cells of a slider.
+const SLIDER: usize = 20;
+
+pub(super) fn draw(form: &Form, area: Rect, frame: &mut Frame) {
+    let rows = form.rows();
+    // Blank, rows, blank, doc of the row.
+    let wanted = u16::try_from(rows.len() + 3).unwrap_or(u16::MAX);
+    let inside = panel(frame, area, 78, wanted);
+    let n_listed = usize::from(inside.height.saturating_sub(3)).max(1);
+    let first = form.at.saturating_sub(n_listed - 1);
+    for (y, (i, row)) in (1..).zip(rows.iter().enumerate().skip(first).take(n_listed)) {
+        put(frame, inside, y, &row_line(form, row, i == form.at));
+    }
+    if let Some(doc) = rows.get(form.at).and_then(doc) {
+        put(frame, inside, inside.height.saturating_sub(1), &Line::styled(doc, style::DIM));
+    }
+}
+
+fn doc(row: &Row<'_>) -> Option<String> {
+    match row {
+        Row::Param(param, _) if param.doc.is_empty() => Some(param.wanted()),
+        Row::Param(param, _) => Some(format!("{} ({})", param.doc.trim_end_matches('.'), param.wanted())),
+        Row::Plugin(_) => Some("h l choose another plugin".to_owned()),
+        Row::Fold(_) => Some("h l unfold and fold".to_owned()),
+    }
+}
+
+fn row_line(form: &Form, row: &Row<'_>, is_here: bool) -> Line<'static> {
+    let sign = if is_here { "▸ " } else { "  " };
+    let label_style = if is_here { style::ACCENT } else { Style::new() };
+    let label = |text: &str| Span::styled(format!("{sign}{text:<20} "), label_style);
+    match row {
+        Row::Plugin(plugin) => {
+            let task = match form.task {
+                Task::Track => "track with",
+                Task::Cluster => "group with",
+            };
+            let others = if form.plugins.len() > 1 {
+                format!("   {} of {}", form.which + 1, form.plugins.len())
+            } else {
+                String::new()
+            };
+            Line::from(vec![
+                label(task),
+                Span::styled(format!("{} {}", plugin.name, plugin.version), style::BOLD),
+                Span::styled(others, style::DIM),
+            ])
+        }
+        Row::Fold(n) => Line::from(vec![label(&format!("advanced {} {n}", if form.unfolded { "▾" } else { "▸" }))]),
+        Row::Param(param, value) => {
+            let mut spans = vec![label(if param.label.is_empty() { &param.id } else { &param.label })];
+            match &form.typed {
+                Some(typed) if is_here => spans.push(Span::styled(format!("{typed}▏ {}", param.unit), style::BOLD)),
+                _ => spans.extend(value_spans(param, value)),
+            }
+            Line::from(spans)
+        }
+    }
+}
+
+fn value_spans(param: &Param, value: &Value) -> Vec<Span<'static>> {
+    let text = match (&param.kind, value) {
+        (ParamKind::Bool { .. }, Value::Bool(b)) => if *b { "yes" } else { "no" }.to_owned(),
+        (ParamKind::Enum { entries, .. }, Value::Text(id)) => {
+            let entry = entries.iter().find(|e| e.id == *id);
+            let label = entry.filter(|e| !e.label.is_empty()).map_or(id, |e| &e.label);
+            format!("{label}{}", if entries.len() > 1 { " ▾" } else { "" })
+        }
+        _ if param.unit.is_empty() => value.to_string(),
+        _ => format!("{value} {}", param.unit),
+    };
+    let slider = match (&param.kind, value) {
+        (ParamKind::Int(range), Value::Int(i)) => slide(range, *i, |i| i as f64),
+        (ParamKind::Float(range), Value::Float(x)) => slide(range, *x, |x| x),
+        _ => String::new(),
+    };
+    vec![Span::raw(format!("{text:<14} ")), Span::styled(slider, style::DIM)]
+}
+
+/// `1 ────●──── 40`, where the number has two ends.
+fn slide<T>(range: &Numeric<T>, value: T, number: impl Fn(T) -> f64) -> String
+where
+    T: Copy + PartialOrd + std::fmt::Display,
+{
+    let Some((low, high)) = slider(range) else { return String::new() };
+    let (a, b, x) = (number(low), number(high), number(value));
+    let part = if range.scale == "log" && a > 0.0 { (x / a).ln() / (b / a).ln() } else { (x - a) / (b - a) };
+    let at = (part.clamp(0.0, 1.0) * (SLIDER - 1) as f64).round() as usize;
+    format!("{low:>5} {}●{} {high}", "─".repeat(at), "─".repeat(SLIDER - 1 - at))
+}

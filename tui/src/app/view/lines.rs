@@ -1,0 +1,263 @@
+//! The lines round the picture: title, track, time, hints, and what happened.
+
+use ratatui::layout::Rect;
+use ratatui::text::{Line, Span};
+
+use honami_model::track::{Source, Status};
+
+use super::{fill, put, style};
+use crate::app::action::{Action, TABLE};
+use crate::app::keymap::shown;
+use crate::app::layout::{bar, column_of, frame_at};
+use crate::app::state::{Job, Mode, State};
+use crate::app::tracks::{TrackRow, doubt};
+use crate::term::encode::Frame;
+
+/// Eight levels of a bar.
+const BARS: [&str; 8] = ["▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"];
+
+pub(super) fn title(state: &State, area: Rect, frame: &mut Frame) {
+    let mut facts = vec![match state.tracks.len() {
+        1 => "1 track".to_owned(),
+        n => format!("{n} tracks"),
+    }];
+    facts.extend(state.tracker.clone());
+    facts.extend(state.groups.as_ref().map(|groups| match groups.k {
+        1 => "1 group".to_owned(),
+        k => format!("{k} groups"),
+    }));
+    facts.extend(state.read_only.is_some().then(|| "read only".to_owned()));
+    if state.zoom > 0 {
+        facts.push(format!("{}x{}", 1_u32 << state.zoom, if state.follow { " following" } else { "" }));
+    }
+    let left = Line::from(vec![
+        Span::styled(state.name.clone(), style::BOLD),
+        Span::raw("  "),
+        Span::styled(facts.join(" · "), style::DIM),
+    ]);
+    put(frame, area, 0, &left);
+    let link = match (state.link.is_silent, state.link.delay_ms, state.link.rate_kbs) {
+        (true, ..) => "no answers: 64 kB/s".to_owned(),
+        (_, Some(ms), Some(rate)) => format!("{ms} ms {rate} kB/s"),
+        (_, Some(ms), None) => format!("{ms} ms"),
+        (_, None, _) => String::new(),
+    };
+    put_right(frame, area, &Line::styled(link, style::DIM), left.width());
+}
+
+/// A line at the right end of a row, where `taken` cells at the left leave room for it.
+fn put_right(frame: &mut Frame, area: Rect, line: &Line<'_>, taken: usize) {
+    let width = line.width();
+    if taken + 2 + width <= usize::from(area.width) {
+        frame.cells.set_line(area.right() - width as u16, area.y, line, area.width);
+    }
+}
+
+pub(super) fn track(state: &State, area: Rect, frame: &mut Frame) {
+    let Some(row) = state.selected_row() else {
+        let line = if state.tracks.is_empty() {
+            "no tracks yet: t follows features, a adds one by hand"
+        } else {
+            "n selects a track"
+        };
+        put(frame, area, 0, &Line::styled(line, style::DIM));
+        return;
+    };
+    let group = state.groups.as_ref().and_then(|g| g.of(row.id));
+    let mut spans = vec![
+        Span::styled("● ", style::group_text(group)),
+        Span::styled(format!("track {}", row.id), style::BOLD),
+    ];
+    spans.extend(row.name.iter().map(|name| Span::raw(format!("  {name}"))));
+    let right = Line::styled(sample_words(row, state.frame), style::DIM);
+    let left = Line::from(spans);
+    let free = usize::from(area.width).saturating_sub(left.width() + right.width() + 5);
+    put(frame, area, 0, &left);
+    put_right(frame, area, &right, left.width());
+    if free >= 8 {
+        let bars = sparkline(row, state.clip.n_frames(), free.min(40));
+        frame.cells.set_string(area.x + left.width() as u16 + 2, area.y, bars, style::DIM);
+    }
+}
+
+/// What is known of the sample here, and where the worst one is.
+fn sample_words(row: &TrackRow, frame: u32) -> String {
+    let mut words = vec![match row.span.get(frame) {
+        None => "not here".to_owned(),
+        Some(sample) if sample.source == Source::Key => "key-frame".to_owned(),
+        Some(sample) if sample.source == Source::Interpolated && sample.status.is_seen() => "interpolated".to_owned(),
+        Some(sample) => match sample.status {
+            Status::Lost => "lost",
+            Status::Tracked | Status::Newborn => sample.source.word(),
+            Status::Occluded => "occluded",
+            Status::Outside => "outside",
+            Status::Rejected => "rejected",
+        }
+        .to_owned(),
+    }];
+    if let Some(quality) = row.span.get(frame).map(|s| s.quality) {
+        words.extend(quality.fb_px.map(|fb| format!("FB {fb:.2} px")));
+        words.extend(quality.ncc.map(|ncc| format!("NCC {ncc:.2}").replace("0.", ".")));
+    }
+    words.extend(row.worst.map(|frame| format!("worst {frame}")));
+    words.join(" · ")
+}
+
+/// Largest doubt over the clip, so many cells wide; blank where the track is not.
+pub(super) fn sparkline(row: &TrackRow, n_frames: u32, width: usize) -> String {
+    let n = n_frames as usize;
+    (0..width)
+        .map(|i| {
+            let frames = i * n / width..((i + 1) * n / width).max(i * n / width + 1);
+            let worst = frames.filter_map(|f| row.span.get(u32::try_from(f).ok()?)).map(doubt);
+            worst.reduce(f32::max).map_or(" ", |d| BARS[((d * 8.0) as usize).min(7)])
+        })
+        .collect()
+}
+
+pub(super) fn time(state: &State, area: Rect, frame: &mut Frame) {
+    let n = state.clip.n_frames();
+    let bar = bar(area, n);
+    if bar.width < 4 || area.height == 0 {
+        return;
+    }
+    frame.cells.set_string(area.x, area.y, "0", style::DIM);
+    frame.cells.set_string(bar.right(), area.y, state.last_frame().to_string(), style::DIM);
+    let row = state.selected_row();
+    let outliers = state.groups.as_ref().map_or(&[][..], |g| &g.outlier_frames);
+    for x in bar.left()..bar.right() {
+        let frames = frame_at(bar, n, x)..=frame_at(bar, n, x + 1).max(frame_at(bar, n, x) + 1) - 1;
+        let lost = row.is_some_and(|row| {
+            frames.clone().any(|f| row.span.get(f).is_some_and(|s| matches!(s.status, Status::Lost | Status::Rejected)))
+        });
+        let outlier = outliers.iter().any(|f| frames.contains(f));
+        let (glyph, style) = match () {
+            () if lost => ("░", style::ERROR),
+            () if *frames.start() >= state.n_ready.max(1) => ("·", style::DIM),
+            () if outlier => ("╌", style::DIM),
+            () if row.is_some_and(|row| !row.span.frames().contains(frames.start())) => ("┄", style::DIM),
+            () => ("─", style::DIM),
+        };
+        frame.cells.set_string(x, area.y, glyph, style);
+    }
+    for key in row.iter().flat_map(|row| &row.keys) {
+        frame.cells.set_string(column_of(bar, n, *key), area.y, "◆", style::KEY);
+    }
+    frame.cells.set_string(column_of(bar, n, state.frame), area.y, "┃", style::ACCENT.patch(style::BOLD));
+}
+
+pub(super) fn hints(state: &State, area: Rect, frame: &mut Frame) {
+    let mut left = match &state.mode {
+        Mode::Prompt(typed) => format!("go to frame {typed}▏"),
+        _ => {
+            let t_s = state.clip.times.get(state.frame).unwrap_or_default();
+            format!("{}/{}  {t_s:.2} s", state.frame, state.last_frame())
+        }
+    };
+    if let Some(play) = state.play {
+        left.push_str(if play.rate < 0.0 { "  ◀" } else { "  ▶" });
+    }
+    if let (Mode::Move { from, to }, Some(row)) = (&state.mode, state.selected_row()) {
+        let moved = (to[0] - from[0]).hypot(to[1] - from[1]);
+        left.push_str(&format!("  track {} moved {moved:.2} px", row.id));
+    }
+    if let Mode::Place([x, y]) = state.mode {
+        left.push_str(&format!("  new feature at {x:.1}, {y:.1}"));
+    }
+    if state.count.is_some() || !state.pending.is_empty() {
+        let count = state.count.map_or_else(String::new, |n| n.to_string());
+        left.push_str(&format!("  {}{}", count, shown(&state.pending)));
+    }
+    let left = Line::raw(left);
+    put(frame, area, 0, &left);
+    let room = usize::from(area.width).saturating_sub(left.width() + 2);
+    put_right(frame, area, &hint_line(state, room), left.width());
+}
+
+/// As many hints as there is room for; the help is always one of them.
+fn hint_line(state: &State, room: usize) -> Line<'static> {
+    let context = state.mode.context();
+    let useful: Vec<&str> = TABLE
+        .iter()
+        .filter(|info| is_useful(state, info.action))
+        .filter_map(|info| info.action.word_in(context))
+        .collect();
+    let mut hints = state.keys.hints(context);
+    hints.retain(|(_, word)| useful.contains(word));
+    let width = |(keys, word): &(String, &str)| Line::raw(keys.as_str()).width() + 1 + word.chars().count() + 2;
+    let help = hints.iter().position(|(_, word)| *word == "help").map(|at| hints.remove(at));
+    let reserved = help.as_ref().map_or(0, width);
+    let mut used = reserved;
+    let mut shown: Vec<(String, &str)> = Vec::new();
+    for hint in hints {
+        used += width(&hint);
+        if used > room + 2 {
+            break;
+        }
+        shown.push(hint);
+    }
+    shown.extend(help.filter(|_| reserved <= room + 2));
+    let mut spans = Vec::new();
+    for (i, (keys, word)) in shown.into_iter().enumerate() {
+        spans.push(Span::raw(if i > 0 { "  " } else { "" }));
+        spans.push(Span::styled(keys, style::ACCENT));
+        spans.push(Span::styled(format!(" {word}"), style::DIM));
+    }
+    Line::from(spans)
+}
+
+/// Whether a hint makes sense now.
+fn is_useful(state: &State, action: Action) -> bool {
+    if !matches!(state.mode, Mode::Review) {
+        return true;
+    }
+    match action {
+        Action::NextTrack | Action::MoveSample => !state.tracks.is_empty(),
+        Action::WorstFrame => state.selected_row().is_some_and(|row| row.worst.is_some()),
+        Action::RunTracker => state.job.is_none() && state.read_only.is_none(),
+        Action::RunClusterer => state.tracks.len() > 1 && state.job.is_none() && state.read_only.is_none(),
+        Action::AddFeature => state.read_only.is_none(),
+        _ => true,
+    }
+}
+
+/// Over the lowest rows of the picture: the job that runs, and what happened last.
+pub(super) fn notices(state: &State, area: Rect, frame: &mut Frame) {
+    let mut lines = Vec::new();
+    if let Some(notice) = &state.notice {
+        let style = if notice.is_error { style::ERROR } else { style::ACCENT };
+        lines.push(Line::styled(notice.text.clone(), style));
+    }
+    lines.extend(state.job.as_ref().map(|job| job_line(job, state, area.width)));
+    let n = (lines.len() as u16).min(area.height);
+    let rows = Rect { y: area.bottom() - n, height: n, ..area };
+    fill(frame, rows, style::PANEL);
+    let inside = Rect { x: rows.x + 1, width: rows.width.saturating_sub(2), ..rows };
+    for (row, line) in (0..).zip(lines) {
+        put(frame, inside, row, &line);
+    }
+}
+
+fn job_line(job: &Job, state: &State, width: u16) -> Line<'static> {
+    let (done, total) = job.done;
+    let part = if total > 0 { (done as f64 / total as f64).min(1.0) } else { 0.0 };
+    let left = state.now.saturating_sub(job.since).as_secs_f64() * (1.0 / part.max(1e-6) - 1.0);
+    let bar_width = usize::from(width / 5).clamp(6, 30);
+    let eighths = (part * bar_width as f64 * 8.0) as usize;
+    let mut bar = "█".repeat(eighths / 8);
+    bar.push_str(["", "▏", "▎", "▍", "▌", "▋", "▊", "▉"][eighths % 8]);
+    let blank = bar_width.saturating_sub(bar.chars().count());
+    let rest = match job {
+        _ if job.is_stopping => "stopping …".to_owned(),
+        _ if total == 0 => "Esc stops".to_owned(),
+        _ if job.keeps_frames && done > 0 => format!("{left:.0} s left   Esc stops, keeps 0-{}", done - 1),
+        _ => format!("{left:.0} s left   Esc stops"),
+    };
+    let count = if total > 0 { format!(" {done}/{total}") } else { String::new() };
+    Line::from(vec![
+        Span::styled(format!("{}  ", job.plugin), style::BOLD),
+        Span::raw(format!("{}{count}  ▕", job.what)),
+        Span::styled(bar, style::ACCENT),
+        Span::raw(format!("{}▏ {rest}", " ".repeat(blank))),
+    ])
+}

@@ -1,0 +1,62 @@
+//! Lists over the picture: palette, help, tracks; and what may follow a prefix.
+
+use ratatui::layout::Rect;
+use ratatui::text::{Line, Span};
+
+use super::{fill, panel, put, style};
+use crate::app::keymap::shown;
+use crate::app::menu::Menu;
+use crate::app::state::State;
+use crate::term::encode::Frame;
+
+/// Cells of the names.
+const LABEL: usize = 20;
+/// Cells of the keys.
+const KEYS: usize = 14;
+
+pub(super) fn draw(menu: &Menu, area: Rect, frame: &mut Frame) {
+    let n_rows = u16::try_from(menu.rows().len()).unwrap_or(u16::MAX).max(1);
+    let inside = panel(frame, area, 100, n_rows.saturating_add(1));
+    let head = Line::from(vec![
+        Span::styled(":", style::ACCENT),
+        Span::styled(format!("{}▏", menu.typed), style::BOLD),
+        Span::styled(format!("  {}: type a part of a name", menu.title), style::DIM),
+    ]);
+    put(frame, inside, 0, &head);
+    let n_listed = usize::from(inside.height.saturating_sub(1)).max(1);
+    let first = menu.at.saturating_sub(n_listed - 1);
+    for (y, (i, row)) in (1..inside.height).zip(menu.rows().enumerate().skip(first).take(n_listed)) {
+        let line = Line::from(vec![
+            Span::raw(format!("{:<LABEL$} ", row.label)),
+            Span::styled(format!("{:<KEYS$} ", row.keys), style::ACCENT),
+            Span::styled(row.detail.clone(), style::DIM),
+        ]);
+        put(frame, inside, y, &line);
+        if i == menu.at {
+            let bar = Rect { x: inside.x, y: inside.y + y, width: inside.width, height: 1 };
+            frame.cells.set_style(bar, style::CHOSEN);
+        }
+    }
+    if menu.rows().len() == 0 {
+        put(frame, inside, 1, &Line::styled("nothing matches; Backspace takes letters back", style::DIM));
+    }
+}
+
+/// What may follow the keys typed so far, at once.
+pub(super) fn which_key(state: &State, area: Rect, frame: &mut Frame) {
+    let context = state.mode.context();
+    let follow: Vec<_> = state.keys.after(context, &state.pending).collect();
+    let n = u16::try_from(follow.len()).unwrap_or(u16::MAX);
+    let rows = Rect { y: area.bottom().saturating_sub(n.min(area.height)), height: n.min(area.height), ..area };
+    fill(frame, rows, style::PANEL);
+    let inside = Rect { x: rows.x + 1, width: rows.width.saturating_sub(2), ..rows };
+    for (y, binding) in (0..).zip(follow) {
+        let rest = &binding.keys[state.pending.len()..];
+        let line = Line::from(vec![
+            Span::styled(format!("{:<3} ", shown(&state.pending)), style::DIM),
+            Span::styled(format!("{:<4}", shown(rest)), style::ACCENT),
+            Span::raw(binding.action.info().doc),
+        ]);
+        put(frame, inside, y, &line);
+    }
+}

@@ -1,0 +1,173 @@
+//! The picture in half blocks, with the tracks on it.
+
+use ratatui::style::{Color, Style};
+use ratatui::text::Line;
+
+use honami_model::track::Status;
+
+use super::{put, style};
+use crate::app::layout::{Layout, Lens};
+use crate::app::state::{Mode, State};
+use crate::app::tracks::TrackRow;
+use crate::term::encode::{Frame, HALF_BLOCK};
+
+/// A frame of the clip, scaled for a lens.
+#[derive(Clone, Debug)]
+pub struct Shot {
+    /// Which frame.
+    pub frame: u32,
+    /// Which part of it, and for which cells.
+    pub lens: Lens,
+    /// Its pixels, `(lens rows * 2, lens columns)`, row-major.
+    pub pixels: Vec<[u8; 3]>,
+}
+
+/// How much a wrong cell matters: of the picture, and of a mark on it.
+const PICTURE: u8 = 1;
+const MARK: u8 = 8;
+
+/// The selected track's path is drawn this many frames to both sides.
+const PATH_FRAMES: u32 = 12;
+
+const WHITE: [u8; 3] = [255, 255, 255];
+const KEY: [u8; 3] = [255, 215, 95];
+const PATH: [u8; 3] = [255, 235, 160];
+const CURSOR: [u8; 3] = [255, 60, 255];
+const UNSEEN: [u8; 3] = [130, 130, 130];
+
+/// Pixels of a ring of radius 2.
+const RING: [(i64, i64); 12] = [
+    (-1, -2),
+    (0, -2),
+    (1, -2),
+    (2, -1),
+    (2, 0),
+    (2, 1),
+    (1, 2),
+    (0, 2),
+    (-1, 2),
+    (-2, 1),
+    (-2, 0),
+    (-2, -1),
+];
+/// Pixels of a cross whose middle stays open.
+const CROSS: [(i64, i64); 8] = [(-3, 0), (-2, 0), (2, 0), (3, 0), (0, -3), (0, -2), (0, 2), (0, 3)];
+
+/// Pixels to be drawn on.
+struct Canvas<'a> {
+    lens: &'a Lens,
+    pixels: Vec<[u8; 3]>,
+    weights: Vec<u8>,
+    /// Marks as letters, where there are no colours: pixel and letter.
+    letters: Option<Vec<(usize, char)>>,
+}
+
+pub(super) fn draw(state: &State, layout: &Layout, shot: Option<&Shot>, frame: &mut Frame) {
+    let here = Lens::of(state, layout.picture);
+    let fits = |shot: &&Shot| shot.lens.area == here.area;
+    let Some(shot) = shot.filter(fits) else {
+        let line = format!("decoding frame {} …", state.frame);
+        put(frame, layout.picture, layout.picture.height / 2, &Line::styled(line, style::DIM).centered());
+        return;
+    };
+    let mut canvas = Canvas {
+        lens: &shot.lens,
+        pixels: shot.pixels.clone(),
+        weights: vec![PICTURE; shot.pixels.len()],
+        letters: state.mono.then(Vec::new),
+    };
+    // Marks belong to the frame that is shown, which may be a moment behind.
+    canvas.tracks(state, shot.frame);
+    canvas.cursor(state);
+    canvas.paint(frame);
+}
+
+impl Canvas<'_> {
+    fn tracks(&mut self, state: &State, frame: u32) {
+        let selected = state.selected_row();
+        if let Some(row) = selected {
+            self.path(row, frame);
+        }
+        for row in &state.tracks {
+            let Some(sample) = row.span.get(frame) else { continue };
+            let colour = match sample.status {
+                Status::Tracked | Status::Newborn => style::group(state.groups.as_ref().and_then(|g| g.of(row.id))),
+                Status::Outside | Status::Rejected => continue,
+                Status::Lost | Status::Occluded => UNSEEN,
+            };
+            self.mark([sample.x, sample.y], &[(0, 0)], colour, 'o');
+        }
+        let moving = matches!(state.mode, Mode::Move { .. });
+        if let Some(row) = selected.filter(|_| !moving)
+            && let Some(at) = row.at(frame)
+        {
+            let ring = if row.keys.binary_search(&frame).is_ok() { KEY } else { WHITE };
+            self.mark(at, &RING, ring, ' ');
+            self.mark(at, &[], ring, '@');
+        }
+    }
+
+    fn path(&mut self, row: &TrackRow, frame: u32) {
+        for f in frame.saturating_sub(PATH_FRAMES)..=frame + PATH_FRAMES {
+            let is_key = row.keys.binary_search(&f).is_ok();
+            if let Some(at) = row.at(f) {
+                self.mark(at, &[(0, 0)], if is_key { KEY } else { PATH }, if is_key { '*' } else { '.' });
+            }
+        }
+    }
+
+    fn cursor(&mut self, state: &State) {
+        match state.mode {
+            Mode::Place(at) => self.mark(at, &CROSS, CURSOR, '+'),
+            Mode::Move { from, to } => {
+                self.mark(from, &[(0, 0)], UNSEEN, 'o');
+                self.mark(to, &CROSS, CURSOR, '+');
+            }
+            _ => {}
+        }
+    }
+
+    /// Draws pixels about an image point; in letters, one letter at it.
+    fn mark(&mut self, at: [f32; 2], shape: &[(i64, i64)], colour: [u8; 3], letter: char) {
+        let Some((x, y)) = self.lens.pixel_of(at) else { return };
+        let (columns, rows) = self.lens.size();
+        if let Some(letters) = &mut self.letters {
+            if letter != ' ' {
+                letters.push(((y * columns + x) as usize, letter));
+            }
+            return;
+        }
+        for &(dx, dy) in shape {
+            let (x, y) = (i64::from(x) + dx, i64::from(y) + dy);
+            if (0..i64::from(columns)).contains(&x) && (0..i64::from(rows)).contains(&y) {
+                let i = (y * i64::from(columns) + x) as usize;
+                self.pixels[i] = colour;
+                self.weights[i] = MARK;
+            }
+        }
+    }
+
+    /// Puts the pixels into cells, two each.
+    fn paint(&self, frame: &mut Frame) {
+        let area = self.lens.area;
+        let columns = usize::from(area.width);
+        let rgb = |[r, g, b]: [u8; 3]| Color::Rgb(r, g, b);
+        for row in 0..area.height {
+            for column in 0..area.width {
+                let above = 2 * usize::from(row) * columns + usize::from(column);
+                let below = above + columns;
+                let i = frame.cells.index_of(area.x + column, area.y + row);
+                let colours = Style::new().fg(rgb(self.pixels[above])).bg(rgb(self.pixels[below]));
+                frame.cells.content[i].set_symbol(HALF_BLOCK).set_style(colours);
+                frame.softness[i] = self.weights[above].max(self.weights[below]);
+            }
+        }
+        for &(pixel, letter) in self.letters.iter().flatten() {
+            let (column, row) = (pixel % columns, pixel / columns / 2);
+            let i = frame.cells.index_of(area.x + column as u16, area.y + row as u16);
+            frame.cells.content[i].reset();
+            frame.cells.content[i].set_char(letter).set_style(style::BOLD);
+            frame.softness[i] = 0;
+        }
+    }
+}

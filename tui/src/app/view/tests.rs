@@ -1,0 +1,149 @@
+//! Whole screens, with their styles, against text files. `REGENERATE=1` writes the files anew.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use super::*;
+use crate::app::fixture;
+use crate::app::state::{Job, Link, Notice};
+use crate::app::update::{Msg, update};
+use honami_model::track::TrackId;
+use ratatui::style::{Color, Modifier};
+
+/// The screen as text, then its styles as runs: `row: columns style`. Cells of the picture are `▒` without a
+/// style: their colours are tested where they are made.
+fn dump(frame: &Frame) -> String {
+    let area = frame.cells.area;
+    let (mut text, mut styles) = (String::new(), String::new());
+    for y in 0..area.height {
+        let mut runs: Vec<(u16, u16, String)> = Vec::new();
+        for x in 0..area.width {
+            let cell = &frame.cells[(x, y)];
+            let softness = frame.softness[frame.cells.index_of(x, y)];
+            text.push_str(match softness {
+                0 => cell.symbol(),
+                1 => "▒",
+                _ => "▓",
+            });
+            let style = if softness == 0 { words(cell.fg, cell.bg, cell.modifier) } else { String::new() };
+            match runs.last_mut() {
+                Some((_, to, last)) if *last == style => *to = x,
+                _ => runs.push((x, x, style)),
+            }
+        }
+        text.truncate(text.trim_end_matches(' ').len());
+        text.push('\n');
+        let runs: Vec<String> =
+            runs.into_iter().filter(|r| !r.2.is_empty()).map(|(a, b, s)| format!("{a}-{b} {s}")).collect();
+        if !runs.is_empty() {
+            writeln!(styles, "{y}: {}", runs.join("; ")).unwrap();
+        }
+    }
+    format!("{text}---\n{styles}")
+}
+
+fn words(fg: Color, bg: Color, modifier: Modifier) -> String {
+    let mut words = Vec::new();
+    words.extend((fg != Color::Reset).then(|| format!("{fg}")));
+    words.extend((bg != Color::Reset).then(|| format!("on {bg}")));
+    words.extend((!modifier.is_empty()).then(|| format!("{modifier:?}").to_lowercase()));
+    words.join(" ")
+}
+
+/// The one door: the fixture at a size, changed, after some keys, looks as in the file.
+#[track_caller]
+fn check(name: &str, size: (u16, u16), keys: &str, change: impl FnOnce(&mut State)) {
+    let mut state = fixture::state();
+    state.size = size;
+    state.link = Link { delay_ms: Some(84), rate_kbs: Some(230), is_silent: false };
+    state.frame = 40;
+    change(&mut state);
+    for key in keys.split_whitespace() {
+        update(&mut state, Msg::Key(key.parse().unwrap()));
+    }
+    let shot = fixture::shot(&state, Layout::of(&state).picture);
+    let seen = dump(&draw(&state, Some(&shot)));
+    let file = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("src/app/view/screens").join(format!("{name}.txt"));
+    if std::env::var_os("REGENERATE").is_some() {
+        std::fs::create_dir_all(file.parent().unwrap()).unwrap();
+        std::fs::write(&file, &seen).unwrap();
+    }
+    let wanted = std::fs::read_to_string(&file).unwrap_or_default();
+    assert!(seen == wanted, "{} differs; this was drawn (REGENERATE=1 accepts it):\n{seen}", file.display());
+}
+
+#[test]
+fn screens() {
+    let small = (80, 24);
+    let large = (120, 40);
+    let job = |state: &mut State| {
+        let (plugin, what) = ("klt".to_owned(), "frame".to_owned());
+        let since = std::time::Duration::ZERO;
+        state.now = std::time::Duration::from_secs(4);
+        state.job = Some(Job { plugin, what, done: (50, 100), since, keeps_frames: true, is_stopping: false });
+    };
+    check("review_80x24", small, "", |_| {});
+    check("review_120x40", large, "", |_| {});
+    check("column_120x40", large, "n Tab", |_| {});
+    check("playing_80x24", small, "space", |_| {});
+    check("empty_80x24", small, "", |state| {
+        state.tracks.clear();
+        state.selected = None;
+        state.groups = None;
+        state.tracker = None;
+        state.n_ready = 60;
+    });
+    check("move_80x24", small, "m 3 l", |_| {});
+    check("place_80x24", small, "a", |_| {});
+    check("form_80x24", small, "t j j j", |_| {});
+    check("form_120x40", large, "t j j j", |_| {});
+    check("typing_80x24", small, "t j j j 2 5", |_| {});
+    check("prefix_80x24", small, "g", |_| {});
+    check("palette_80x24", small, ": f r a m e", |_| {});
+    check("help_120x40", large, "?", |_| {});
+    check("tracks_80x24", small, "/", |_| {});
+    check("prompt_80x24", small, "g f 1 2", |_| {});
+    check("job_80x24", small, "", job);
+    check("error_80x24", small, "", |state| {
+        state.notice = Some(Notice { text: "radius: wanted 2 to 50 (px), got 99".to_owned(), is_error: true });
+    });
+    check("zoomed_80x24", small, "z z f", |_| {});
+    check("tiny_40x12", (40, 12), "", |_| {});
+    check("least_20x5", (20, 5), "", |_| {});
+    check("wide_names_80x24", small, "", |state| state.tracks[0].name = Some("芽の左".to_owned()));
+    check("mono_80x24", small, "m l", |state| state.mono = true);
+}
+
+#[test]
+fn no_size_panics() {
+    for columns in [1, 2, 7, 35, 36, 76, 77, 300] {
+        for rows in [1, 2, 3, 7, 8, 100] {
+            for keys in ["", "t", ":", "g", "m", "Tab", "z"] {
+                let mut state = fixture::state();
+                state.size = (columns, rows);
+                for key in keys.split_whitespace() {
+                    update(&mut state, Msg::Key(key.parse().unwrap()));
+                }
+                let frame = draw(&state, None);
+                assert_eq!(frame.softness.len(), usize::from(columns) * usize::from(rows));
+                let area = Layout::of(&state).picture;
+                let frame = draw(&state, Some(&fixture::shot(&state, area)));
+                assert!(frame.cells.area == Rect::new(0, 0, columns, rows));
+            }
+        }
+    }
+}
+
+#[test]
+fn marks_lie_where_the_tracks_are() {
+    let mut state = fixture::state();
+    state.groups = None;
+    state.selected = Some(TrackId(2));
+    let layout = Layout::of(&state);
+    let shot = fixture::shot(&state, layout.picture);
+    let frame = draw(&state, Some(&shot));
+    let (x, y) = shot.lens.pixel_of(state.tracks[0].at(0).unwrap()).unwrap();
+    let cell = &frame.cells[(shot.lens.area.x + x as u16, shot.lens.area.y + y as u16 / 2)];
+    let [r, g, b] = style::group(None);
+    assert!([cell.fg, cell.bg][y as usize % 2] == Color::Rgb(r, g, b), "{cell:?}");
+}

@@ -1,0 +1,93 @@
+//! `compare`: trackers side by side.
+
+use std::sync::Arc;
+
+use honami_workbench::compare::{self, Row};
+use honami_workbench::drive::Seed;
+use honami_workbench::media::{self, Media, OpenOptions};
+use honami_workbench::plugins::{Kind, Registry, Values};
+use serde_json::json;
+
+use super::args::{Common, Compare};
+use super::{Answer, look, report, track};
+
+/// Runs every tracker on the same points and prints one row for each.
+pub(super) fn compare(args: &Compare, common: &Common) -> anyhow::Result<Answer> {
+    let (media, own, registry) = open(args, common)?;
+    let truth = args.truth.as_deref().map(compare::read_truth).transpose()?;
+    let points = match (&args.points, &truth) {
+        (Some(path), _) => compare::read_points(path)?,
+        (None, Some(truth)) => compare::points_of(truth),
+        (None, None) => own,
+    };
+    anyhow::ensure!(
+        !points.is_empty(),
+        "there are no points to compare on: give --truth or --points, or a project that has tracks"
+    );
+    let names = if args.with.is_empty() { vec![track::DEFAULT.to_owned()] } else { args.with.clone() };
+    let trackers = names.iter().map(|name| Ok((name.clone(), values(&registry, name, &args.set)?)));
+    let trackers = trackers.collect::<anyhow::Result<Vec<_>>>()?;
+    let rows = compare::compare(&media, &registry, &trackers, &points, truth.as_ref(), &report::Bar::new())?;
+    Ok(describe(&rows, points.len()))
+}
+
+/// The clip; the points and plugins that come with it.
+fn open(args: &Compare, common: &Common) -> anyhow::Result<(Arc<Media>, Vec<Seed>, Arc<Registry>)> {
+    if args.clip.extension().is_some_and(|e| e == "honami") {
+        let session = look(&args.clip, common)?;
+        let mut seeds = Vec::new();
+        for (id, span) in session.project.shown_all()? {
+            let seen = span.frames().zip(&span.samples).find(|(_, sample)| sample.status.is_seen());
+            seeds.extend(seen.map(|(frame, sample)| Seed { frame, track: id, x: sample.x, y: sample.y }));
+        }
+        return Ok((session.media, seeds, session.registry));
+    }
+    let options = OpenOptions { fps: args.fps, ..OpenOptions::default() };
+    let media = Arc::new(media::open(&args.clip, &options)?);
+    Ok((media, Vec::new(), Arc::new(Registry::scan(&common.plugins))))
+}
+
+/// `--set` for the trackers that have such a parameter; one that none has is an error of the first.
+fn values(registry: &Registry, name: &str, set: &[String]) -> anyhow::Result<Values> {
+    let params = &registry.find(Kind::Tracker, name)?.params;
+    let known = |text: &&String| params.iter().any(|p| text.split_once('=').is_some_and(|(id, _)| id.trim() == p.id));
+    let set: Vec<String> = set.iter().filter(known).cloned().collect();
+    track::values(registry, Kind::Tracker, name, &set)
+}
+
+fn describe(rows: &[Row], n_points: usize) -> Answer {
+    let head = ["tracker", "δavg", "<1 px", "median", "survival", "ok", "lost", "kept", "ms/frame"];
+    let mut table = vec![head.map(str::to_owned).to_vec()];
+    for row in rows {
+        let number = |value: Option<f64>, digits: usize| value.map_or("–".to_owned(), |v| format!("{v:.digits$}"));
+        let of = |part: fn(&honami_workbench::compare::Accuracy) -> f64| row.accuracy.as_ref().map(part);
+        table.push(vec![
+            row.tracker.clone(),
+            number(of(|a| a.delta_avg), 3),
+            number(of(|a| a.within_1px), 3),
+            number(row.accuracy.and_then(|a| a.median_px), 2),
+            number(of(|a| a.survival), 3),
+            number(of(|a| a.ok_tracks), 3),
+            number(of(|a| a.n_lost as f64 / a.n_samples as f64), 3),
+            number(Some(row.kept), 3),
+            number(row.ms_per_frame, 2),
+        ]);
+    }
+    let text = format!("{n_points} points\n{}", report::table(&table));
+    Answer { json: json!({ "points": n_points, "trackers": rows.iter().map(entry).collect::<Vec<_>>() }), text }
+}
+
+fn entry(row: &Row) -> serde_json::Value {
+    let mut entry = json!({ "tracker": row.tracker, "kept": row.kept, "ms_per_frame": row.ms_per_frame });
+    if let Some(accuracy) = row.accuracy {
+        entry["delta_avg"] = accuracy.delta_avg.into();
+        entry["within_1px"] = accuracy.within_1px.into();
+        entry["median_px"] = accuracy.median_px.into();
+        entry["survival"] = accuracy.survival.into();
+        entry["ok_tracks"] = accuracy.ok_tracks.into();
+        entry["visibility"] = accuracy.visibility.into();
+        entry["samples"] = accuracy.n_samples.into();
+        entry["lost"] = accuracy.n_lost.into();
+    }
+    entry
+}

@@ -1,0 +1,45 @@
+//! `cluster`: find the groups that move together.
+
+use honami_workbench::cluster::{self, ClusterOutcome, ClusterRequest};
+use honami_workbench::plugins::{Kind, Values};
+use honami_workbench::session::Session;
+use serde_json::json;
+
+use super::args::{Cluster, Common};
+use super::{Answer, report, session, track};
+
+/// The clusterer that is used unless one is named.
+const DEFAULT: &str = "movement";
+
+/// Clusters, and shows the groups.
+pub(super) fn cluster(args: &Cluster, common: &Common) -> anyhow::Result<Answer> {
+    anyhow::ensure!(args.groups != Some(0), "a hierarchy is cut into at least 1 group, not into 0");
+    let mut session = session(&args.project, common)?;
+    let plugin = args.plugin.with.as_deref().unwrap_or(DEFAULT).to_owned();
+    let params = track::values(&session.registry, Kind::Clusterer, &plugin, &args.plugin.set)?;
+    let request = ClusterRequest { plugin, params, groups: args.groups };
+    Ok(describe(&run(&mut session, &request)?))
+}
+
+/// The default clusterer with its default parameters.
+pub(super) fn request() -> ClusterRequest {
+    ClusterRequest { plugin: DEFAULT.to_owned(), params: Values::default(), groups: None }
+}
+
+/// Prepares, runs and finishes, with a progress bar.
+pub(super) fn run(session: &mut Session, request: &ClusterRequest) -> anyhow::Result<ClusterOutcome> {
+    let job = cluster::prepare(session, request)?;
+    let done = job.run(&report::Bar::new())?;
+    Ok(cluster::finish(session, done)?)
+}
+
+fn describe(outcome: &ClusterOutcome) -> Answer {
+    let json = json!({
+        "clustering": outcome.clustering.0,
+        "tracks": outcome.n_tracks,
+        "groups": outcome.group_sizes,
+        "outlier_frames": outcome.outlier_frames,
+        "seconds": outcome.seconds,
+    });
+    Answer { json, text: outcome.line.clone() }
+}

@@ -1,0 +1,58 @@
+//! `log`: everything that was done to a project, with its provenance.
+
+use honami_workbench::store::{LogItem, LogLine};
+use serde_json::json;
+
+use super::args::{Common, Project};
+use super::{Answer, look};
+
+/// Prints the log, oldest first.
+pub(super) fn log(args: &Project, common: &Common) -> anyhow::Result<Answer> {
+    let session = look(&args.project, common)?;
+    let lines = session.project.log()?;
+    let text = lines.iter().map(line).collect::<Vec<_>>().join("\n");
+    let text = if text.is_empty() { "nothing was done to this project yet".to_owned() } else { text };
+    Ok(Answer { json: json!({ "log": lines.iter().map(entry).collect::<Vec<_>>() }), text })
+}
+
+fn line(line: &LogLine) -> String {
+    let date = &line.date;
+    match &line.item {
+        LogItem::Edit(edit) => format!("{date}  edit {}  {} ({})", edit.id, edit.label, edit.author),
+        LogItem::Run(run) => {
+            let (made, found) = (&run.head.provenance, &run.found);
+            let state = &run.state;
+            format!("{date}  run {}  {} frames {}..{}, {state}  {made}", run.id, run.tracks, found.start, found.end)
+        }
+        LogItem::Clustering(info) => {
+            let made = &info.provenance;
+            format!("{date}  clustering {}  {} tracks in {} groups  {made}", info.id, info.n_tracks, info.cut)
+        }
+    }
+}
+
+fn entry(line: &LogLine) -> serde_json::Value {
+    let date = &line.date;
+    match &line.item {
+        LogItem::Edit(edit) => {
+            json!({ "date": date, "what": "edit", "id": edit.id, "label": edit.label, "author": edit.author })
+        }
+        LogItem::Run(run) => json!({
+            "date": date,
+            "what": "run",
+            "id": run.id,
+            "state": run.state.to_string(),
+            "tracks": run.tracks.len(),
+            "frames": [run.found.start, run.found.end],
+            "provenance": run.head.provenance,
+        }),
+        LogItem::Clustering(info) => json!({
+            "date": date,
+            "what": "clustering",
+            "id": info.id,
+            "tracks": info.n_tracks,
+            "groups": info.cut,
+            "provenance": info.provenance,
+        }),
+    }
+}

@@ -1,0 +1,76 @@
+//! `new` and `export`: a project's beginning, and what leaves it.
+
+use std::path::{Path, PathBuf};
+
+use honami_workbench::export;
+use honami_workbench::session::Session;
+use serde_json::json;
+
+use super::args::{Common, Export, ExportWhat, New};
+use super::{Answer, look, options};
+
+/// Makes a project of a clip and says what the clip is.
+pub(super) fn new(args: &New, common: &Common) -> anyhow::Result<Answer> {
+    let session = make(&args.project, &args.clip, args.fps, common)?;
+    Ok(describe(&session))
+}
+
+/// Makes a project of a clip.
+pub(super) fn make(project: &Path, clip: &Path, fps: Option<f64>, common: &Common) -> anyhow::Result<Session> {
+    Ok(Session::create(project, clip, fps, &options(common))?)
+}
+
+/// The project that belongs to a clip opened without one: beside it, under its name.
+pub(super) fn name_for(clip: &Path) -> PathBuf {
+    let stem = if clip.is_dir() { clip.file_name() } else { clip.file_stem() };
+    let name = stem.unwrap_or_default().to_string_lossy().replace(['%', '*', '?'], "");
+    let name = if name.is_empty() { "clip".to_owned() } else { name };
+    clip.with_file_name(format!("{name}.honami"))
+}
+
+/// Size, length and rate of a project's clip.
+fn describe(session: &Session) -> Answer {
+    let (clip, notes) = (&session.project.clip().clip, session.media.notes());
+    let fps = clip.times.nominal_fps();
+    let rate = match fps {
+        Some(fps) if clip.times.is_variable() => format!("{fps:.2} fps, irregular"),
+        Some(fps) => format!("{fps:.2} fps"),
+        None => "a single frame".to_owned(),
+    };
+    let mut text = format!(
+        "{}: {} frames of {}x{} pixels, {rate}",
+        session.project.path().display(),
+        clip.n_frames(),
+        clip.width,
+        clip.height
+    );
+    for note in notes {
+        text += &format!("\nnote: {note}");
+    }
+    let json = json!({
+        "project": session.project.path(),
+        "frames": clip.n_frames(),
+        "width": clip.width,
+        "height": clip.height,
+        "fps": fps,
+        "variable_rate": clip.times.is_variable(),
+        "sha256": session.project.clip().sha256,
+        "notes": notes,
+    });
+    Answer { json, text }
+}
+
+/// Writes what was asked for.
+pub(super) fn export(args: &Export, common: &Common) -> anyhow::Result<Answer> {
+    let session = look(&args.project, common)?;
+    let ExportWhat::Tracks = args.what;
+    anyhow::ensure!(
+        args.out.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv")),
+        "tracks are written as .csv, not as {}",
+        args.out.display()
+    );
+    let written = export::tracks(&session, &args.out)?;
+    let text = format!("{}: {} tracks, {} samples", args.out.display(), written.n_tracks, written.n_rows);
+    let json = json!({ "file": args.out, "tracks": written.n_tracks, "samples": written.n_rows });
+    Ok(Answer { json, text })
+}

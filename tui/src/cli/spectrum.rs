@@ -1,0 +1,98 @@
+//! `spectrum`: frequencies of tracks and groups.
+
+use honami_workbench::spectra::{self, Line, Peak, Spectra, Subject};
+use serde_json::json;
+
+use super::args::{Common, Spectrum};
+use super::{Answer, look, report};
+
+/// Tracks that are listed when none was asked for; all of them are in `--json`.
+const LISTED: usize = 12;
+
+/// Prints the peaks of everything, of the groups, and of tracks.
+pub(super) fn spectrum(args: &Spectrum, common: &Common) -> anyhow::Result<Answer> {
+    let is_table = args.project.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
+    let mut spectra = if is_table {
+        spectra::of_table(&args.project, args.peaks)?
+    } else {
+        spectra::of_project(&look(&args.project, common)?, args.peaks)?
+    };
+    if let Some(track) = args.track {
+        spectra.lines.retain(|line| matches!(line.subject, Subject::Track(id) if id.0 == track));
+        anyhow::ensure!(!spectra.lines.is_empty(), "track {track} is not there, or is seen in fewer than 8 frames");
+    }
+    Ok(describe(&spectra))
+}
+
+fn describe(spectra: &Spectra) -> Answer {
+    let rate = spectra.fps.map_or("irregular frames".to_owned(), |fps| format!("{fps:.2} fps"));
+    let mut text = format!(
+        "{rate}: nothing above {:.2} Hz can be seen, nothing closer than {:.3} Hz told apart",
+        spectra.nyquist_hz, spectra.resolution_hz
+    );
+    let mut rows = vec![["", "tracks", "peaks: Hz (px)"].map(str::to_owned).to_vec()];
+    let is_track = |line: &&Line| matches!(line.subject, Subject::Track(_));
+    let n_tracks = spectra.lines.iter().filter(is_track).count();
+    let shown = spectra.lines.len() - n_tracks.saturating_sub(LISTED);
+    for line in &spectra.lines[..shown] {
+        let peaks: Vec<String> = line.peaks.iter().map(peak).collect();
+        let peaks = if peaks.is_empty() { "nothing stands out".to_owned() } else { peaks.join("   ") };
+        rows.push(vec![name(line.subject), line.n_tracks.to_string(), peaks]);
+    }
+    text += &format!("\n{}", report::table(&rows));
+    if n_tracks > LISTED {
+        text += &format!("\n… and {} more tracks: --track ID, or --json", n_tracks - LISTED);
+    }
+    if let Some(warning) = alias(spectra) {
+        text += &format!("\n{warning}");
+    }
+    let lines: Vec<_> = spectra.lines.iter().map(entry).collect();
+    let json = json!({
+        "fps": spectra.fps,
+        "nyquist_hz": spectra.nyquist_hz,
+        "resolution_hz": spectra.resolution_hz,
+        "lines": lines,
+        "too_brief": spectra.n_brief,
+    });
+    Answer { json, text }
+}
+
+fn name(subject: Subject) -> String {
+    match subject {
+        Subject::All => "all".to_owned(),
+        Subject::Group(group) => format!("group {}", group + 1),
+        Subject::Track(track) => format!("track {track}"),
+    }
+}
+
+fn peak(peak: &Peak) -> String {
+    let mark = if peak.near_nyquist { "?" } else { "" };
+    format!("{:.3}{mark} ({:.2})", peak.hz, peak.amplitude_px)
+}
+
+/// Whether the strongest peak may be the alias of a faster sway.
+fn alias(spectra: &Spectra) -> Option<String> {
+    let strongest = spectra.lines.first()?.peaks.first()?;
+    let aliases: Vec<String> = strongest.aliases_hz.iter().map(|hz| format!("{hz:.2}")).collect();
+    strongest.near_nyquist.then(|| {
+        let hz = strongest.hz;
+        format!("{hz:.2} Hz? may be an alias: at this frame rate {} Hz look the same; film faster to know", aliases.join(", "))
+    })
+}
+
+fn entry(line: &Line) -> serde_json::Value {
+    let peaks: Vec<_> = line
+        .peaks
+        .iter()
+        .map(|p| {
+            json!({
+                "hz": p.hz,
+                "amplitude_px": p.amplitude_px,
+                "over_floor": p.over_floor,
+                "aliases_hz": p.aliases_hz,
+                "may_be_alias": p.near_nyquist,
+            })
+        })
+        .collect();
+    json!({ "subject": name(line.subject), "tracks": line.n_tracks, "peaks": peaks })
+}

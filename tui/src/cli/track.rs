@@ -1,0 +1,95 @@
+//! `track`: follow features through the clip.
+
+use honami_workbench::plugins::{Kind, Registry, Values};
+use honami_workbench::session::Session;
+use honami_workbench::track::{self, Area, PointSource, TrackOutcome, TrackRequest};
+use honami_workbench::compare::read_points;
+use serde_json::json;
+
+use super::args::{Common, Region, Track};
+use super::{Answer, report, session};
+
+/// The tracker that is used unless one is named.
+pub(super) const DEFAULT: &str = "klt";
+
+/// Tracks, and shows what was found.
+pub(super) fn track(args: &Track, common: &Common) -> anyhow::Result<Answer> {
+    let mut session = session(&args.project, common)?;
+    let detect = args.detect.as_deref().filter(|name| !name.is_empty());
+    // `--detect NAME` alone means that this tracker tracks, too.
+    let plugin = args.plugin.with.as_deref().or(detect).unwrap_or(DEFAULT).to_owned();
+    if let Some(detect) = detect {
+        anyhow::ensure!(
+            session.registry.find(Kind::Tracker, detect)?.id == session.registry.find(Kind::Tracker, &plugin)?.id,
+            "features are chosen by the tracker that follows them: --detect {detect} needs --with {detect}"
+        );
+    }
+    let params = values(&session.registry, Kind::Tracker, &plugin, &args.plugin.set)?;
+    let n_frames = session.media.clip().n_frames();
+    let frames = args.frames.map_or(0..n_frames, |range| range.start..range.end.unwrap_or(n_frames));
+    let request = TrackRequest { plugin, params, points: points(args, &session)?, frames, every: args.every, area: area(args) };
+    Ok(describe(&run(&mut session, &request)?))
+}
+
+/// The default tracker with its default parameters, over the whole clip.
+pub(super) fn request(session: &Session, points: PointSource) -> TrackRequest {
+    TrackRequest {
+        plugin: DEFAULT.to_owned(),
+        params: Values::default(),
+        points,
+        frames: 0..session.media.clip().n_frames(),
+        every: None,
+        area: Area::Whole,
+    }
+}
+
+/// Prepares, runs and finishes, with a progress bar.
+pub(super) fn run(session: &mut Session, request: &TrackRequest) -> anyhow::Result<TrackOutcome> {
+    let job = track::prepare(session, request)?;
+    let done = job.run(&report::Bar::new())?;
+    let outcome = track::finish(session, done)?;
+    match outcome.error {
+        Some(_) => anyhow::bail!("{}", outcome.line),
+        None => Ok(outcome),
+    }
+}
+
+fn points(args: &Track, session: &Session) -> anyhow::Result<PointSource> {
+    if let Some(path) = &args.points {
+        return Ok(PointSource::Given(read_points(path)?));
+    }
+    // A project without a track has nothing else to offer than detection.
+    let none_yet = session.project.document().tracks().next().is_none();
+    if args.detect.is_some() || none_yet { Ok(PointSource::Detect) } else { Ok(PointSource::Existing) }
+}
+
+fn area(args: &Track) -> Area {
+    match (&args.mask, args.region) {
+        (Some(path), _) => Area::Mask(path.clone()),
+        (None, Some(Region { x, y, width, height })) => Area::Rect([x, y, width, height]),
+        (None, None) => Area::Whole,
+    }
+}
+
+/// Parameter values from `--set k=v`.
+pub(super) fn values(registry: &Registry, kind: Kind, plugin: &str, set: &[String]) -> anyhow::Result<Values> {
+    let plugin = registry.find(kind, plugin)?;
+    let mut values = Values::defaults(&plugin.params);
+    for assignment in set {
+        values.set_text(&plugin.params, assignment)?;
+    }
+    Ok(values)
+}
+
+fn describe(outcome: &TrackOutcome) -> Answer {
+    let json = json!({
+        "run": outcome.run.0,
+        "tracks": outcome.n_tracks,
+        "lost": outcome.n_lost,
+        "frames": [outcome.frames.start, outcome.frames.end],
+        "stopped": outcome.stopped,
+        "seconds": outcome.seconds,
+        "tracker_seconds": outcome.tracker_secs,
+    });
+    Answer { json, text: outcome.line.clone() }
+}
