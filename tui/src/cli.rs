@@ -1,7 +1,8 @@
 //! The command line: one file a command, each giving an answer for people and for machines.
 
-pub mod args;
+mod args;
 mod compare;
+mod edit;
 mod groups;
 mod help;
 mod log;
@@ -76,6 +77,7 @@ fn run(command: Command, common: &Common) -> anyhow::Result<Option<Answer>> {
         Command::New(args) => project::new(&args, common)?,
         Command::Track(args) => track::track(&args, common)?,
         Command::Cluster(args) => groups::cluster(&args, common)?,
+        Command::Edit(args) => return edit::edit(&args.project, common).map(|()| None),
         Command::Compare(args) => compare::compare(&args, common)?,
         Command::Spectrum(args) => spectrum::spectrum(&args, common)?,
         Command::Export(args) => project::export(&args, common)?,
@@ -111,7 +113,9 @@ fn options(common: &Common) -> SessionOptions {
 
 /// Opens a project for a command that writes to it.
 fn session(path: &Path, common: &Common) -> anyhow::Result<Session> {
-    Ok(Session::open(path, &options(common))?)
+    let session = Session::open(path, &options(common))?;
+    session.notes.iter().for_each(|note| report::say(note));
+    Ok(session)
 }
 
 /// Opens a project for a command that only looks, also while another session writes.

@@ -283,6 +283,7 @@ fn a_panic_gives_the_terminal_back() {
     command.args(["--exact", "panics_with_the_terminal_in_hand", "--nocapture", "--test-threads=1"]);
     command.env("HONAMI_TEST_PANIC", "1");
     command.env("TMPDIR", folder.path());
+    command.env("RUST_BACKTRACE", "0");
     let mut terminal = Terminal::start(command, folder.path(), (80, 24), true);
     assert!(!terminal.wait_for_end());
     let screen = terminal.emulator.screen().contents();

@@ -1,10 +1,19 @@
 //! Benchmarks: each prints JSON, next to its peer where there is one, from the same run.
 
-use crate::shell::{Step, cargo};
+use std::fs;
+use std::path::Path;
+
+use anyhow::Context as _;
+
+use crate::shell::{Step, built, cargo, target_dir};
+use crate::{BUILD, SHIPPED};
 
 /// Name, what it measures, and how to run it.
-const BENCHES: [(&str, &str, fn(&[&str]) -> anyhow::Result<()>); 5] = [
+type Bench = (&'static str, &'static str, fn(&[&str]) -> anyhow::Result<()>);
+
+const BENCHES: [Bench; 6] = [
     ("trackers", "KLT against OpenCV's calcOpticalFlowPyrLK, same frames, alternating", trackers),
+    ("accuracy", "δavg of KLT and of OpenCV's on calm, wind and storm: `bench accuracy [SEED]`", accuracy),
     ("cluster", "composite distance + Ward, N = 2000, T = 500, against SciPy's linkage", cluster),
     ("media", "decoding, seeking, stepping back: `bench media CLIP`", media),
     ("store", "opening, editing and appending to a project of 10,000 tracks", store),
@@ -30,6 +39,49 @@ fn example(package: &str, name: &str, args: &[&str]) -> Step {
 
 fn trackers(args: &[&str]) -> anyhow::Result<()> {
     example("honami-vision", "klt_bench", args).run()
+}
+
+/// The same clip and points for both, at the three levels; the baseline that tracks nothing is in each table.
+fn accuracy(args: &[&str]) -> anyhow::Result<()> {
+    cargo(BUILD).args(SHIPPED).run()?;
+    let seed = args.first().copied().unwrap_or("1");
+    let folder = target_dir()?.join("bench").join(format!("accuracy-{seed}"));
+    fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
+    let honami = || built("release", "honami");
+    for level in ["calm", "wind", "storm"] {
+        let clip = folder.join(format!("{level}.y4m"));
+        let (truth, points) = (clip.with_extension("truth.csv"), clip.with_extension("points.csv"));
+        if !clip.exists() {
+            let words = ["--wind", level, "--leaves", "2600", "--frames", "150", "--seed", seed];
+            honami()?.arg("synth").arg(&clip).args(words).run()?;
+        }
+        fs::write(&points, visible_at_first(&truth)?)?;
+        let peer = clip.with_extension("opencv.csv");
+        Step::new("python3").args(["tests/peers/klt_opencv.py", "track"]).args([&clip, &points, &peer]).run()?;
+        let opencv = format!("opencv={}", peer.display());
+        honami()?
+            .arg("compare")
+            .arg(&clip)
+            .args(["--with", "klt", "--tracks", &opencv])
+            .arg("--truth")
+            .arg(&truth)
+            .arg("--points")
+            .arg(&points)
+            .run()?;
+    }
+    Ok(())
+}
+
+/// The points of a truth table that can be seen in frame 0, as a table of points.
+fn visible_at_first(truth: &Path) -> anyhow::Result<String> {
+    let text = fs::read_to_string(truth).with_context(|| format!("cannot read {}", truth.display()))?;
+    let mut points = String::from("id,x,y\n");
+    for line in text.lines().skip(1) {
+        if let [id, "0", x, y, "1", ..] = line.split(',').collect::<Vec<_>>()[..] {
+            points += &format!("{id},{x},{y}\n");
+        }
+    }
+    Ok(points)
 }
 
 fn cluster(args: &[&str]) -> anyhow::Result<()> {

@@ -17,6 +17,9 @@ cargo xtask <command>
   lint                formatting, clippy and documentation, warnings denied
   bench [name]        measure; without a name, list the benchmarks";
 
+/// How they are built to be used.
+const BUILD: &[&str] = &["build", "--release"];
+
 /// The packages of a working installation: the program and the plugins it ships.
 const SHIPPED: [&str; 6] =
     ["-p", "honami", "-p", "honami-tracker-klt", "-p", "honami-clusterer-movement"];
@@ -50,7 +53,7 @@ fn main() -> ExitCode {
 /// Builds the program and its plugins and runs the demo.
 fn demo(args: &[&str]) -> anyhow::Result<()> {
     system::need_compiler()?;
-    cargo(&["build", "--release"]).args(SHIPPED).run()?;
+    cargo(BUILD).args(SHIPPED).run()?;
     shell::built("release", "honami")?.arg("demo").args(args).run()
 }
 

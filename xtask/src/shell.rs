@@ -2,7 +2,7 @@
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Command;
 
 use anyhow::{Context as _, bail, ensure};
 
@@ -40,14 +40,6 @@ impl Step {
         Ok(())
     }
 
-    /// Runs it and returns what it printed.
-    pub(crate) fn output(mut self) -> anyhow::Result<String> {
-        let output = self.0.stderr(Stdio::inherit()).output();
-        let output = output.with_context(|| format!("cannot start {}", self.line()))?;
-        ensure!(output.status.success(), "{} ended with {}", self.line(), output.status);
-        String::from_utf8(output.stdout).context("output is not text")
-    }
-
     fn line(&self) -> String {
         let words = std::iter::once(self.0.get_program()).chain(self.0.get_args());
         words.map(OsStr::to_string_lossy).collect::<Vec<_>>().join(" ")
@@ -69,7 +61,7 @@ pub(crate) fn built(profile: &str, name: &str) -> anyhow::Result<Step> {
 }
 
 /// The target folder: this program lies in `<target>/<profile>/`.
-fn target_dir() -> anyhow::Result<PathBuf> {
+pub(crate) fn target_dir() -> anyhow::Result<PathBuf> {
     let me = std::env::current_exe().context("cannot find this program")?;
     me.ancestors().nth(2).map(Path::to_path_buf).context("this program lies in no target folder")
 }

@@ -39,16 +39,16 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// The zoo's library, built as this program was.
 fn zoo() -> Result<PathBuf, Box<dyn Error>> {
     let mut build = Command::new(env!("CARGO"));
-    build.args(["build", "--quiet", "--package", "honami-zoo", "--message-format=json"]);
+    build.args(["build", "--quiet", "--package", "honami-host", "--example", "zoo", "--message-format=json"]);
     if !cfg!(debug_assertions) {
         build.arg("--release");
     }
     let output = build.current_dir(env!("CARGO_MANIFEST_DIR")).output()?;
     let text = String::from_utf8(output.stdout)?;
     let artifacts = text.lines().filter_map(|line| serde_json::from_str::<serde_json::Value>(line).ok());
-    let mut files = artifacts.filter(|a| a["target"]["name"] == "honami_zoo");
+    let mut files = artifacts.filter(|a| a["target"]["name"] == "zoo");
     let file = files.next().and_then(|artifact| Some(artifact["filenames"][0].as_str()?.into()));
-    file.ok_or_else(|| "cargo did not build honami-zoo".into())
+    file.ok_or_else(|| "cargo did not build the zoo".into())
 }
 
 /// Nanoseconds a push, checks and copies included.

@@ -257,3 +257,6 @@ impl Open {
 unsafe extern "C" fn host_ext(_: *const Call, _: *const c_char) -> *const c_void {
     std::ptr::null()
 }
+
+#[cfg(test)]
+mod tests;

@@ -4,7 +4,7 @@ use crate::{Cx, Info, Params, Result};
 
 /// Groups tracks into a hierarchy.
 pub trait Clusterer: Sized + Send + 'static {
-    /// Its parameters, made by [`params!`](crate::params) (or `()`).
+    /// Its parameters, made by [`params!`](crate::params!) (or `()`).
     type Params: Params;
     /// Id, name and description.
     const INFO: Info;

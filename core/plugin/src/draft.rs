@@ -4,7 +4,7 @@ use crate::{Cx, Info, Params, Result, Tracks};
 
 /// Grows a skeleton from grouped tracks.
 pub trait Structure: Sized + Send + 'static {
-    /// Its parameters, made by [`params!`](crate::params) (or `()`).
+    /// Its parameters, made by [`params!`](crate::params!) (or `()`).
     type Params: Params;
     /// Id, name and description.
     const INFO: Info;
@@ -18,7 +18,7 @@ pub trait Structure: Sized + Send + 'static {
 
 /// Moves instances of a plant in the wind.
 pub trait Simulator: Sized + Send + 'static {
-    /// Its parameters, made by [`params!`](crate::params) (or `()`).
+    /// Its parameters, made by [`params!`](crate::params!) (or `()`).
     type Params: Params;
     /// Id, name and description.
     const INFO: Info;

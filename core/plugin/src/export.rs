@@ -316,3 +316,6 @@ unsafe fn value_of(value: &abi::Value) -> Result<Value<'_>> {
         other => return Err(Error::with_code(code::ARGUMENT, format!("there is no kind of value {other}"))),
     })
 }
+
+#[cfg(test)]
+mod tests;

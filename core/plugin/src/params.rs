@@ -4,7 +4,7 @@ use crate::{Error, Result};
 use honami_abi::code;
 use std::path::PathBuf;
 
-/// A set of parameters; [`params!`](crate::params) implements it.
+/// A set of parameters; [`params!`](crate::params!) implements it.
 pub trait Params: Default + Send + 'static {
     /// What the host draws its form from.
     const SCHEMA: &'static [Param];
@@ -71,7 +71,7 @@ pub enum Value<'a> {
 }
 
 /// A type that a parameter can have: `bool`, `i64`, `f64`, `String`, `PathBuf`, `u64` (a seed), `[f64; 2]` (a vector),
-/// `[f64; 4]` (a rectangle), or an enum made by [`choice!`](crate::choice).
+/// `[f64; 4]` (a rectangle), or an enum made by [`choice!`](crate::choice!).
 pub trait ParamType: Sized {
     /// Its name in the manifest.
     const KIND: &'static str;
@@ -196,7 +196,7 @@ macro_rules! __attributes {
     };
 }
 
-/// Declares the choices of a parameter: `Variant = "id" => "Label"`. Its default in [`params!`](crate::params) is an id.
+/// Declares the choices of a parameter: `Variant = "id" => "Label"`. Its default in [`params!`](crate::params!) is an id.
 ///
 /// ```
 /// honami_plugin::choice! {

@@ -12,7 +12,7 @@ use std::ops::Range;
 /// reports them where they were seeded. An id is live from its seed (or birth) until it is retired, or until `push`
 /// leaves it out, which ends it for good. Seeding a live id moves it: a correction by hand.
 pub trait Tracker: Sized + Send + 'static {
-    /// Its parameters, made by [`params!`](crate::params) (or `()`).
+    /// Its parameters, made by [`params!`](crate::params!) (or `()`).
     type Params: Params;
     /// Id, name and description.
     const INFO: Info;

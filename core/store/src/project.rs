@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use honami_model::document::Document;
+use honami_model::document::{Document, RunId};
 use honami_model::edit::{Edit, Transaction, apply};
 use honami_model::history::{Entry, EntryId, History};
 use honami_model::track::TrackSet;
@@ -39,6 +39,7 @@ pub struct Project {
     clip: ClipRecord,
     document: Document,
     history: History,
+    interrupted: Vec<RunId>,
     pub(crate) shown: Shown,
 }
 
@@ -84,14 +85,13 @@ impl Project {
     fn load(path: PathBuf, lock: Option<Arc<Lock>>, other: Option<Holder>) -> Result<Self, StoreError> {
         let mut conn = schema::connect(&path, lock.is_some())?;
         schema::bring_up(&mut conn, lock.is_some(), &path)?;
-        if lock.is_some() {
-            run::end_interrupted(&mut conn)?;
-        }
+        let interrupted = if lock.is_some() { run::end_interrupted(&mut conn)? } else { Vec::new() };
         let clip = ClipRecord::load(&conn)?;
         let (history, document) = journal::load(&conn, clip.clip.n_frames())?;
         let holder = lock.as_ref().map(|lock| lock.holder.clone()).or(other);
         let author = lock.as_ref().map_or_else(String::new, |lock| lock.holder.user.clone());
-        Ok(Self { path, conn, lock, holder, author, clip, document, history, shown: Shown::default() })
+        let shown = Shown::default();
+        Ok(Self { path, conn, lock, holder, author, clip, document, history, interrupted, shown })
     }
 
     /// The project file.
@@ -128,6 +128,12 @@ impl Project {
     #[must_use]
     pub fn history(&self) -> &History {
         &self.history
+    }
+
+    /// Runs that a killed session left behind and this one found when it opened; they are not shown yet.
+    #[must_use]
+    pub fn interrupted(&self) -> &[RunId] {
+        &self.interrupted
     }
 
     /// The entry the document stands at: what provenance calls the input revision.

@@ -167,11 +167,12 @@ impl Project {
 }
 
 /// Marks what dead sessions left running as interrupted and compacts it; the caller holds the lock.
-pub(crate) fn end_interrupted(conn: &mut Connection) -> Result<(), StoreError> {
+pub(crate) fn end_interrupted(conn: &mut Connection) -> Result<Vec<RunId>, StoreError> {
     let mut statement = conn.prepare("SELECT id FROM run WHERE state = 'running' ORDER BY id")?;
     let runs = statement.query_map([], |row| row.get(0))?.collect::<Result<Vec<u32>, _>>()?;
     drop(statement);
-    runs.into_iter().try_for_each(|run| compact::end(conn, RunId(run), &RunState::Interrupted))
+    let end = |run| compact::end(conn, run, &RunState::Interrupted).map(|()| run);
+    runs.into_iter().map(RunId).map(end).collect()
 }
 
 /// Consecutive frames as records of consecutive samples of a track.

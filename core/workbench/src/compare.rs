@@ -1,7 +1,7 @@
 //! Trackers side by side on the same clip and the same points.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use honami_exchange::{PointRow, TruthRow};
 use honami_host::{CallContext, Kind, Registry, Values};
@@ -11,7 +11,7 @@ use honami_motion::accuracy::{TruePath, accuracy};
 
 pub use honami_motion::accuracy::Accuracy;
 
-use crate::drive::{self, Driven, Plan, Rows, Seed};
+use crate::drive::{self, Plan, Rows, Seed};
 use crate::error::WorkbenchError;
 use crate::progress::Progress;
 
@@ -76,6 +76,14 @@ pub fn points_of(truth: &Truth) -> Vec<Seed> {
     truth.iter().filter_map(first_seen).collect()
 }
 
+/// Who is compared.
+pub enum Contestant {
+    /// A tracker: short name or full id, and its parameters.
+    Tracker(String, Values),
+    /// What another program made of the same points: its name, and its table of tracks.
+    Foreign(String, PathBuf),
+}
+
 /// Runs each tracker over the whole clip; the last row is the baseline that tracks nothing.
 ///
 /// # Errors
@@ -84,7 +92,7 @@ pub fn points_of(truth: &Truth) -> Vec<Seed> {
 pub fn compare(
     media: &Media,
     registry: &Registry,
-    trackers: &[(String, Values)],
+    contestants: &[Contestant],
     points: &[Seed],
     truth: Option<&Truth>,
     progress: &dyn Progress,
@@ -92,27 +100,47 @@ pub fn compare(
     drive::check_seeds(points, media.clip())?;
     let n_frames = media.clip().n_frames();
     let mut rows = Vec::new();
-    for (name, params) in trackers {
-        let plugin = registry.find(Kind::Tracker, name)?;
-        let (mut tracker, _) = honami_host::Host::new().tracker(plugin, params, &CallContext::silent())?;
-        let plan = Plan { frames: 0..n_frames, seeds: points.to_vec(), detect: None, max_threads: 1 };
-        let mut spans = BTreeMap::new();
-        let mut collect = |frame: u32, rows: &Rows| {
-            gather(&mut spans, frame, rows);
-            Ok(())
+    for contestant in contestants {
+        let (name, spans, ms_per_frame) = match contestant {
+            Contestant::Tracker(name, params) => {
+                let (spans, secs) = follow(media, registry, (name, params), points, progress)?;
+                (name, spans, Some(1e3 * secs / f64::from(n_frames)))
+            }
+            Contestant::Foreign(name, path) => {
+                (name, honami_exchange::spans(honami_exchange::read(path)?, n_frames)?, None)
+            }
         };
-        let mut numbers = |_| Ok(0..0);
-        let driven = drive::drive(media, &mut tracker, plan, &mut numbers, &mut collect, progress)?;
-        let Driven { end, tracker_secs } = driven;
-        if end < n_frames {
-            return Err(WorkbenchError::Stopped);
-        }
-        let ms_per_frame = Some(1e3 * tracker_secs / f64::from(n_frames));
-        rows.push(judge(plugin.short_name.clone(), points, &spans, truth, ms_per_frame)?);
+        rows.push(judge(name.clone(), points, &spans, truth, ms_per_frame)?);
     }
     let still = points.iter().map(|seed| (seed.track, standing(seed, n_frames))).collect();
     rows.push(judge(STATIC.to_owned(), points, &still, truth, None)?);
     Ok(rows)
+}
+
+/// Runs a tracker over the whole clip; its spans, and the seconds spent in it.
+fn follow(
+    media: &Media,
+    registry: &Registry,
+    (name, params): (&str, &Values),
+    points: &[Seed],
+    progress: &dyn Progress,
+) -> Result<(BTreeMap<TrackId, Span>, f64), WorkbenchError> {
+    let n_frames = media.clip().n_frames();
+    let plugin = registry.find(Kind::Tracker, name)?;
+    let (mut tracker, _) = honami_host::Host::new().tracker(plugin, params, &CallContext::silent())?;
+    // One thread, so that the times of trackers can be compared.
+    let plan = Plan { frames: 0..n_frames, seeds: points.to_vec(), detect: None, max_threads: 1 };
+    let mut spans = BTreeMap::new();
+    let mut collect = |frame: u32, rows: &Rows| {
+        gather(&mut spans, frame, rows);
+        Ok(())
+    };
+    let mut numbers = |_| Ok(0..0);
+    let driven = drive::drive(media, &mut tracker, plan, &mut numbers, &mut collect, progress)?;
+    if driven.end < n_frames {
+        return Err(WorkbenchError::Stopped);
+    }
+    Ok((spans, driven.tracker_secs))
 }
 
 /// Appends a frame's rows to the spans of their tracks.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use honami_host::Registry;
 use honami_media::{Media, OpenOptions};
+use honami_model::edit::Transaction;
 use honami_store::{Access, ClipRecord, Project, StoreError};
 
 use crate::error::WorkbenchError;
@@ -26,6 +27,8 @@ pub struct Session {
     pub media: Arc<Media>,
     /// The plugins.
     pub registry: Arc<Registry>,
+    /// What was found unfinished when the project was opened, and what became of it: one line each.
+    pub notes: Vec<String>,
 }
 
 impl Session {
@@ -35,9 +38,10 @@ impl Session {
     /// When the project is locked by another session, is none, or its clip is missing or has changed.
     pub fn open(path: &Path, options: &SessionOptions) -> Result<Self, WorkbenchError> {
         let access = if options.read_only { Access::Read } else { Access::Write };
-        let project = Project::open(path, access)?;
+        let mut project = Project::open(path, access)?;
         let media = Arc::new(open_clip_of(&project)?);
-        Ok(Self { project, media, registry: Arc::new(Registry::scan(&options.plugin_paths)) })
+        let notes = show_interrupted(&mut project)?;
+        Ok(Self { project, media, registry: Arc::new(Registry::scan(&options.plugin_paths)), notes })
     }
 
     /// Opens a project to write, or to look where another session writes.
@@ -75,8 +79,23 @@ impl Session {
         };
         let project = Project::create(project, &record)?;
         let registry = Arc::new(Registry::scan(&options.plugin_paths));
-        Ok(Self { project, media: Arc::new(media), registry })
+        Ok(Self { project, media: Arc::new(media), registry, notes: Vec::new() })
     }
+}
+
+/// Shows what killed sessions had tracked, as an edit that undo takes back.
+fn show_interrupted(project: &mut Project) -> Result<Vec<String>, WorkbenchError> {
+    let mut notes = Vec::new();
+    for run in project.interrupted().to_vec() {
+        let info = project.run(run)?;
+        if info.tracks.is_empty() {
+            continue;
+        }
+        let (tracks, last) = (info.tracks.to_string(), info.found.end.saturating_sub(1));
+        project.commit(Transaction::show_run(run, info.tracks))?;
+        notes.push(format!("run {run} was interrupted at frame {last}: its {tracks} are kept and shown (u undoes)"));
+    }
+    Ok(notes)
 }
 
 /// Opens the clip of a project, wherever it has moved to within reach.

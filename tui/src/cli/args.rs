@@ -10,35 +10,41 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 /// behind the motion, and keeps everything with its provenance in one project file.
 #[derive(Debug, Parser)]
 #[command(name = "honami", version, args_conflicts_with_subcommands = true)]
-pub struct Cli {
+pub(super) struct Cli {
     /// What to do; without a command, the terminal UI opens.
     #[command(subcommand)]
-    pub command: Option<Command>,
+    pub(super) command: Option<Command>,
     /// Project (.honami) to open in the terminal UI, or a clip to make one from.
-    pub project: Option<PathBuf>,
+    pub(super) project: Option<PathBuf>,
     #[command(flatten)]
-    pub common: Common,
+    pub(super) common: Common,
 }
 
 /// Options of every command.
 #[derive(Args, Clone, Debug, Default)]
-pub struct Common {
+pub(super) struct Common {
     /// Print one JSON object for machines instead of text.
     #[arg(long, global = true)]
-    pub json: bool,
+    pub(super) json: bool,
     /// Look for plugins in this file or folder first.
     #[arg(long = "plugin", value_name = "PATH", global = true)]
-    pub plugins: Vec<PathBuf>,
+    pub(super) plugins: Vec<PathBuf>,
 }
 
 #[derive(Debug, Subcommand)]
-pub enum Command {
+pub(super) enum Command {
     /// Make a project from a clip: a video, an image folder, or a pattern such as `frame_%04d.png`.
     New(New),
     /// Follow features through the clip with a tracker plugin.
     Track(Track),
     /// Find the groups that move together with a clusterer plugin.
     Cluster(Cluster),
+    /// Correct tracks from a script: one edit a line on standard input, one answer a line.
+    ///
+    /// An edit is answered once it is in the project file, with its number in the undo tree. The first edit that
+    /// cannot be done ends the script; those before it are kept.
+    #[command(after_help = EDITS)]
+    Edit(Project),
     /// Run trackers side by side on a clip and say how far they can be trusted.
     Compare(Compare),
     /// Frequencies of tracks and groups, in Hz from the frame times.
@@ -68,146 +74,161 @@ pub enum Command {
     },
 }
 
+/// What `edit` reads.
+pub(super) const EDITS: &str = "\
+Edits (frames count from 0; pixels, (0,0) is the centre of the top-left pixel; # begins a remark):
+  add FRAME X Y         place a new track
+  key TRACK FRAME X Y   move a sample, which becomes a key-frame
+  clear TRACK FRAME     give a key-frame back to the runs below it
+  delete TRACK…         delete tracks; their work is kept
+  restore TRACK…        take deleted tracks back
+  cut K                 cut the shown clustering into K groups
+  undo                  take the last edit back
+  redo                  do again what was undone";
+
 #[derive(Args, Debug)]
-pub struct Project {
+pub(super) struct Project {
     /// Project file (.honami).
-    pub project: PathBuf,
+    pub(super) project: PathBuf,
 }
 
 #[derive(Args, Debug)]
-pub struct New {
+pub(super) struct New {
     /// Project file to make; never overwritten.
-    pub project: PathBuf,
+    pub(super) project: PathBuf,
     /// Video, image folder or pattern.
-    pub clip: PathBuf,
+    pub(super) clip: PathBuf,
     /// True frame rate, where the container lies or an image sequence has none.
     #[arg(long, value_name = "F")]
-    pub fps: Option<f64>,
+    pub(super) fps: Option<f64>,
 }
 
 /// Which plugin, with which parameters.
 #[derive(Args, Debug)]
-pub struct WithPlugin {
+pub(super) struct WithPlugin {
     /// Plugin: its short name or full id.
     #[arg(long, value_name = "NAME")]
-    pub with: Option<String>,
+    pub(super) with: Option<String>,
     /// Set a parameter; `honami plugin info NAME` lists them.
     #[arg(long = "set", value_name = "K=V")]
-    pub set: Vec<String>,
+    pub(super) set: Vec<String>,
 }
 
 #[derive(Args, Debug)]
-pub struct Track {
+pub(super) struct Track {
     /// Project file (.honami).
-    pub project: PathBuf,
+    pub(super) project: PathBuf,
     #[command(flatten)]
-    pub plugin: WithPlugin,
+    pub(super) plugin: WithPlugin,
     /// Let this tracker choose the features (default: the project's own, where it has any).
     #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = "", conflicts_with = "points")]
-    pub detect: Option<String>,
+    pub(super) detect: Option<String>,
     /// Features from a table `id,x,y[,frame]`.
     #[arg(long, value_name = "FILE")]
-    pub points: Option<PathBuf>,
+    pub(super) points: Option<PathBuf>,
     /// Image whose black pixels get no features.
     #[arg(long, value_name = "FILE", conflicts_with = "region")]
-    pub mask: Option<PathBuf>,
+    pub(super) mask: Option<PathBuf>,
     /// Rectangle in pixels outside which there are no features.
     #[arg(long, value_name = "X,Y,W,H")]
-    pub region: Option<Region>,
+    pub(super) region: Option<Region>,
     /// Frames to track, the last one excluded (default: all).
     #[arg(long, value_name = "A..B")]
-    pub frames: Option<FrameRange>,
+    pub(super) frames: Option<FrameRange>,
     /// Detect again every N frames, where no feature is near.
-    #[arg(long, value_name = "N")]
-    pub every: Option<u32>,
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(super) every: Option<u32>,
 }
 
 #[derive(Args, Debug)]
-pub struct Cluster {
+pub(super) struct Cluster {
     /// Project file (.honami).
-    pub project: PathBuf,
+    pub(super) project: PathBuf,
     #[command(flatten)]
-    pub plugin: WithPlugin,
+    pub(super) plugin: WithPlugin,
     /// Number of groups to cut the hierarchy into.
     #[arg(long, value_name = "K")]
-    pub groups: Option<u32>,
+    pub(super) groups: Option<u32>,
 }
 
 #[derive(Args, Debug)]
-pub struct Compare {
+pub(super) struct Compare {
     /// Clip, or project whose clip and tracks are used.
-    pub clip: PathBuf,
+    pub(super) clip: PathBuf,
     /// Tracker to run; give it once for each.
     #[arg(long, value_name = "NAME")]
-    pub with: Vec<String>,
+    pub(super) with: Vec<String>,
     /// True positions, a table `track,frame,x,y,visible,branch`.
     #[arg(long, value_name = "FILE")]
-    pub truth: Option<PathBuf>,
-    /// Features from a table `id,x,y[,frame]` (default: from the truth, or detected by the first tracker).
+    pub(super) truth: Option<PathBuf>,
+    /// Tracks that another program made of the same points, as a table of tracks.
+    #[arg(long, value_name = "NAME=FILE")]
+    pub(super) tracks: Vec<Foreign>,
+    /// Features from a table `id,x,y[,frame]` (default: from the truth, else the project's own).
     #[arg(long, value_name = "FILE")]
-    pub points: Option<PathBuf>,
+    pub(super) points: Option<PathBuf>,
     /// Set a parameter of every tracker that has it.
     #[arg(long = "set", value_name = "K=V")]
-    pub set: Vec<String>,
+    pub(super) set: Vec<String>,
     /// True frame rate of the clip.
     #[arg(long, value_name = "F")]
-    pub fps: Option<f64>,
+    pub(super) fps: Option<f64>,
 }
 
 #[derive(Args, Debug)]
-pub struct Spectrum {
+pub(super) struct Spectrum {
     /// Project file (.honami), or a table of tracks (.csv).
-    pub project: PathBuf,
+    pub(super) project: PathBuf,
     /// Only this track.
     #[arg(long, value_name = "ID")]
-    pub track: Option<u32>,
+    pub(super) track: Option<u32>,
     /// How many peaks to name for each.
     #[arg(long, value_name = "N", default_value_t = 3)]
-    pub peaks: usize,
+    pub(super) peaks: usize,
 }
 
 #[derive(Args, Debug)]
-pub struct Export {
+pub(super) struct Export {
     /// Project file (.honami).
-    pub project: PathBuf,
+    pub(super) project: PathBuf,
     /// What to write.
-    pub what: ExportWhat,
+    pub(super) what: ExportWhat,
     /// File to write (.csv).
-    pub out: PathBuf,
+    pub(super) out: PathBuf,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum ExportWhat {
+pub(super) enum ExportWhat {
     /// The shown tracks: track,frame,time_s,x,y,status,source,quality,fb,ncc,run.
     Tracks,
 }
 
 #[derive(Args, Debug)]
-pub struct Synth {
+pub(super) struct Synth {
     /// Clip to write: a .y4m or .mp4 file, or a folder of PNG files. The truth goes beside it.
-    pub out: PathBuf,
+    pub(super) out: PathBuf,
     /// How hard it blows: mean leaf displacement of 1.5, 3.4 or 5.8 px per frame at 960x720.
     #[arg(long, default_value = "calm")]
-    pub wind: Wind,
+    pub(super) wind: Wind,
     /// Number of frames.
     #[arg(long, value_name = "T", default_value_t = 150, value_parser = clap::value_parser!(u32).range(2..=100_000))]
-    pub frames: u32,
+    pub(super) frames: u32,
     /// Size in pixels.
     #[arg(long, value_name = "WxH", default_value = "960x720")]
-    pub size: Size,
+    pub(super) size: Size,
     /// Frames per second.
     #[arg(long, value_name = "F", default_value_t = 25.0)]
-    pub fps: f64,
+    pub(super) fps: f64,
     /// Number of leaves.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
-    pub leaves: Option<u32>,
+    pub(super) leaves: Option<u32>,
     /// The same seed gives the same clip.
     #[arg(long, value_name = "S", default_value_t = 1)]
-    pub seed: u64,
+    pub(super) seed: u64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Wind {
+pub(super) enum Wind {
     /// 1.5 px per frame.
     Calm,
     /// 3.4 px per frame.
@@ -217,17 +238,17 @@ pub enum Wind {
 }
 
 #[derive(Args, Debug)]
-pub struct Demo {
+pub(super) struct Demo {
     /// Do everything but open the terminal UI.
     #[arg(long)]
-    pub headless: bool,
+    pub(super) headless: bool,
     /// Folder for the clip and the project (default: honami-demo in the current folder).
     #[arg(long, value_name = "DIR", default_value = "honami-demo")]
-    pub folder: PathBuf,
+    pub(super) folder: PathBuf,
 }
 
 #[derive(Debug, Subcommand)]
-pub enum Plugin {
+pub(super) enum Plugin {
     /// Every plugin on the search path.
     List,
     /// One plugin: what it does, its parameters, where it comes from.
@@ -239,9 +260,9 @@ pub enum Plugin {
 
 /// `A..B`, the last one excluded; an open end reaches to the clip's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct FrameRange {
-    pub start: u32,
-    pub end: Option<u32>,
+pub(super) struct FrameRange {
+    pub(super) start: u32,
+    pub(super) end: Option<u32>,
 }
 
 impl std::str::FromStr for FrameRange {
@@ -261,11 +282,11 @@ impl std::str::FromStr for FrameRange {
 
 /// A rectangle in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Region {
-    pub x: f64,
-    pub y: f64,
-    pub width: f64,
-    pub height: f64,
+pub(super) struct Region {
+    pub(super) x: f64,
+    pub(super) y: f64,
+    pub(super) width: f64,
+    pub(super) height: f64,
 }
 
 impl std::str::FromStr for Region {
@@ -283,9 +304,9 @@ impl std::str::FromStr for Region {
 
 /// `WxH` in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Size {
-    pub width: u32,
-    pub height: u32,
+pub(super) struct Size {
+    pub(super) width: u32,
+    pub(super) height: u32,
 }
 
 impl std::str::FromStr for Size {
@@ -298,5 +319,24 @@ impl std::str::FromStr for Size {
         parse()
             .filter(|size| (16..=8192).contains(&size.width) && (16..=8192).contains(&size.height))
             .ok_or_else(|| format!("wanted a size as WxH between 16x16 and 8192x8192, got {text}"))
+    }
+}
+
+/// `NAME=FILE`: somebody else's tracks.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Foreign {
+    pub(super) name: String,
+    pub(super) file: PathBuf,
+}
+
+impl std::str::FromStr for Foreign {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.split_once('=') {
+            Some((name, file)) if !name.is_empty() && !file.is_empty() => {
+                Ok(Self { name: name.to_owned(), file: PathBuf::from(file) })
+            }
+            _ => Err(format!("wanted tracks as NAME=FILE, for instance opencv=tracks.csv, got {text}")),
+        }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use honami_workbench::compare::{self, Row};
+use honami_workbench::compare::{self, Contestant, Row};
 use honami_workbench::drive::Seed;
 use honami_workbench::media::{self, Media, OpenOptions};
 use honami_workbench::plugins::{Kind, Registry, Values};
@@ -24,10 +24,15 @@ pub(super) fn compare(args: &Compare, common: &Common) -> anyhow::Result<Answer>
         !points.is_empty(),
         "there are no points to compare on: give --truth or --points, or a project that has tracks"
     );
-    let names = if args.with.is_empty() { vec![track::DEFAULT.to_owned()] } else { args.with.clone() };
-    let trackers = names.iter().map(|name| Ok((name.clone(), values(&registry, name, &args.set)?)));
-    let trackers = trackers.collect::<anyhow::Result<Vec<_>>>()?;
-    let rows = compare::compare(&media, &registry, &trackers, &points, truth.as_ref(), &report::Bar::new())?;
+    let none = args.with.is_empty() && args.tracks.is_empty();
+    let names = if none { vec![track::DEFAULT.to_owned()] } else { args.with.clone() };
+    let trackers = names.into_iter().map(|name| {
+        let values = values(&registry, &name, &args.set)?;
+        Ok(Contestant::Tracker(name, values))
+    });
+    let mut contestants = trackers.collect::<anyhow::Result<Vec<_>>>()?;
+    contestants.extend(args.tracks.iter().map(|f| Contestant::Foreign(f.name.clone(), f.file.clone())));
+    let rows = compare::compare(&media, &registry, &contestants, &points, truth.as_ref(), &report::Bar::new())?;
     Ok(describe(&rows, points.len()))
 }
 

@@ -12,7 +12,8 @@ pub(super) fn log(args: &Project, common: &Common) -> anyhow::Result<Answer> {
     let lines = session.project.log()?;
     let text = lines.iter().map(line).collect::<Vec<_>>().join("\n");
     let text = if text.is_empty() { "nothing was done to this project yet".to_owned() } else { text };
-    Ok(Answer { json: json!({ "log": lines.iter().map(entry).collect::<Vec<_>>() }), text })
+    let json = json!({ "revision": session.project.revision(), "log": lines.iter().map(entry).collect::<Vec<_>>() });
+    Ok(Answer { json, text })
 }
 
 fn line(line: &LogLine) -> String {

@@ -58,7 +58,16 @@ pub(super) fn say(line: &str) {
 pub(super) fn complain(error: &anyhow::Error) {
     let red = std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none();
     let (on, off) = if red { ("\x1b[31m", "\x1b[0m") } else { ("", "") };
-    say(&format!("{on}honami:{off} {error:#}"));
+    say(&format!("{on}honami:{off} {}", chain(error)));
+}
+
+/// The error and its causes; a cause that the line tells already is not told twice.
+fn chain(error: &anyhow::Error) -> String {
+    error.chain().map(ToString::to_string).fold(String::new(), |line, cause| match line.as_str() {
+        "" => cause,
+        told if told.contains(&cause) => line,
+        told => format!("{told}: {cause}"),
+    })
 }
 
 /// Columns aligned to their widest cell, two spaces apart; the first row is the head.

@@ -37,15 +37,22 @@ pub(crate) fn zoo() -> &'static Path {
     static PATH: OnceLock<PathBuf> = OnceLock::new();
     PATH.get_or_init(|| {
         let output = Command::new(env!("CARGO"))
-            .args(["build", "--quiet", "--package", "honami-zoo", "--message-format=json"])
+            .args([
+                "build",
+                "--quiet",
+                "--package",
+                "honami-host",
+                "--example",
+                "zoo",
+                "--message-format=json",
+            ])
             .current_dir(env!("CARGO_MANIFEST_DIR"))
             .output()
             .unwrap();
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         let text = String::from_utf8(output.stdout).unwrap();
         let artifacts = text.lines().filter_map(|line| serde_json::from_str::<serde_json::Value>(line).ok());
-        let mut files =
-            artifacts.filter(|a| a["target"]["name"] == "honami_zoo").map(|a| a["filenames"][0].clone());
+        let mut files = artifacts.filter(|a| a["target"]["name"] == "zoo").map(|a| a["filenames"][0].clone());
         PathBuf::from(files.next_back().unwrap().as_str().unwrap())
     })
 }

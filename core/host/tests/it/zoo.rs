@@ -1,6 +1,6 @@
 //! True plugins of every kind through the ABI: the same bits as without it, and the rules of streams.
 
-#[path = "../fixtures/zoo/src/drift.rs"]
+#[path = "../zoo/drift.rs"]
 mod drift;
 
 use crate::tools::{HEIGHT, WIDTH, host, ids, of_zoo, pixels, point, push, start, stream, view};

@@ -1,117 +1,106 @@
 //! H.264 in MP4 without any installed program: 8-bit 4:2:0 progressive, what cameras and phones mostly write.
 //!
-//! The container is read by re_mp4's boxes and our own sample table (which trusts nothing), the stream is decoded by
-//! rusty_h264, which gives the same bits as ffmpeg (tested on every clip; openh264 does not where B-frames use direct
-//! prediction: up to 25 levels off in a clip of reeds).
+//! The container is read here, the stream is decoded by rusty_h264, which gives the same bits as ffmpeg (tested on
+//! every clip; openh264 does not where B-frames use direct prediction: up to 25 levels off in a clip of reeds).
 
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::{BufReader, Seek, SeekFrom};
 use std::os::unix::fs::FileExt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use honami_model::picture::Range;
-use re_mp4::{Avc1Box, BoxHeader, BoxType, MoovBox, ReadBox, StsdBoxContent, TrakBox};
 use rusty_h264_decoder::{DecodeError, Decoder};
 
 use super::{Decode, Probed, Shape, Source, check_size, seconds, turned};
 use crate::error::{MediaError, Size};
+use boxes::{children, find, u16_at, u32_at};
 use sps::Sps;
 use table::{Sample, Table};
 
+mod boxes;
 mod sps;
 mod table;
 
 /// Reads the container's index and the stream's parameters.
 pub(crate) fn probe(path: &Path) -> Result<Probed, MediaError> {
-    let needs_ffmpeg = |what: String| MediaError::NeedsFfmpeg { path: path.to_path_buf(), what };
+    let needs_ffmpeg =
+        |what: &str| MediaError::NeedsFfmpeg { path: path.to_path_buf(), what: what.to_owned() };
     let file = File::open(path).map_err(|e| MediaError::io("read", path, e))?;
     let file_len = file.metadata().map_err(|e| MediaError::io("read", path, e))?.len();
-    let moov = read_moov(path, file, file_len)?;
-    if moov.mvex.is_some() {
-        return Err(needs_ffmpeg("a fragmented MP4".to_owned()));
+    let moov = boxes::read_index(path, &file, file_len)?;
+    if find(&moov, &[b"mvex"]).is_some() {
+        return Err(needs_ffmpeg("a fragmented MP4"));
     }
-    let Some(trak) = moov.traks.iter().find(|trak| trak.mdia.minf.vmhd.is_some()) else {
+    let tracks = children(&moov).filter(|(name, _)| name == b"trak").map(|(_, body)| body);
+    let Some(trak) = tracks.into_iter().find(|trak| is_video(trak)) else {
         let why = "no video stream in it".to_owned();
         return Err(MediaError::NotAVideo { path: path.to_path_buf(), why });
     };
-    let avc1 = match &trak.mdia.minf.stbl.stsd.contents {
-        StsdBoxContent::Avc1(avc1) => avc1,
-        StsdBoxContent::Unknown(name) => return Err(needs_ffmpeg(format!("{name} video"))),
-        other => return Err(needs_ffmpeg(format!("{} video", other.codec_string().unwrap_or_default()))),
+    let entries = find(trak, &[b"mdia", b"minf", b"stbl", b"stsd"]).and_then(|stsd| stsd.get(8..));
+    let avc1 = match entries.and_then(|entries| children(entries).next()) {
+        Some((name, body)) if &name == b"avc1" => body,
+        Some((name, _)) => return Err(needs_ffmpeg(&format!("{} video", String::from_utf8_lossy(&name)))),
+        None => return Err(MediaError::damaged(path, "its index names no codec")),
     };
-    let avcc = &avc1.avcc.contents;
-    let sps = avcc.sequence_parameter_sets.first().and_then(|nal| Sps::parse(&nal.bytes));
-    let sps = sps.ok_or_else(|| MediaError::damaged(path, "its H.264 parameters cannot be read"))?;
+    let no_parameters = || MediaError::damaged(path, "its H.264 parameters cannot be read");
+    let avcc = avc1.get(AVC1_LEN..).and_then(|inner| find(inner, &[b"avcC"])).ok_or_else(no_parameters)?;
+    let parameters = parameters(avcc).ok_or_else(no_parameters)?;
+    let sps = parameters.iter().find_map(|unit| Sps::parse(unit)).ok_or_else(no_parameters)?;
     if let Some(what) = sps.beyond_builtin() {
-        return Err(needs_ffmpeg(what.to_owned()));
+        return Err(needs_ffmpeg(what));
     }
     let (width, height) = check_size(path, sps.width, sps.height)?;
     let range = if sps.full_range { Range::Full } else { Range::Limited };
     let shape = Shape { width, height, colour: true, range };
     let table = Table::read(path, &moov, trak, file_len)?;
     let times_s = seconds(table.kept_times(), 1, table.timescale);
-    let notes = if sps.square {
-        Vec::new()
-    } else {
-        vec!["its pixels are not square: positions are in stored pixels".to_owned()]
-    };
-    let quarters = quarters_clockwise(trak);
-    let source = Video {
-        path: path.to_path_buf(),
-        shape,
-        head: annex_b_head(avc1),
-        table: Arc::new(table),
-        length_size: usize::from(avcc.length_size_minus_one & 3) + 1,
-    };
-    Ok(turned(Probed { shape, times_s, notes, source: Box::new(source) }, quarters))
-}
-
-/// Finds and reads the index box.
-fn read_moov(path: &Path, file: File, file_len: u64) -> Result<MoovBox, MediaError> {
-    let damaged = |what: String| MediaError::damaged(path, what);
-    let mut reader = BufReader::new(file);
-    let mut at = 0;
-    while at + 8 <= file_len {
-        reader.seek(SeekFrom::Start(at)).map_err(|e| MediaError::io("read", path, e))?;
-        let BoxHeader { name, size } = BoxHeader::read(&mut reader).map_err(|e| damaged(e.to_string()))?;
-        // A size of 0 reaches to the end; after a 64-bit size the reader stands 8 bytes further on.
-        let start = reader.stream_position().map_err(|e| MediaError::io("read", path, e))? - 8;
-        let end = if size == 0 { file_len } else { start.saturating_add(size) };
-        if name == BoxType::MoovBox {
-            if end > file_len {
-                return Err(damaged("the file ends within its index".to_owned()));
-            }
-            return MoovBox::read_box(&mut reader, size).map_err(|e| damaged(format!("its index: {e}")));
-        }
-        if end <= at {
-            break;
-        }
-        at = end;
-    }
-    Err(damaged("it has no index (moov box)".to_owned()))
-}
-
-/// Quarter turns that make the picture upright, from the track's matrix; other matrices are not honoured.
-fn quarters_clockwise(trak: &TrakBox) -> u32 {
-    let m = &trak.tkhd.matrix;
-    match (m.a.signum(), m.b.signum(), m.c.signum(), m.d.signum()) {
-        (0, 1, -1, 0) => 1,
-        (-1, 0, 0, -1) => 2,
-        (0, -1, 1, 0) => 3,
-        _ => 0,
-    }
+    let oblong = "its pixels are not square: positions are in stored pixels".to_owned();
+    let notes = if sps.square { Vec::new() } else { vec![oblong] };
+    let head = parameters.iter().flat_map(|unit| START_CODE.iter().chain(*unit)).copied().collect();
+    let length_size = usize::from(avcc[4] & 3) + 1;
+    let source = Video { path: path.to_path_buf(), shape, head, table: Arc::new(table), length_size };
+    Ok(turned(Probed { shape, times_s, notes, source: Box::new(source) }, quarters_clockwise(trak)))
 }
 
 /// Start code of a unit in a byte stream (H.264 annex B).
 const START_CODE: [u8; 4] = [0, 0, 0, 1];
 
-/// Sequence and picture parameters as a byte stream.
-fn annex_b_head(avc1: &Avc1Box) -> Arc<[u8]> {
-    let avcc = &avc1.avcc.contents;
-    let units = avcc.sequence_parameter_sets.iter().chain(&avcc.picture_parameter_sets);
-    units.flat_map(|unit| START_CODE.into_iter().chain(unit.bytes.iter().copied())).collect()
+/// Bytes of a visual sample entry before the boxes in it.
+const AVC1_LEN: usize = 78;
+
+fn is_video(trak: &[u8]) -> bool {
+    find(trak, &[b"mdia", b"hdlr"]).and_then(|hdlr| hdlr.get(8..12)) == Some(b"vide")
+}
+
+/// Sequence and picture parameter sets of a decoder configuration (ISO/IEC 14496-15, 5.3.3.1).
+fn parameters(avcc: &[u8]) -> Option<Vec<&[u8]>> {
+    let mut units = Vec::new();
+    let mut at = 5;
+    for mask in [0x1f, 0xff] {
+        let n = avcc.get(at)? & mask;
+        at += 1;
+        for _ in 0..n {
+            let len = usize::from(u16_at(avcc, at)?);
+            units.push(avcc.get(at + 2..at + 2 + len)?);
+            at += 2 + len;
+        }
+    }
+    Some(units)
+}
+
+/// Quarter turns that make the picture upright, from the track's matrix; other matrices are not honoured.
+fn quarters_clockwise(trak: &[u8]) -> u32 {
+    let Some(tkhd) = find(trak, &[b"tkhd"]) else { return 0 };
+    let start = if tkhd.first() == Some(&1) { 52 } else { 40 };
+    let sign = |k: usize| u32_at(tkhd, start + 4 * k).map_or(0, |value| value.cast_signed().signum());
+    // Row by row: a b u, c d v; x' = a x + c y, y' = b x + d y.
+    match [0, 1, 3, 4].map(sign) {
+        [0, 1, -1, 0] => 1,
+        [-1, 0, 0, -1] => 2,
+        [0, -1, 1, 0] => 3,
+        _ => 0,
+    }
 }
 
 struct Video {

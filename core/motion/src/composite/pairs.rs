@@ -260,7 +260,7 @@ impl Pool {
 }
 
 /// Splits the condensed matrix where a new block of 16 rows starts.
-fn rows_by_block(mut condensed: &mut [f64], n_tracks: usize) -> Vec<(usize, &mut [f64])> {
+pub(super) fn rows_by_block(mut condensed: &mut [f64], n_tracks: usize) -> Vec<(usize, &mut [f64])> {
     let mut rows = Vec::new();
     for block in 0..n_tracks.div_ceil(LANES) {
         let tracks = block * LANES..n_tracks.min((block + 1) * LANES);
@@ -295,7 +295,7 @@ impl<D: Distance, P: Fn(&mut f64, usize, usize, f64)> pulp::NullaryFnOnce for Bl
 }
 
 #[inline(always)]
-fn block_row<D: Distance>(
+pub(super) fn block_row<D: Distance>(
     blocks: &[Block],
     first: usize,
     n_tracks: usize,

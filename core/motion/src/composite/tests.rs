@@ -143,6 +143,20 @@ fn the_same_bits_for_any_number_of_threads() {
 }
 
 #[test]
+fn the_same_bits_with_and_without_the_processors_vectors() {
+    let n = 75;
+    let steps = Steps::of(&walks(n, 200, 0.05, 15));
+    let blocks = steps.blocks(Place, &(0..199).collect::<Vec<_>>());
+    let put = |total: &mut f64, _: usize, _: usize, sum: f64| *total = sum;
+    let (mut dispatched, mut plain) = (vec![0.0; n * (n - 1) / 2], vec![0.0; n * (n - 1) / 2]);
+    pairs::Pool::new(n, 1).add::<Place>(&blocks, &mut dispatched, put, &mut |_| true).expect("sums");
+    for (first, rows) in pairs::rows_by_block(&mut plain, n) {
+        pairs::block_row::<Place>(&blocks, first, n, rows, &put);
+    }
+    assert!(dispatched == plain && plain.iter().all(|&sum| sum > 0.0));
+}
+
+#[test]
 fn a_frame_that_throws_everything_about_is_left_out() {
     let mut positions = walks(20, 60, 0.0, 12);
     let mut rng = rand_pcg::Pcg64Mcg::seed_from_u64(4);

@@ -19,8 +19,8 @@ const BASE_SWAY_RAD: [f64; 4] = [0.16, 0.55, 1.1, 1.3];
 const FLUTTER_RAD: f64 = 0.55;
 /// Where the light comes from.
 const TO_LIGHT: Point = Point::new(-0.62, -0.78);
-/// Turn from one leaf to the next around its branch, radians (the golden angle).
-const PHYLLOTAXIS_RAD: f64 = 2.399_963;
+/// The golden angle: from one leaf to the next around its branch, from one tip to the next in the crown.
+const GOLDEN_RAD: f64 = 2.399_963;
 
 impl Plant {
     /// Grows a plant that fills the picture.
@@ -52,8 +52,8 @@ impl<'a> Grower<'a> {
     fn new(settings: &Settings, rng: &'a mut Pcg64Mcg) -> Self {
         let (width_px, height_px) = (f64::from(settings.width), f64::from(settings.height));
         let crown = Crown {
-            centre: Point::new(width_px * 0.5, height_px * 0.47),
-            radius: Point::new((width_px * 0.46).min(height_px * 0.68), height_px * 0.44),
+            centre: Point::new(width_px * 0.5, height_px * 0.46),
+            radius: Point::new((width_px * 0.45).min(height_px * 0.66), height_px * 0.42),
         };
         // Leaves of length l cover about l²/3 each; they are to cover the crown nearly twice, within reason.
         let crown_px2 = std::f64::consts::PI * crown.radius.x * crown.radius.y;
@@ -73,74 +73,71 @@ impl<'a> Grower<'a> {
     }
 
     /// Stem, limbs, and `n_bearing` branches and twigs for leaves.
+    ///
+    /// Their tips are spread evenly over the crown first; limbs then grow into the sectors between them.
     fn wood(&mut self, n_bearing: usize) {
-        let foot = Point::new(self.crown.centre.x, self.height_px * 1.03);
-        let stem = self.add(None, 0.0, -FRAC_PI_2, self.height_px * 0.42, 0.0, foot);
+        let foot = Point::new(self.crown.centre.x + self.vary(0.02 * self.height_px), self.height_px * 1.03);
+        let stem = self.sprout(None, 0.0, foot + Point::new(0.0, -0.26 * self.height_px), 0.0, foot);
+        let hub = self.frames[stem].out(self.branches[stem].along(1.0));
+        let mut tips: Vec<Tip> = (0..n_bearing).map(|idx| self.tip(idx, n_bearing, hub)).collect();
+        tips.sort_by(|a, b| a.bearing_rad.total_cmp(&b.bearing_rad));
         let n_limbs = ((n_bearing as f64).sqrt().round() as usize).max(1);
         for limb_idx in 0..n_limbs {
-            let n_here = n_bearing / n_limbs + usize::from(limb_idx < n_bearing % n_limbs);
-            let fan = if n_limbs == 1 { 0.0 } else { 2.0 * limb_idx as f64 / (n_limbs - 1) as f64 - 1.0 };
-            let turn_rad = fan * 1.38 + self.vary(0.09);
-            // Outer limbs leave the stem lower down.
-            let share = 0.95 - 0.5 * fan.abs() + self.vary(0.05);
-            // Neighbours in the fan lie at different depths.
-            let nearness = ((limb_idx * 2 + 1) % n_limbs.max(2)) as f64 / n_limbs as f64 * 1.4 - 0.7;
-            let origin = self.frames[stem].out(self.branches[stem].along(share));
-            let reach_px = self.crown.reach_px(origin, turn_rad - FRAC_PI_2);
-            let limb = self.add(Some(stem), share, turn_rad, reach_px * 0.72, nearness, foot);
-            self.limb(limb, n_here);
+            let sector = &mut tips[limb_idx * n_bearing / n_limbs..(limb_idx + 1) * n_bearing / n_limbs];
+            sector.sort_by(|a, b| b.reach_px.total_cmp(&a.reach_px));
+            self.limb(stem, hub, sector);
         }
     }
 
-    /// Branches of a limb from its lower part to its tip, every other carrying a twig.
-    fn limb(&mut self, limb: usize, n_bearing: usize) {
-        let n_branches = n_bearing.div_ceil(2);
-        let limb_px = self.branches[limb].length_px;
-        for idx in 0..n_branches {
-            let last = idx + 1 == n_branches;
-            let share = if last { 0.97 } else { 0.36 + 0.52 * idx as f64 / n_branches as f64 + self.vary(0.05) };
-            let side = if (idx + limb).is_multiple_of(2) { 1.0 } else { -1.0 };
-            let turn_rad = if last { self.vary(0.2) } else { side * 0.75 + self.vary(0.15) };
-            let length_px = self.fitted(limb, share, turn_rad, (limb_px * 0.62).max(0.16 * self.height_px));
-            let nearness = self.nearness[limb] + self.vary(0.25);
-            let branch = self.add_on(limb, share, turn_rad, length_px, nearness);
-            if n_branches + idx < n_bearing {
-                let share = 0.42 + self.vary(0.08);
-                let turn_rad = -side * 0.7 + self.vary(0.15);
-                let length_px = self.fitted(branch, share, turn_rad, 0.8 * length_px);
-                let nearness = nearness + self.vary(0.15);
-                self.add_on(branch, share, turn_rad, length_px, nearness);
-            }
+    /// Tip `idx` of `n`: the seeds of a sunflower, which fill a disc evenly, laid over the crown.
+    fn tip(&mut self, idx: usize, n: usize, hub: Point) -> Tip {
+        let outness = ((idx as f64 + 0.5) / n as f64).sqrt();
+        let place = Point::unit(GOLDEN_RAD * idx as f64 + 0.6) * (outness * 0.9 + self.vary(0.04));
+        let at = self.crown.centre + Point::new(place.x * self.crown.radius.x, place.y * self.crown.radius.y);
+        // The crown is round: its rim lies in the middle, its middle in front or behind.
+        let depth = (1.0 - 0.8 * outness * outness).sqrt();
+        let nearness = depth * ((idx as f64 * 0.618_034).fract() * 2.0 - 1.0);
+        let way = at - hub;
+        Tip { at, nearness, reach_px: way.norm(), bearing_rad: way.x.atan2(-way.y) }
+    }
+
+    /// A limb up the middle of its sector, branches from it to every other tip, twigs to those between.
+    ///
+    /// `sector` is sorted from far to near.
+    fn limb(&mut self, stem: usize, hub: Point, sector: &[Tip]) {
+        let middle_rad = sector.iter().map(|tip| tip.bearing_rad).sum::<f64>() / sector.len() as f64;
+        let way = Point::unit(middle_rad.clamp(-1.5, 1.5) - FRAC_PI_2);
+        let nearness = 0.4 * sector.iter().map(|tip| tip.nearness).sum::<f64>() / sector.len() as f64;
+        // Limbs that lean out leave the stem lower down.
+        let share = (1.0 - 0.3 * middle_rad.abs()).max(0.5);
+        let limb = self.sprout(Some(stem), share, hub + way * (0.66 * sector[0].reach_px), nearness, hub);
+        let mut bearing: Vec<usize> = Vec::new();
+        for (idx, tip) in sector.iter().enumerate() {
+            let carrier = if idx % 2 == 0 { limb } else { bearing[idx - 1] };
+            let share = self.fork(carrier, tip.at);
+            bearing.push(self.sprout(Some(carrier), share, tip.at, tip.nearness, hub));
         }
     }
 
-    /// A length near `wanted_px` that ends about at the edge of the crown.
-    fn fitted(&mut self, parent: usize, share: f64, turn_rad: f64, wanted_px: f64) -> f64 {
-        let origin = self.frames[parent].out(self.branches[parent].along(share));
-        let edge_px = self.crown.reach_px(origin, self.frames[parent].angle_rad + turn_rad);
-        let varied_px = wanted_px * self.rng.random_range(0.85..1.15);
-        varied_px.min(edge_px).max(0.11 * self.height_px)
+    /// The share of a branch's length at which a side branch to `tip` leaves it: at some 45 degrees.
+    fn fork(&mut self, carrier: usize, tip: Point) -> f64 {
+        let local = self.frames[carrier].into_local(tip);
+        let length_px = self.branches[carrier].length_px;
+        let setback_px = (0.9 * local.y.abs()).max(0.16 * self.height_px);
+        ((local.x - setback_px) / length_px + self.vary(0.04)).clamp(0.28, 0.96)
     }
 
-    fn add_on(&mut self, parent: usize, share: f64, turn_rad: f64, length_px: f64, nearness: f64) -> usize {
-        self.add(Some(parent), share, turn_rad, length_px, nearness, Point::new(0.0, 0.0))
-    }
-
-    /// A new branch at a share of its parent's length; the stem stands on `foot`.
-    fn add(
-        &mut self,
-        parent: Option<usize>,
-        share: f64,
-        turn_rad: f64,
-        length_px: f64,
-        nearness: f64,
-        foot: Point,
-    ) -> usize {
+    /// A new branch from a share of its parent's length to `tip`; the stem stands on `foot`.
+    fn sprout(&mut self, parent: Option<usize>, share: f64, tip: Point, nearness: f64, foot: Point) -> usize {
         let order = parent.map_or(0, |p| self.branches[p].order + 1);
-        let (base, direction_rad, thickness_px) = parent.map_or((foot, 0.0, 0.021 * self.height_px), |p| {
-            let parent = &self.branches[p];
-            (parent.along(share), parent.direction_rad(share), 0.8 * parent.radius_at(share))
-        });
+        let (base, origin, carrier_rad, thickness_px) =
+            parent.map_or((foot, foot, 0.0, 0.017 * self.height_px), |p| {
+                let (parent, frame) = (&self.branches[p], &self.frames[p]);
+                let base = parent.along(share);
+                (base, frame.out(base), frame.angle_rad, 0.78 * parent.radius_at(share))
+            });
+        let way = tip - origin;
+        let length_px = way.norm().max(0.1 * self.height_px);
         let root_px = thickness_px.max(0.9);
         let slim = if order < 2 { 0.42 } else { 0.28 };
         let light = self.rng.random_range(0.8..1.0) * (0.78 + 0.22 * nearness);
@@ -148,7 +145,7 @@ impl<'a> Grower<'a> {
             parent,
             order,
             base,
-            turn_rad: direction_rad + turn_rad,
+            turn_rad: way.y.atan2(way.x) - carrier_rad,
             length_px,
             bend_px: length_px * self.vary(if order == 0 { 0.06 } else { 0.14 }),
             radius_px: [root_px, (root_px * slim).max(0.6)],
@@ -182,7 +179,7 @@ impl<'a> Grower<'a> {
     /// Leaf `idx` of `n_here` on a branch: they wind around it from a tenth of its length to the tip.
     fn leaf(&mut self, branch: usize, idx: usize, n_here: usize) {
         let share = 1.0 - 0.9 * (idx as f64 + self.rng.random_range(0.0..0.8)) / n_here as f64;
-        let around_rad = PHYLLOTAXIS_RAD * idx as f64 + self.vary(0.5);
+        let around_rad = GOLDEN_RAD * idx as f64 + self.vary(0.5);
         let (aside, ahead) = around_rad.sin_cos();
         let frame = self.frames[branch];
         let wood = &self.branches[branch];
@@ -225,11 +222,11 @@ impl<'a> Grower<'a> {
     fn leaf_colour(&mut self, centre: Point, nearness: f64) -> [f32; 3] {
         let lit = self.crown.lit(centre);
         let inside = 1.0 - self.crown.outness(centre).min(1.0);
-        let light = 0.62 + 0.34 * nearness + 0.42 * lit - 0.3 * inside * (1.0 - nearness) + self.vary(0.1);
-        let light = light.clamp(0.22, 1.28);
-        let sunny = (0.42 + 0.38 * lit + 0.18 * nearness + self.vary(0.24)).clamp(0.0, 1.0);
+        let light = 0.7 + 0.24 * nearness + 0.2 * lit - 0.22 * inside * (1.0 - nearness) + self.vary(0.1);
+        let light = light.clamp(0.26, 1.16);
+        let sunny = (0.42 + 0.2 * lit + 0.2 * nearness + self.vary(0.26)).clamp(0.0, 1.0);
         let mix = |shade: f64, sun: f64| ((shade + sunny * (sun - shade)) * light) as f32;
-        [mix(52.0, 150.0), mix(104.0, 176.0), mix(58.0, 66.0)]
+        [mix(58.0, 162.0), mix(116.0, 186.0), mix(62.0, 78.0)]
     }
 
     fn finish(self) -> Plant {
@@ -274,14 +271,14 @@ impl Crown {
         let n = self.normal(at);
         n.x * TO_LIGHT.x + n.y * TO_LIGHT.y
     }
+}
 
-    /// Distance from a place to the edge in a direction; 0 from outside going out.
-    fn reach_px(&self, from: Point, angle_rad: f64) -> f64 {
-        let (start, way) = (self.normal(from), Point::unit(angle_rad));
-        let way = Point::new(way.x / self.radius.x, way.y / self.radius.y);
-        let (a, b) = (way.x * way.x + way.y * way.y, start.x * way.x + start.y * way.y);
-        let c = start.x * start.x + start.y * start.y - 1.0;
-        let root = (b * b - a * c).max(0.0).sqrt();
-        ((root - b) / a).max(0.0)
-    }
+/// Where a branch for leaves is to end.
+struct Tip {
+    at: Point,
+    /// -1 (far) to 1.
+    nearness: f64,
+    /// Distance from the head of the stem, and direction from there: 0 up, positive to the right.
+    reach_px: f64,
+    bearing_rad: f64,
 }

@@ -8,10 +8,10 @@ use crate::settings::Settings;
 
 /// Colours from top to bottom: (share of the height, RGB).
 const FALL: [(f32, [f32; 3]); 4] = [
-    (0.0, [206.0, 214.0, 204.0]),
-    (0.42, [160.0, 178.0, 150.0]),
-    (0.8, [104.0, 120.0, 88.0]),
-    (1.0, [86.0, 88.0, 66.0]),
+    (0.0, [222.0, 226.0, 206.0]),
+    (0.4, [178.0, 196.0, 156.0]),
+    (0.8, [112.0, 130.0, 84.0]),
+    (1.0, [88.0, 92.0, 60.0]),
 ];
 
 /// Paints it for a picture of the size asked for.
@@ -27,10 +27,10 @@ pub(crate) fn paint(settings: &Settings, rng: &mut Pcg64Mcg) -> Canvas {
     for _ in 0..150 {
         let y = rng.random_range(0.15_f32..1.1);
         let tone = fall((y + 0.12).min(1.0));
-        let light = rng.random_range(0.72..1.12);
+        let light = rng.random_range(0.62..1.16);
         let tint = [rng.random_range(0.88..1.06), 1.0, rng.random_range(0.82..1.02)];
         let colour = [0, 1, 2].map(|c| tone[c] * light * tint[c]);
-        let disc = Disc::new(rng, y, [0.04, 0.14], 1.0, colour, 0.42);
+        let disc = Disc::new(rng, y, [0.05, 0.17], 1.0, colour, 0.5);
         canvas.disc(&disc);
     }
     // Light that falls through it.

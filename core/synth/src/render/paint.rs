@@ -79,8 +79,9 @@ impl Canvas {
         self.fill(frame, &outline, 0.5, |pixel, x, y, depth_px| {
             let (radius_px, off_px) = outline.section(x, y);
             let round = (off_px / radius_px).clamp(-1.0, 1.0);
-            // Furrows along the bark, knots across it.
-            let bark = 0.1 * (x * 0.55 + 3.0 * (x * 0.09).sin()).sin() + 0.07 * (round * 7.0 + x * 0.05).sin();
+            // Furrows wind along the bark.
+            let furrow = round * 6.0 + 1.6 * (x * 0.06).sin();
+            let bark = 0.08 * (furrow + 0.5 * (x * 0.35).sin()).sin() + 0.06 * (x * 0.23 + furrow).sin();
             let light = 0.82 + 0.4 * across * round + bark;
             blend(pixel, branch.colour.map(|c| c * light), (depth_px + 0.5).min(1.0));
         });

@@ -12,6 +12,8 @@ use crate::term::encode::Frame;
 
 /// Cells of a slider.
 const SLIDER: usize = 20;
+/// Cells of the labels, least and most.
+const LABEL: (usize, usize) = (16, 32);
 
 pub(super) fn draw(form: &Form, area: Rect, frame: &mut Frame) {
     let rows = form.rows();
@@ -20,8 +22,10 @@ pub(super) fn draw(form: &Form, area: Rect, frame: &mut Frame) {
     let inside = panel(frame, area, 78, wanted);
     let n_listed = usize::from(inside.height.saturating_sub(3)).max(1);
     let first = form.at.saturating_sub(n_listed - 1);
+    let labels = rows.iter().filter_map(|row| if let Row::Param(param, _) = row { Some(label_of(param)) } else { None });
+    let label_width = labels.map(|label| label.chars().count()).max().unwrap_or(0).clamp(LABEL.0, LABEL.1);
     for (y, (i, row)) in (1..).zip(rows.iter().enumerate().skip(first).take(n_listed)) {
-        put(frame, inside, y, &row_line(form, row, i == form.at));
+        put(frame, inside, y, &row_line(form, row, i == form.at, label_width));
     }
     if let Some(doc) = rows.get(form.at).and_then(doc) {
         put(frame, inside, inside.height.saturating_sub(1), &Line::styled(doc, style::DIM));
@@ -37,10 +41,14 @@ fn doc(row: &Row<'_>) -> Option<String> {
     }
 }
 
-fn row_line(form: &Form, row: &Row<'_>, is_here: bool) -> Line<'static> {
+fn label_of(param: &Param) -> &str {
+    if param.label.is_empty() { &param.id } else { &param.label }
+}
+
+fn row_line(form: &Form, row: &Row<'_>, is_here: bool, width: usize) -> Line<'static> {
     let sign = if is_here { "▸ " } else { "  " };
     let label_style = if is_here { style::ACCENT } else { Style::new() };
-    let label = |text: &str| Span::styled(format!("{sign}{text:<20} "), label_style);
+    let label = |text: &str| Span::styled(format!("{sign}{text:<width$} "), label_style);
     match row {
         Row::Plugin(plugin) => {
             let task = match form.task {
@@ -60,7 +68,7 @@ fn row_line(form: &Form, row: &Row<'_>, is_here: bool) -> Line<'static> {
         }
         Row::Fold(n) => Line::from(vec![label(&format!("advanced {} {n}", if form.unfolded { "▾" } else { "▸" }))]),
         Row::Param(param, value) => {
-            let mut spans = vec![label(if param.label.is_empty() { &param.id } else { &param.label })];
+            let mut spans = vec![label(label_of(param))];
             match &form.typed {
                 Some(typed) if is_here => spans.push(Span::styled(format!("{typed}▏ {}", param.unit), style::BOLD)),
                 _ => spans.extend(value_spans(param, value)),

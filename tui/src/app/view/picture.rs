@@ -30,6 +30,8 @@ const MARK: u8 = 8;
 const PATH_FRAMES: u32 = 12;
 
 const WHITE: [u8; 3] = [255, 255, 255];
+/// Every other pixel of rings and crosses: they must be seen on petals and on sky.
+const DARK: [u8; 3] = [20, 20, 20];
 const KEY: [u8; 3] = [255, 215, 95];
 const PATH: [u8; 3] = [255, 235, 160];
 const CURSOR: [u8; 3] = [255, 60, 255];
@@ -51,7 +53,7 @@ const RING: [(i64, i64); 12] = [
     (-2, -1),
 ];
 /// Pixels of a cross whose middle stays open.
-const CROSS: [(i64, i64); 8] = [(-3, 0), (-2, 0), (2, 0), (3, 0), (0, -3), (0, -2), (0, 2), (0, 3)];
+const CROSS: [(i64, i64); 8] = [(-2, 0), (-3, 0), (2, 0), (3, 0), (0, -2), (0, -3), (0, 2), (0, 3)];
 
 /// Pixels to be drawn on.
 struct Canvas<'a> {
@@ -127,7 +129,7 @@ impl Canvas<'_> {
         }
     }
 
-    /// Draws pixels about an image point; in letters, one letter at it.
+    /// Draws pixels about an image point, every other one dark; in letters, one letter at it.
     fn mark(&mut self, at: [f32; 2], shape: &[(i64, i64)], colour: [u8; 3], letter: char) {
         let Some((x, y)) = self.lens.pixel_of(at) else { return };
         let (columns, rows) = self.lens.size();
@@ -137,11 +139,11 @@ impl Canvas<'_> {
             }
             return;
         }
-        for &(dx, dy) in shape {
+        for (n, &(dx, dy)) in shape.iter().enumerate() {
             let (x, y) = (i64::from(x) + dx, i64::from(y) + dy);
             if (0..i64::from(columns)).contains(&x) && (0..i64::from(rows)).contains(&y) {
                 let i = (y * i64::from(columns) + x) as usize;
-                self.pixels[i] = colour;
+                self.pixels[i] = if n % 2 == 0 { colour } else { DARK };
                 self.weights[i] = MARK;
             }
         }

@@ -1,0 +1,117 @@
+//! The door: null pointers, calls out of order, and the poison after a panic.
+
+use super::*;
+use crate::Cx;
+use crate::tracker::{Frame, Points, Seed, Stream, Tracker};
+use honami_abi::{Instance, StreamInfo, TrackerV1, interface};
+use std::ptr::{null, null_mut};
+
+/// Panics when it is seeded.
+struct Bomb;
+
+impl Tracker for Bomb {
+    type Params = ();
+    const INFO: Info = Info { id: "org.example.bomb", name: "Bomb", ..Info::NEW };
+    fn begin((): &(), _: &Stream, _: &Cx<'_>) -> Result<Self> {
+        Ok(Self)
+    }
+    fn seed(&mut self, _: &[Seed], _: &Cx<'_>) -> Result<()> {
+        panic!("boom")
+    }
+    fn retire(&mut self, _: &[u32]) {}
+    fn push(&mut self, _: &Frame<'_>, _: &mut Points, _: &Cx<'_>) -> Result<()> {
+        Ok(())
+    }
+}
+
+/// A host of an earlier day: it has none of the functions.
+const BARE: Call = Call {
+    struct_size: size_of::<Call>() as u32,
+    reserved: 0,
+    host: null_mut(),
+    progress: None,
+    log: None,
+    fail: None,
+    reserve: None,
+    commit: None,
+    host_ext: None,
+};
+
+/// Makes a bomb and passes it with its functions.
+fn with_bomb(f: impl FnOnce(*mut Instance, &TrackerV1)) {
+    let bomb = (tracker::<Bomb>().create)();
+    // SAFETY: just made; the table is a constant.
+    unsafe {
+        let table = ((*bomb).get_interface.unwrap())(bomb, interface::TRACKER.as_ptr());
+        f(bomb, &*table.cast::<TrackerV1>());
+        ((*bomb).destroy.unwrap())(bomb);
+    }
+}
+
+fn gray(width: u32) -> StreamInfo {
+    StreamInfo {
+        struct_size: size_of::<StreamInfo>() as u32,
+        pixel: honami_abi::GRAY8,
+        width,
+        height: 1,
+        fps: 0.0,
+        nframes: -1,
+        direction: 1,
+        max_threads: 1,
+        seed: 0,
+        birth_first: 0,
+        birth_count: 0,
+    }
+}
+
+fn no_points() -> honami_abi::Table {
+    let column = |name: &'static CStr, dtype| honami_abi::Column {
+        name: name.as_ptr(),
+        dtype,
+        ncomp: 1,
+        data: null_mut(),
+        rows: 0,
+    };
+    let (id, float) = (honami_abi::dtype::U32, honami_abi::dtype::F32);
+    let cols = Box::leak(Box::new([column(c"id", id), column(c"x", float), column(c"y", float)]));
+    let struct_size = size_of::<honami_abi::Table>() as u32;
+    honami_abi::Table { struct_size, ncols: 3, schema: null(), cols: cols.as_ptr(), rows: 0 }
+}
+
+#[test]
+fn null_pointers_and_calls_out_of_order_are_refused() {
+    with_bomb(|bomb, table| {
+        // SAFETY: null is what the door is tested with; everything else is alive.
+        unsafe {
+            assert_eq!((table.begin.unwrap())(null_mut(), &BARE, &gray(1)), code::ARGUMENT);
+            assert_eq!((table.begin.unwrap())(bomb, null(), &gray(1)), code::ARGUMENT);
+            assert_eq!((table.begin.unwrap())(bomb, &BARE, null()), code::ARGUMENT);
+            assert_eq!((table.seed.unwrap())(bomb, &BARE, &no_points()), code::STATE);
+            assert_eq!((table.end.unwrap())(bomb, &BARE), code::STATE);
+            assert_eq!(
+                (table.begin.unwrap())(bomb, &BARE, &StreamInfo { pixel: 99, ..gray(1) }),
+                code::UNSUPPORTED
+            );
+            assert_eq!((table.begin.unwrap())(bomb, &BARE, &gray(1)), code::OK);
+            assert_eq!((table.begin.unwrap())(bomb, &BARE, &gray(1)), code::STATE);
+            assert_eq!(((*bomb).set_params.unwrap())(bomb, &BARE, null(), 0), code::STATE);
+            assert_eq!((table.push.unwrap())(bomb, &BARE, null()), code::ARGUMENT);
+            assert_eq!((table.retire.unwrap())(bomb, &BARE, null(), 1), code::ARGUMENT);
+            assert!(((*bomb).get_interface.unwrap())(bomb, null()).is_null());
+            assert!(((*bomb).get_interface.unwrap())(bomb, c"honami.tracker/10".as_ptr()).is_null());
+        }
+    });
+}
+
+#[test]
+fn a_panic_poisons_the_instance() {
+    with_bomb(|bomb, table| {
+        // SAFETY: everything is alive.
+        unsafe {
+            assert_eq!((table.begin.unwrap())(bomb, &BARE, &gray(1)), code::OK);
+            assert_eq!((table.seed.unwrap())(bomb, &BARE, &no_points()), code::INTERNAL);
+            assert_eq!((table.end.unwrap())(bomb, &BARE), code::STATE);
+            assert_eq!((table.begin.unwrap())(bomb, &BARE, &gray(1)), code::STATE);
+        }
+    });
+}
