@@ -1,4 +1,11 @@
 //! End-to-end tests: the real program, the real plugins, the workspace itself.
 #![expect(clippy::unwrap_used, reason = "a failed step of a test is a failed test")]
 
+mod cli;
+mod home;
+mod journal_kill;
+mod locks;
+mod real_clips;
+mod stopped;
 mod tidy;
+mod wrong;

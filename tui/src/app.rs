@@ -5,9 +5,9 @@
 //! the plugins; `run` turns the wheel.
 
 pub mod action;
+mod effects;
 #[cfg(test)]
 mod fixture;
-mod effects;
 pub mod form;
 mod fuzzy;
 mod jobs;

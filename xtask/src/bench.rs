@@ -57,7 +57,10 @@ fn accuracy(args: &[&str]) -> anyhow::Result<()> {
         }
         fs::write(&points, visible_at_first(&truth)?)?;
         let peer = clip.with_extension("opencv.csv");
-        Step::new("python3").args(["tests/peers/klt_opencv.py", "track"]).args([&clip, &points, &peer]).run()?;
+        Step::new("python3")
+            .args(["tests/peers/klt_opencv.py", "track"])
+            .args([&clip, &points, &peer])
+            .run()?;
         let opencv = format!("opencv={}", peer.display());
         honami()?
             .arg("compare")

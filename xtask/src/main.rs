@@ -21,8 +21,7 @@ cargo xtask <command>
 const BUILD: &[&str] = &["build", "--release"];
 
 /// The packages of a working installation: the program and the plugins it ships.
-const SHIPPED: [&str; 6] =
-    ["-p", "honami", "-p", "honami-tracker-klt", "-p", "honami-clusterer-movement"];
+const SHIPPED: [&str; 6] = ["-p", "honami", "-p", "honami-tracker-klt", "-p", "honami-clusterer-movement"];
 
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();

@@ -25,7 +25,12 @@ pub(crate) fn want_ffmpeg() {
 
 fn answers(program: &str) -> bool {
     let quiet = |flag: &str| {
-        Command::new(program).arg(flag).stdout(Stdio::null()).stderr(Stdio::null()).stdin(Stdio::null()).status()
+        Command::new(program)
+            .arg(flag)
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .stdin(Stdio::null())
+            .status()
     };
     quiet("-version").is_ok_and(|s| s.success()) || quiet("--version").is_ok_and(|s| s.success())
 }

@@ -4,7 +4,9 @@ use crate::context::CallContext;
 use crate::error::HostError;
 use crate::instance::{Handle, Request};
 use crate::reply::{self, Reply};
-use crate::types::{Clustering, FrameNote, Merge, Tracks};
+use crate::types::{Clustering, FrameNote, Tracks};
+
+use honami_model::hierarchy::{Dendrogram, Merge};
 
 /// A clusterer at work. Made by [`Host`](crate::Host).
 #[derive(Debug)]
@@ -23,43 +25,19 @@ impl Clusterer {
         }
         let mut reply = Reply::default();
         self.handle.ask(&Request::Cluster(tracks), cx, &mut reply)?;
-        let clustering = read_merges(&reply, tracks.len())
-            .and_then(|merges| Ok(Clustering { merges, frames: read_frames(&reply, tracks)? }));
+        let clustering = read_dendrogram(&reply, tracks.len())
+            .and_then(|dendrogram| Ok(Clustering { dendrogram, frames: read_frames(&reply, tracks)? }));
         clustering.map_err(|what| self.handle.misbehaved("run", what))
     }
 }
 
-fn read_merges(reply: &Reply, n: usize) -> Result<Vec<Merge>, String> {
+fn read_dendrogram(reply: &Reply, n: usize) -> Result<Dendrogram, String> {
     let table = reply.table(&reply::DENDROGRAM).ok_or("returned without committing honami.dendrogram/1")?;
-    let wanted = n.saturating_sub(1);
-    if table.rows() != wanted {
-        return Err(format!("committed {} merges of {n} tracks, not {wanted}", table.rows()));
-    }
     let (a, b) = (table.required("a"), table.required("b"));
     let (heights, sizes) = (table.required("height"), table.required("size"));
-    let merges: Vec<Merge> =
-        (0..wanted).map(|k| Merge { a: a[k], b: b[k], height: heights[k], size: sizes[k] }).collect();
-    let mut sizes = vec![1_u32; n];
-    let mut used = vec![false; n + wanted];
-    for (row, &Merge { a, b, height, size }) in merges.iter().enumerate() {
-        for cluster in [a as usize, b as usize] {
-            if cluster >= n + row {
-                return Err(format!("merge {row} uses cluster {cluster}, which does not exist yet"));
-            }
-            if std::mem::replace(&mut used[cluster], true) {
-                return Err(format!("merge {row} uses cluster {cluster} a second time"));
-            }
-        }
-        let leaves = sizes[a as usize] + sizes[b as usize];
-        if size != leaves {
-            return Err(format!("merge {row} has size {size}, its leaves are {leaves}"));
-        }
-        if !height.is_finite() || height < 0.0 {
-            return Err(format!("merge {row} has height {height}"));
-        }
-        sizes.push(leaves);
-    }
-    Ok(merges)
+    let merge = |k: usize| Merge { a: a[k], b: b[k], height: heights[k], size: sizes[k] };
+    let n_leaves = u32::try_from(n).map_err(|_too_many| "was given too many tracks".to_owned())?;
+    Dendrogram::new(n_leaves, (0..table.rows()).map(merge).collect()).map_err(|e| format!("committed {e}"))
 }
 
 fn read_frames(reply: &Reply, tracks: &Tracks) -> Result<Vec<FrameNote>, String> {

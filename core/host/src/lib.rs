@@ -35,7 +35,7 @@ pub use manifest::{Caps, Entry, Kind, Numeric, Param, ParamKind};
 pub use registry::{PluginInfo, Registry, SearchPath, Trust};
 pub use tracker::Tracker;
 pub use types::{
-    Clustering, DetectRequest, Feature, Field, FrameNote, FrameView, Gray, Merge, Point, PointRow, Points,
-    Status, StreamInfo, Tracks,
+    Clustering, DetectRequest, Feature, Field, FrameNote, FrameView, Point, PointRow, Points, StreamInfo,
+    Tracks,
 };
 pub use values::{Value, ValueError, Values};

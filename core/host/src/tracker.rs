@@ -7,6 +7,7 @@ use crate::error::HostError;
 use crate::instance::{Done, Handle, Request};
 use crate::reply::{self, Reply};
 use crate::types::{DetectRequest, Feature, Field, FrameView, Point, Points, StreamInfo};
+use honami_model::picture::Gray;
 use live::Live;
 
 /// A tracker at work. Made by [`Host`](crate::Host).
@@ -169,7 +170,7 @@ impl Tracker {
         cx: &CallContext<'_>,
     ) -> Result<Vec<Feature>, HostError> {
         let gray = wanted.frame.gray;
-        let mask_fits = |mask: &crate::types::Gray<'_>| {
+        let mask_fits = |mask: &Gray<'_>| {
             mask.is_whole() && (mask.width, mask.height) == (gray.width, gray.height)
         };
         if !gray.is_whole() || !wanted.mask.as_ref().is_none_or(mask_fits) {

@@ -1,29 +1,8 @@
 //! What goes to plugins and comes back from them, in Rust's own types.
 
-/// An 8-bit luma picture; rows are `stride` bytes apart.
-#[derive(Clone, Copy, Debug)]
-pub struct Gray<'a> {
-    /// At least `(height - 1) * stride + width` bytes.
-    pub data: &'a [u8],
-    /// Pixels.
-    pub width: u32,
-    /// Pixels.
-    pub height: u32,
-    /// Bytes from a row to the next, at least `width`.
-    pub stride: usize,
-}
-
-impl Gray<'_> {
-    /// Whether `data` holds what the numbers say.
-    pub(crate) fn is_whole(&self) -> bool {
-        let bytes = (self.height as usize).saturating_sub(1).checked_mul(self.stride);
-        let bytes = bytes.and_then(|bytes| bytes.checked_add(self.width as usize));
-        self.width > 0
-            && self.height > 0
-            && self.stride >= self.width as usize
-            && bytes.is_some_and(|n| n <= self.data.len())
-    }
-}
+use honami_model::hierarchy::Dendrogram;
+use honami_model::picture::Gray;
+use honami_model::track::Status;
 
 /// A frame on its way to a plugin.
 #[derive(Clone, Copy, Debug)]
@@ -66,34 +45,6 @@ pub struct Point {
     pub x: f32,
     /// Pixels, down.
     pub y: f32,
-}
-
-/// What is known of a point in a frame. The numbers are those of the ABI and of the tables.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Status {
-    /// The tracker has lost it; the position is its last guess.
-    Lost = 0,
-    /// Seen and followed.
-    Tracked = 1,
-    /// Hidden; the position is predicted.
-    Occluded = 2,
-    /// Has left the picture.
-    Outside = 3,
-    /// Judged wrong.
-    Rejected = 4,
-    /// Born in this frame by the tracker itself.
-    Newborn = 5,
-}
-
-impl Status {
-    /// The status with this number.
-    #[must_use]
-    pub fn from_u8(n: u8) -> Option<Self> {
-        [Self::Lost, Self::Tracked, Self::Occluded, Self::Outside, Self::Rejected, Self::Newborn]
-            .get(usize::from(n))
-            .copied()
-    }
 }
 
 /// A point in a frame, checked: known id, once a frame, finite numbers.
@@ -245,19 +196,6 @@ impl Tracks {
     }
 }
 
-/// Two clusters become one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Merge {
-    /// First cluster: leaf k is k, the result of merge r is n + r.
-    pub a: u32,
-    /// Second cluster.
-    pub b: u32,
-    /// Dissimilarity at which they merge.
-    pub height: f64,
-    /// Leaves below.
-    pub size: u32,
-}
-
 /// What was found of a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameNote {
@@ -269,11 +207,11 @@ pub struct FrameNote {
     pub distance: f64,
 }
 
-/// A hierarchy over n tracks, checked: a tree of n-1 merges, each cluster used once, sizes right, heights finite.
-#[derive(Clone, Debug, Default, PartialEq)]
+/// A hierarchy over n tracks, checked.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Clustering {
-    /// The merges, in SciPy's linkage convention.
-    pub merges: Vec<Merge>,
+    /// The tree.
+    pub dendrogram: Dendrogram,
     /// What is known of frames; empty if the plugin does not judge them.
     pub frames: Vec<FrameNote>,
 }

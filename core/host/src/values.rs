@@ -4,33 +4,7 @@ use crate::manifest::{Numeric, Param, ParamKind};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// The value of one parameter. In JSON: a bool, a number, a string, or a list of numbers.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
-pub enum Value {
-    /// Yes or no.
-    Bool(bool),
-    /// A whole number, or a seed.
-    Int(i64),
-    /// A number.
-    Float(f64),
-    /// A text, a path, or the id of a choice.
-    Text(String),
-    /// A vector or rectangle.
-    List(Vec<f64>),
-}
-
-impl std::fmt::Display for Value {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Bool(b) => b.fmt(f),
-            Self::Int(i) => i.fmt(f),
-            Self::Float(x) => x.fmt(f),
-            Self::Text(t) => t.fmt(f),
-            Self::List(l) => f.write_str(&l.iter().map(f64::to_string).collect::<Vec<_>>().join(",")),
-        }
-    }
-}
+pub use honami_model::provenance::Value;
 
 /// Why a parameter cannot have a value.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

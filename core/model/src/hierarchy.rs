@@ -9,7 +9,7 @@ pub struct Merge {
     pub a: u32,
     /// Second cluster, numbered alike.
     pub b: u32,
-    /// Dissimilarity at which they merge, finite.
+    /// Dissimilarity at which they merge, finite, 0 or more.
     pub height: f64,
     /// Leaves below, at least 2.
     pub size: u32,
@@ -22,15 +22,10 @@ pub struct Dendrogram {
     merges: Vec<Merge>,
 }
 
-/// Why rows are no dendrogram.
+/// Why rows are no dendrogram: a sentence that names the row and what is wrong with it.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("merge {row}: {why}")]
-pub struct DendrogramError {
-    /// Index of the offending merge.
-    pub row: usize,
-    /// What is wrong with it.
-    pub why: &'static str,
-}
+#[error("{0}")]
+pub struct DendrogramError(String);
 
 impl Dendrogram {
     /// Checks that the merges form one tree: n - 1 rows, each cluster used once and after it was made.
@@ -39,27 +34,30 @@ impl Dendrogram {
     /// [`DendrogramError`] with the first row that breaks the rule.
     pub fn new(n_leaves: u32, merges: Vec<Merge>) -> Result<Self, DendrogramError> {
         let n = n_leaves as usize;
-        let fail = |row, why| Err(DendrogramError { row, why });
-        if merges.len() != n.saturating_sub(1) {
-            return fail(merges.len(), "n leaves need n - 1 merges");
+        let fail = |why: String| Err(DendrogramError(why));
+        let wanted = n.saturating_sub(1);
+        if merges.len() != wanted {
+            return fail(format!("{} merges of {n} tracks, not {wanted}", merges.len()));
         }
-        let mut size_of = vec![1_u32; n];
-        let mut used = vec![false; n + merges.len()];
-        for (row, merge) in merges.iter().enumerate() {
-            let (a, b) = (merge.a as usize, merge.b as usize);
-            if a >= size_of.len() || b >= size_of.len() || a == b {
-                return fail(row, "merges clusters that do not exist yet");
+        let mut sizes = vec![1_u32; n];
+        let mut used = vec![false; n + wanted];
+        for (row, &Merge { a, b, height, size }) in merges.iter().enumerate() {
+            for cluster in [a as usize, b as usize] {
+                if cluster >= n + row {
+                    return fail(format!("merge {row} with cluster {cluster}, which does not exist yet"));
+                }
+                if std::mem::replace(&mut used[cluster], true) {
+                    return fail(format!("merge {row} with cluster {cluster} a second time"));
+                }
             }
-            if std::mem::replace(&mut used[a], true) || std::mem::replace(&mut used[b], true) {
-                return fail(row, "merges a cluster a second time");
+            let leaves = sizes[a as usize] + sizes[b as usize];
+            if size != leaves {
+                return fail(format!("merge {row} of size {size}, its leaves are {leaves}"));
             }
-            if !merge.height.is_finite() {
-                return fail(row, "height is not finite");
+            if !height.is_finite() || height < 0.0 {
+                return fail(format!("merge {row} at height {height}"));
             }
-            size_of.push(size_of[a] + size_of[b]);
-            if merge.size != size_of[n + row] {
-                return fail(row, "size is not the number of leaves below");
-            }
+            sizes.push(leaves);
         }
         Ok(Self { n_leaves, merges })
     }

@@ -25,6 +25,17 @@ impl<'a> Gray<'a> {
         Self { data, width, height, stride: width as usize }
     }
 
+    /// Whether there are pixels, and `data` holds as many as the numbers say.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        let bytes = (self.height as usize).saturating_sub(1).checked_mul(self.stride);
+        let bytes = bytes.and_then(|bytes| bytes.checked_add(self.width as usize));
+        self.width > 0
+            && self.height > 0
+            && self.stride >= self.width as usize
+            && bytes.is_some_and(|n| n <= self.data.len())
+    }
+
     /// One row, `width` bytes.
     ///
     /// # Panics

@@ -68,7 +68,11 @@ pub struct Provenance {
 impl std::fmt::Display for Provenance {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let hash = self.plugin_sha256.get(..8).unwrap_or_default();
-        write!(f, "{} {} ({hash}…), on revision {}", self.plugin_id, self.plugin_version, self.input_revision)?;
+        write!(
+            f,
+            "{} {} ({hash}…), on revision {}",
+            self.plugin_id, self.plugin_version, self.input_revision
+        )?;
         self.params.iter().try_for_each(|(id, value)| write!(f, " {id}={value}"))
     }
 }

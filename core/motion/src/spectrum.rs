@@ -31,7 +31,7 @@ pub struct SpectrumError {
     pub came: usize,
 }
 
-/// Power over frequency of one track or the mean of several.
+/// Power over frequency of one track or the median of several.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
     /// Distance between two frequencies; the first is 0.
@@ -44,7 +44,7 @@ pub struct Spectrum {
     pub nyquist_hz: f64,
     /// Frame rate, if the frames are evenly timed: then a sway above [`Spectrum::nyquist_hz`] shows up below.
     pub even_fps: Option<f64>,
-    /// Number of tracks it is the mean of.
+    /// Number of tracks it is the median of.
     pub n_tracks: usize,
 }
 
@@ -139,29 +139,35 @@ impl Analyser {
 }
 
 impl Spectrum {
-    /// Mean power of several tracks of one clip; `None` for none.
+    /// Median power of several tracks of one clip at each frequency; `None` for none.
+    ///
+    /// The median, not the mean: a few tracks that have slipped off their leaf jump by more than all sway
+    /// together, and would hide it.
     ///
     /// # Panics
     /// When the spectra are not of one [`Analyser`].
     #[must_use]
     #[track_caller]
-    pub fn mean(spectra: &[Self]) -> Option<Self> {
-        let mut mean = Self { n_tracks: 0, ..spectra.first()?.clone() };
-        mean.power_px2.fill(0.0);
+    pub fn median(spectra: &[Self]) -> Option<Self> {
+        let mut median = Self { n_tracks: 0, ..spectra.first()?.clone() };
         for spectrum in spectra {
-            assert_eq!(mean.power_px2.len(), spectrum.power_px2.len(), "spectra of one clip");
-            mean.power_px2.iter_mut().zip(&spectrum.power_px2).for_each(|(sum, p)| *sum += p);
-            mean.resolution_hz = mean.resolution_hz.max(spectrum.resolution_hz);
-            mean.n_tracks += spectrum.n_tracks;
+            assert_eq!(median.power_px2.len(), spectrum.power_px2.len(), "spectra of one clip");
+            median.resolution_hz = median.resolution_hz.max(spectrum.resolution_hz);
+            median.n_tracks += spectrum.n_tracks;
         }
-        mean.power_px2.iter_mut().for_each(|sum| *sum /= spectra.len() as f64);
-        Some(mean)
+        let mut powers = vec![0.0; spectra.len()];
+        for (bin, power) in median.power_px2.iter_mut().enumerate() {
+            powers.iter_mut().zip(spectra).for_each(|(power, spectrum)| *power = spectrum.power_px2[bin]);
+            powers.sort_by(f64::total_cmp);
+            *power = powers[powers.len() / 2];
+        }
+        Some(median)
     }
 
     /// The sways that stand out, strongest first, at most `n_max`.
     ///
     /// `over_floor` is how many times the noise around it a peak's power must be. Of single tracks of pure
-    /// noise one in ten has a peak 6 times its floor, one in a hundred 10 times; the mean of many is quieter,
+    /// noise one in ten has a peak 6 times its floor, one in a hundred 10 times; the median of many is quieter,
     /// and foliage, whose peaks are broad, stands out less: 3 suits it. Peaks below one and a half resolution cells are taken
     /// for drift, peaks below 3 % of the strongest amplitude for its leakage.
     #[must_use]

@@ -8,7 +8,8 @@ use honami_synth::{Level, Scene, Settings};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut words = std::env::args().skip(1);
-    let out = PathBuf::from(words.next().ok_or("usage: look OUT.png [LEVEL] [demo|benchmark] [FRAME] [SEED]")?);
+    let out =
+        PathBuf::from(words.next().ok_or("usage: look OUT.png [LEVEL] [demo|benchmark] [FRAME] [SEED]")?);
     let level: Level = words.next().as_deref().unwrap_or("calm").parse()?;
     let mut settings = match words.next().as_deref() {
         Some("demo") => Settings { level, ..Settings::default() },
@@ -25,7 +26,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let frame_ms = start.elapsed().as_secs_f64() * 1e3 / f64::from(n_timed);
     let picture = scene.render(frame);
     let planes = picture.planes();
-    image::RgbImage::from_fn(picture.width, picture.height, |x, y| image::Rgb(planes.rgb(x, y))).save(&out)?;
+    image::RgbImage::from_fn(picture.width, picture.height, |x, y| image::Rgb(planes.rgb(x, y)))
+        .save(&out)?;
     let seen = |frame: usize| scene.truth().leaves.iter().filter(|leaf| leaf.path[frame].visible).count();
     eprintln!(
         "{} leaves ({} seen), {} branches, {:.3} px a frame; grown in {grown_ms:.0} ms, \

@@ -58,8 +58,7 @@ impl Outline for LeafOutline {
             return (PETIOLE_PX - off_px).min(x + self.half_length_px + self.petiole_px);
         }
         let (round, taper) = (1.0 - u * u, 1.0 - self.ovate * u);
-        let slope =
-            (-2.0 * u * taper - self.ovate * round) * self.half_width_px / self.half_length_px;
+        let slope = (-2.0 * u * taper - self.ovate * round) * self.half_width_px / self.half_length_px;
         (round * taper * self.half_width_px - off_px) / (1.0 + slope * slope).sqrt()
     }
 }

@@ -35,12 +35,6 @@ impl Texture {
         Self { texels, n_along, n_across }
     }
 
-    /// The same brightness everywhere.
-    #[cfg(test)]
-    pub(crate) fn flat() -> Self {
-        Self { texels: vec![1.0; 4], n_along: 2, n_across: 2 }
-    }
-
     /// Brightness at a place of the leaf, -1..1 along and across; bilinear, held at the edges.
     #[inline]
     pub(crate) fn at(&self, along: f32, across: f32) -> f32 {

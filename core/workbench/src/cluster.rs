@@ -1,9 +1,8 @@
 //! Clustering: a clusterer plugin finds what moves together, and the hierarchy is kept.
 
-use honami_host::{CallContext, Clusterer, Flow, Kind, Level, Status, Tracks, Values};
+use honami_host::{CallContext, Clusterer, Flow, Kind, Level, Tracks, Values};
 use honami_model::document::ClusteringId;
 use honami_model::edit::Transaction;
-use honami_model::hierarchy::{Dendrogram, Merge};
 use honami_model::provenance::Provenance;
 use honami_model::track::{Span, TrackId};
 use honami_store::Clustering;
@@ -75,13 +74,15 @@ pub fn prepare(session: &Session, request: &ClusterRequest) -> Result<ClusterJob
     tracks.max_threads = threads();
     tracks.seed = SEED;
     for (track, span) in shown.iter().filter(|(_, span)| moving(span)) {
-        let samples = span.samples.iter().map(|s| (s.x, s.y, Status::from_u8(s.status as u8).unwrap_or(Status::Lost)));
+        let samples =
+            span.samples.iter().map(|sample| (sample.x, sample.y, sample.status));
         tracks.push(track.0, i64::from(span.first_frame), samples);
     }
     if tracks.is_empty() {
         return Err(WorkbenchError::NoTracks);
     }
-    let (clusterer, origin) = honami_host::Host::new().clusterer(plugin, &request.params, &CallContext::silent())?;
+    let (clusterer, origin) =
+        honami_host::Host::new().clusterer(plugin, &request.params, &CallContext::silent())?;
     let provenance = stamp(&session.project, "cluster", plugin, &request.params, origin);
     let plugin = plugin.short_name.clone();
     Ok(ClusterJob { clusterer, tracks, provenance, groups: request.groups, plugin })
@@ -103,10 +104,7 @@ impl ClusterJob {
             return Err(WorkbenchError::Stopped);
         }
         let found = self.clusterer.run(&self.tracks, &call)?;
-        let merges = found.merges.iter().map(|m| Merge { a: m.a, b: m.b, height: m.height, size: m.size });
-        let n_leaves = u32::try_from(self.tracks.len()).unwrap_or(u32::MAX);
-        let dendrogram = Dendrogram::new(n_leaves, merges.collect())
-            .map_err(|error| WorkbenchError::Hierarchy { plugin: self.plugin.clone(), error })?;
+        let dendrogram = found.dendrogram;
         let outliers = found.frames.iter().filter(|note| note.outlier);
         let clustering = Clustering {
             provenance: self.provenance,
@@ -135,7 +133,9 @@ pub fn finish(session: &mut Session, done: ClusterDone) -> Result<ClusterOutcome
     }
     let (n_tracks, n_groups) = (clustering.tracks.len(), group_sizes.len());
     let n_outliers = clustering.outlier_frames.len();
-    let line = format!("{plugin}: {n_tracks} tracks in {n_groups} groups, {n_outliers} outlier frames, {seconds:.1} s");
+    let line = format!(
+        "{plugin}: {n_tracks} tracks in {n_groups} groups, {n_outliers} outlier frames, {seconds:.1} s"
+    );
     Ok(ClusterOutcome {
         clustering: id,
         n_tracks,

@@ -61,7 +61,8 @@ pub fn read_truth(path: &Path) -> Result<Truth, WorkbenchError> {
 /// # Errors
 /// What the table says of its lines.
 pub fn read_points(path: &Path) -> Result<Vec<Seed>, WorkbenchError> {
-    let seed = |row: PointRow| Seed { frame: row.frame.unwrap_or(0), track: TrackId(row.id), x: row.x, y: row.y };
+    let seed =
+        |row: PointRow| Seed { frame: row.frame.unwrap_or(0), track: TrackId(row.id), x: row.x, y: row.y };
     let rows = honami_exchange::read::<PointRow>(path)?;
     Ok(rows.map(|row| row.map(seed)).collect::<Result<_, _>>()?)
 }
@@ -70,7 +71,8 @@ pub fn read_points(path: &Path) -> Result<Vec<Seed>, WorkbenchError> {
 #[must_use]
 pub fn points_of(truth: &Truth) -> Vec<Seed> {
     let first_seen = |(&track, path): (&TrackId, &TruePath)| {
-        let (frame, &(x, y, _)) = (path.first_frame..).zip(&path.positions).find(|(_, position)| position.2)?;
+        let (frame, &(x, y, _)) =
+            (path.first_frame..).zip(&path.positions).find(|(_, position)| position.2)?;
         Some(Seed { frame, track, x: x as f32, y: y as f32 })
     };
     truth.iter().filter_map(first_seen).collect()

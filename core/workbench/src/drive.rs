@@ -2,14 +2,16 @@
 
 use std::collections::BTreeMap;
 use std::ops::Range;
+use std::sync::Arc;
 use std::time::Instant;
 
 use honami_host::{
-    CallContext, DetectRequest, FrameView, Gray, HostError, Level, Point, Points, StreamInfo, Tracker,
+    CallContext, DetectRequest, FrameView, HostError, Level, Point, Points, StreamInfo, Tracker,
 };
 use honami_media::Media;
 use honami_model::clip::Clip;
-use honami_model::track::{Quality, Sample, Source, Status, TrackId};
+use honami_model::picture::Gray;
+use honami_model::track::{Quality, Sample, Source, Span, Status, TrackId};
 
 use crate::error::WorkbenchError;
 use crate::progress::{Flow, Progress};
@@ -41,6 +43,8 @@ pub struct Detect {
     pub every: Option<u32>,
     /// A byte a pixel of the clip, non-zero where features may be; `None`: everywhere.
     pub mask: Option<Vec<u8>>,
+    /// Tracks that are there already: new features keep their distance from these, too.
+    pub present: Vec<(TrackId, Arc<Span>)>,
 }
 
 /// What a tracker is to do.
@@ -78,8 +82,7 @@ pub struct Driven {
 pub fn check_seeds(seeds: &[Seed], clip: &Clip) -> Result<(), WorkbenchError> {
     let (width, height, n_frames) = (clip.width, clip.height, clip.n_frames());
     let inside = |v: f32, size: u32| (-0.5..size as f32 - 0.5).contains(&v);
-    let outside =
-        |seed: &&Seed| !(inside(seed.x, width) && inside(seed.y, height) && seed.frame < n_frames);
+    let outside = |seed: &&Seed| !(inside(seed.x, width) && inside(seed.y, height) && seed.frame < n_frames);
     match seeds.iter().find(outside) {
         _ if seeds.is_empty() => Err(WorkbenchError::NoFeatures),
         Some(&Seed { frame, track, x, y }) => {
@@ -158,11 +161,15 @@ impl Ride<'_> {
     }
 
     /// Pushes one frame and seeds what is due in it.
-    fn step(&mut self, frame: u32, numbers: Numbers<'_>, call: &CallContext<'_>) -> Result<(), WorkbenchError> {
+    fn step(
+        &mut self,
+        frame: u32,
+        numbers: Numbers<'_>,
+        call: &CallContext<'_>,
+    ) -> Result<(), WorkbenchError> {
         let picture = self.media.frame(frame)?;
-        let y = picture.planes().y;
         let view = FrameView {
-            gray: Gray { data: y.data, width: y.width, height: y.height, stride: y.stride },
+            gray: picture.planes().y,
             index: i64::from(frame),
             time_s: self.media.clip().times.get(frame).unwrap_or_default(),
         };
@@ -174,7 +181,8 @@ impl Ride<'_> {
         }
         let mut new: Vec<Point> = due(&self.plan.seeds, frame).collect();
         if let Some(detect) = &self.plan.detect {
-            let again = detect.every.is_some_and(|n| n > 0 && (frame - self.plan.frames.start).is_multiple_of(n));
+            let again =
+                detect.every.is_some_and(|n| n > 0 && (frame - self.plan.frames.start).is_multiple_of(n));
             if first || again {
                 let found = self.find(detect, &view, &new, numbers, call)?;
                 new.extend(found);
@@ -201,7 +209,11 @@ impl Ride<'_> {
         numbers: Numbers<'_>,
         call: &CallContext<'_>,
     ) -> Result<Vec<Point>, WorkbenchError> {
-        let points: Vec<Point> = self.board.seen().chain(due.iter().copied()).collect();
+        let present = detect.present.iter().filter_map(|(track, span)| {
+            let sample = span.get(frame_of(view)).filter(|sample| sample.status.is_seen())?;
+            Some(Point { id: track.0, x: sample.x, y: sample.y })
+        });
+        let points: Vec<Point> = self.board.seen().chain(due.iter().copied()).chain(present).collect();
         let (width, height) = (view.gray.width, view.gray.height);
         let mask = detect.mask.as_ref().map(|data| Gray { data, width, height, stride: width as usize });
         let wanted = DetectRequest {
@@ -222,6 +234,10 @@ impl Ride<'_> {
         self.board.take(rest);
         self.board.flush(sink)
     }
+}
+
+fn frame_of(view: &FrameView<'_>) -> u32 {
+    u32::try_from(view.index).unwrap_or(u32::MAX)
 }
 
 /// The seeds of a frame; `seeds` is sorted by frame.
@@ -247,12 +263,11 @@ impl Board {
             self.last.clear();
             let mut rows = Rows::with_capacity(answer.rows.len());
             for row in answer.rows {
-                let status = Status::from_u8(row.status as u8).unwrap_or(Status::Lost);
-                if status.is_seen() {
+                if row.status.is_seen() {
                     self.last.insert(row.id, Point { id: row.id, x: row.x, y: row.y });
                 }
                 let quality = Quality { fb_px: row.fb, ncc: row.ncc };
-                let sample = Sample { x: row.x, y: row.y, status, source: Source::Tracked, quality };
+                let sample = Sample { x: row.x, y: row.y, status: row.status, source: Source::Tracked, quality };
                 rows.push((TrackId(row.id), sample));
             }
             self.answered.insert(frame, rows);

@@ -63,7 +63,9 @@ pub enum WorkbenchError {
         n_frames: u32,
     },
     /// A point lies outside the clip.
-    #[error("point {id} at ({x}, {y}) in frame {frame} is not in the clip of {width}x{height} and {n_frames} frames")]
+    #[error(
+        "point {id} at ({x}, {y}) in frame {frame} is not in the clip of {width}x{height} and {n_frames} frames"
+    )]
     Point {
         /// Its number.
         id: u32,
@@ -96,14 +98,6 @@ pub enum WorkbenchError {
     /// The truth names no point that was tracked.
     #[error("the truth shows none of the tracked points after their first frame")]
     NoTruth,
-    /// What a clusterer returned is no hierarchy.
-    #[error("{plugin} returned no hierarchy: {error}")]
-    Hierarchy {
-        /// Its name.
-        plugin: String,
-        /// What is wrong with it.
-        error: honami_model::hierarchy::DendrogramError,
-    },
     /// The caller stopped a job that keeps nothing.
     #[error("stopped")]
     Stopped,

@@ -21,7 +21,7 @@ pub use error::WorkbenchError;
 pub use honami_host as plugins;
 /// Clips and their frames.
 pub use honami_media as media;
-/// Generated clips.
-pub use honami_synth as synth;
 /// Projects.
 pub use honami_store as store;
+/// Generated clips.
+pub use honami_synth as synth;

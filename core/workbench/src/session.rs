@@ -93,7 +93,9 @@ fn show_interrupted(project: &mut Project) -> Result<Vec<String>, WorkbenchError
         }
         let (tracks, last) = (info.tracks.to_string(), info.found.end.saturating_sub(1));
         project.commit(Transaction::show_run(run, info.tracks))?;
-        notes.push(format!("run {run} was interrupted at frame {last}: its {tracks} are kept and shown (u undoes)"));
+        notes.push(format!(
+            "run {run} was interrupted at frame {last}: its {tracks} are kept and shown (u undoes)"
+        ));
     }
     Ok(notes)
 }

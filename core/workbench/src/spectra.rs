@@ -14,15 +14,17 @@ pub use honami_motion::spectrum::Peak;
 use crate::error::WorkbenchError;
 use crate::session::Session;
 
-/// How many times the noise around it the power of a peak must be: foliage has broad peaks.
+/// How many times the noise around it the power of a peak of one track must be: foliage has broad peaks.
 const OVER_FLOOR: f64 = 3.0;
+/// The same for the median of several tracks: its noise is quieter, and its peaks are broader.
+const OVER_FLOOR_OF_MANY: f64 = 1.5;
 
 /// What sways.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Subject {
-    /// All tracks together: the mean of their power.
+    /// All tracks together: the median of their power.
     All,
-    /// A group of the shown clustering: the mean power of its tracks.
+    /// A group of the shown clustering: the median power of its tracks.
     Group(u32),
     /// One track.
     Track(TrackId),
@@ -33,7 +35,7 @@ pub enum Subject {
 pub struct Line {
     /// What sways.
     pub subject: Subject,
-    /// Tracks it is the mean of.
+    /// Tracks it is the median of.
     pub n_tracks: usize,
     /// Strongest first.
     pub peaks: Vec<Peak>,
@@ -102,9 +104,9 @@ fn of(
         .iter()
         .filter_map(|(id, span)| Some((*id, analyser.track(&positions(span, times.len())).ok()?)))
         .collect();
-    let mean = |subject, of: Vec<Spectrum>| {
-        let mean = Spectrum::mean(&of)?;
-        Some(Line { subject, n_tracks: mean.n_tracks, peaks: mean.peaks(n_peaks, OVER_FLOOR) })
+    let median = |subject, of: Vec<Spectrum>| {
+        let median = Spectrum::median(&of)?;
+        Some(Line { subject, n_tracks: median.n_tracks, peaks: median.peaks(n_peaks, OVER_FLOOR_OF_MANY) })
     };
     let all: Vec<Spectrum> = spectra.iter().map(|(_, spectrum)| spectrum.clone()).collect();
     let first = all.first().cloned().ok_or(WorkbenchError::NoTracks)?;
@@ -114,8 +116,8 @@ fn of(
             groups.entry(group).or_default().push(spectrum.clone());
         }
     }
-    let mut lines: Vec<Line> = mean(Subject::All, all).into_iter().collect();
-    lines.extend(groups.into_iter().filter_map(|(group, of)| mean(Subject::Group(group), of)));
+    let mut lines: Vec<Line> = median(Subject::All, all).into_iter().collect();
+    lines.extend(groups.into_iter().filter_map(|(group, of)| median(Subject::Group(group), of)));
     lines.extend(spectra.iter().map(|(id, spectrum)| Line {
         subject: Subject::Track(*id),
         n_tracks: 1,

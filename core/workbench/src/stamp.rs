@@ -1,7 +1,7 @@
 //! The provenance of a result that is about to be made.
 
 use honami_host::{Origin, PluginInfo, Values};
-use honami_model::provenance::{Provenance, Value};
+use honami_model::provenance::Provenance;
 use honami_store::Project;
 
 /// Says what is about to run, with all its parameters, on which revision of the project.
@@ -20,7 +20,7 @@ pub(crate) fn stamp(
         plugin_version: origin.plugin_version,
         plugin_sha256: origin.plugin_sha256,
         abi: (narrow(origin.abi.0), narrow(origin.abi.1)),
-        params: all.iter().map(|(id, value)| (id.to_owned(), kept(value))).collect(),
+        params: all.iter().map(|(id, value)| (id.to_owned(), value.clone())).collect(),
         seed: SEED,
         input_revision: project.revision().0,
         sandbox: origin.sandbox.to_owned(),
@@ -32,16 +32,6 @@ pub(crate) fn stamp(
 
 fn narrow(version: u32) -> u16 {
     u16::try_from(version).unwrap_or(u16::MAX)
-}
-
-fn kept(value: &honami_host::Value) -> Value {
-    match value {
-        honami_host::Value::Bool(v) => Value::Bool(*v),
-        honami_host::Value::Int(v) => Value::Int(*v),
-        honami_host::Value::Float(v) => Value::Float(*v),
-        honami_host::Value::Text(v) => Value::Text(v.clone()),
-        honami_host::Value::List(v) => Value::List(v.clone()),
-    }
 }
 
 /// The seed of every run: shipped plugins make no random choices, and what is repeated should repeat.

@@ -122,9 +122,12 @@ pub fn prepare(session: &mut Session, request: &TrackRequest) -> Result<TrackJob
         PointSource::Existing => (existing(session, &request.frames)?, None),
         PointSource::Given(seeds) => (given(session, seeds)?, None),
         PointSource::Detect if plugin.offers("honami.detect/1") => {
-            (Vec::new(), Some(Detect { every: request.every, mask }))
+            let present = session.project.shown_all()?;
+            (Vec::new(), Some(Detect { every: request.every, mask, present }))
         }
-        PointSource::Detect => return Err(WorkbenchError::CannotDetect { plugin: plugin.short_name.clone() }),
+        PointSource::Detect => {
+            return Err(WorkbenchError::CannotDetect { plugin: plugin.short_name.clone() });
+        }
     };
     if detect.is_none() {
         drive::check_seeds(&seeds, session.media.clip())?;
@@ -139,7 +142,8 @@ fn begin(
     seeds: Vec<Seed>,
     detect: Option<Detect>,
 ) -> Result<TrackJob, WorkbenchError> {
-    let (tracker, origin) = honami_host::Host::new().tracker(plugin, &request.params, &CallContext::silent())?;
+    let (tracker, origin) =
+        honami_host::Host::new().tracker(plugin, &request.params, &CallContext::silent())?;
     let head = RunHead {
         provenance: stamp(&session.project, "track", plugin, &request.params, origin),
         tracks: seeds.iter().map(|seed| seed.track).collect(),
@@ -157,8 +161,11 @@ fn begin(
 }
 
 impl TrackJob {
-    /// Tracks to the end, or until a person stops it. What was tracked is kept in any case.
-    #[must_use]
+    /// Tracks to the end, or until a person stops it. What was tracked is kept in any case, also when the
+    /// tracker fails: [`TrackDone`] then holds its error.
+    ///
+    /// # Errors
+    /// When the project cannot be written.
     pub fn run(mut self, progress: &dyn Progress) -> Result<TrackDone, WorkbenchError> {
         let begun = Instant::now();
         let frames = self.plan.frames.clone();
@@ -235,7 +242,10 @@ pub fn finish(session: &mut Session, done: TrackDone) -> Result<TrackOutcome, Wo
         session.project.commit(Transaction::show_run(run, found))?;
     }
     let stopped = driven.end < frames.end;
-    let mut line = format!("{plugin}: {n_tracks} tracks, frames {}-{last}, {n_lost} lost, {seconds:.1} s", reached.start);
+    let mut line = format!(
+        "{plugin}: {n_tracks} tracks, frames {}-{last}, {n_lost} lost, {seconds:.1} s",
+        reached.start
+    );
     if stopped {
         line = format!("{plugin}: stopped at frame {}; {n_tracks} tracks up to there are kept", driven.end);
     }
@@ -251,8 +261,10 @@ fn existing(session: &Session, frames: &Range<u32>) -> Result<Vec<Seed>, Workben
     let mut seeds = Vec::new();
     for (track, span) in session.project.shown_all()? {
         let keys = session.project.document().track(track).map(|known| &known.keys);
-        let keyed: BTreeSet<u32> = keys.into_iter().flat_map(|keys| keys.range(frames.clone())).map(|k| *k.0).collect();
-        let first_seen = span.frames().zip(&span.samples).find(|(f, s)| frames.contains(f) && s.status.is_seen());
+        let keyed: BTreeSet<u32> =
+            keys.into_iter().flat_map(|keys| keys.range(frames.clone())).map(|k| *k.0).collect();
+        let first_seen =
+            span.frames().zip(&span.samples).find(|(f, s)| frames.contains(f) && s.status.is_seen());
         for frame in first_seen.map(|(frame, _)| frame).into_iter().chain(keyed).collect::<BTreeSet<_>>() {
             if let Some(sample) = span.get(frame) {
                 seeds.push(Seed { frame, track, x: sample.x, y: sample.y });

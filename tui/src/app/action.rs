@@ -118,6 +118,7 @@ table! {
     ZoomIn "zoom-in" ["z"] [Review "" Place "" Move ""] "look closer, at the selected track or the cursor"
     ZoomOut "zoom-out" ["Z"] [Review "" Place "" Move ""] "look from farther away"
     Follow "follow" ["f"] [Review ""] "keep the selected track in the middle, or not"
+    Marks "marks" ["M"] [Review ""] "mark all tracks in the picture, or only the selected one"
     Column "column" ["Tab"] [Review ""] "show or hide the column of tracks and groups"
     Palette "palette" [":"] [Review "" Place "" Move "" Form ""] "find any action by name, key or what it does"
     Help "help" ["?"] [Review "help" Place "" Move "" Form "help"] "list what works here; Enter does it"

@@ -101,9 +101,7 @@ impl World {
     fn travel<E>(
         &mut self,
         word: &str,
-        go: impl FnOnce(
-            &mut honami_workbench::store::Project,
-        ) -> Result<Option<honami_model::history::Entry>, E>,
+        go: impl FnOnce(&mut honami_workbench::store::Project) -> Result<Option<honami_model::history::Entry>, E>,
     ) -> Facts
     where
         WorkbenchError: From<E>,
@@ -184,15 +182,18 @@ impl World {
                 let outcome = track::finish(&mut self.session, done?)?;
                 Notice { is_error: outcome.error.is_some(), text: format!("{} (u undoes)", outcome.line) }
             }
-            Some(Done::Cluster(Err(WorkbenchError::Stopped))) => {
-                Notice { text: format!("{} stopped; nothing was changed", job.plugin), is_error: false }
-            }
-            Some(Done::Cluster(done)) => {
-                let outcome = cluster::finish(&mut self.session, done?)?;
-                Notice { text: format!("{} (u undoes)", outcome.line), is_error: false }
-            }
+            Some(Done::Cluster(done)) => match *done {
+                Err(WorkbenchError::Stopped) => {
+                    Notice { text: format!("{} stopped; nothing was changed", job.plugin), is_error: false }
+                }
+                done => {
+                    let outcome = cluster::finish(&mut self.session, done?)?;
+                    Notice { text: format!("{} (u undoes)", outcome.line), is_error: false }
+                }
+            },
             None => {
-                let text = format!("{} stopped by a fault of its own; the session's log has its report", job.plugin);
+                let text =
+                    format!("{} stopped by a fault of its own; the session's log has its report", job.plugin);
                 Notice { text, is_error: true }
             }
         };

@@ -51,7 +51,13 @@ fn row(id: u32, frames: std::ops::Range<u32>, keys: &[u32]) -> TrackRow {
 pub(super) fn groups(k: u32) -> Groups {
     let merges = vec![Merge { a: 0, b: 1, height: 1.0, size: 2 }, Merge { a: 2, b: 3, height: 2.0, size: 3 }];
     let tracks = [1, 2, 7].map(TrackId).to_vec();
-    Groups::new("by movement".to_owned(), tracks, Dendrogram::new(3, merges).expect("a tree"), k, vec![90, 91])
+    Groups::new(
+        "by movement".to_owned(),
+        tracks,
+        Dendrogram::new(3, merges).expect("a tree"),
+        k,
+        vec![90, 91],
+    )
 }
 
 fn plugins() -> Vec<Plugin> {
@@ -84,6 +90,7 @@ fn plugins() -> Vec<Plugin> {
 pub(super) fn shot(state: &State, area: Rect) -> Shot {
     let lens = Lens::of(state, area);
     let (columns, rows) = lens.size();
-    let pixels = (0..rows).flat_map(|y| (0..columns).map(move |x| [(x / 8 * 8) as u8, (y / 8 * 16) as u8, 40]));
+    let pixels =
+        (0..rows).flat_map(|y| (0..columns).map(move |x| [(x / 8 * 8) as u8, (y / 8 * 16) as u8, 40]));
     Shot { frame: state.frame, lens, pixels: pixels.collect() }
 }

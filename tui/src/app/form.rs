@@ -205,7 +205,8 @@ fn own_params(can_detect: bool, has_tracks: bool) -> Vec<Param> {
         when: std::collections::BTreeMap::new(),
         kind,
     };
-    let entry = |id: &str, label: &str| Entry { id: id.to_owned(), label: label.to_owned(), doc: String::new() };
+    let entry =
+        |id: &str, label: &str| Entry { id: id.to_owned(), label: label.to_owned(), doc: String::new() };
     let mut entries = Vec::new();
     if has_tracks {
         entries.push(entry(EXISTING, "the tracks here"));

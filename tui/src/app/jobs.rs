@@ -24,7 +24,7 @@ pub(super) enum Work {
 /// What a job has come to.
 pub(super) enum Done {
     Track(Result<TrackDone, WorkbenchError>),
-    Cluster(Result<ClusterDone, WorkbenchError>),
+    Cluster(Box<Result<ClusterDone, WorkbenchError>>),
 }
 
 /// How far a job is.
@@ -68,7 +68,7 @@ impl Running {
             let _wake = WakeAtEnd(progress.waker.clone());
             match work {
                 Work::Track(job) => Done::Track(job.run(&*progress)),
-                Work::Cluster(job) => Done::Cluster(job.run(&*progress)),
+                Work::Cluster(job) => Done::Cluster(Box::new(job.run(&*progress))),
             }
         })?;
         Ok(Self { shared, thread })

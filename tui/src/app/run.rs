@@ -67,7 +67,8 @@ struct App {
 impl App {
     fn turn(&mut self, screen: &mut Screen, world: &mut World) -> anyhow::Result<()> {
         loop {
-            let until = [self.state.next_tick(), self.decoding_tick(screen.now())].into_iter().flatten().min();
+            let until =
+                [self.state.next_tick(), self.decoding_tick(screen.now())].into_iter().flatten().min();
             let happened = screen.wait(until, self.frame.is_none() || !self.is_exact)?;
             self.tell(Msg::Clock(screen.now()), screen, world)?;
             let mut is_leaving = happened.end.is_some();

@@ -41,6 +41,8 @@ pub struct State {
     pub pending: Vec<Key>,
     /// The number typed before a command.
     pub count: Option<u32>,
+    /// Whether all tracks are marked in the picture, not only the selected one.
+    pub marks_all: bool,
     /// Whether the column is wanted.
     pub column: bool,
     /// Magnification, a power of two: 0 shows all of the picture.
@@ -172,6 +174,7 @@ impl State {
             keys: KeyMap::default(),
             pending: Vec::new(),
             count: None,
+            marks_all: true,
             column: false,
             zoom: 0,
             centre,

@@ -32,7 +32,8 @@ pub(super) fn compare(args: &Compare, common: &Common) -> anyhow::Result<Answer>
     });
     let mut contestants = trackers.collect::<anyhow::Result<Vec<_>>>()?;
     contestants.extend(args.tracks.iter().map(|f| Contestant::Foreign(f.name.clone(), f.file.clone())));
-    let rows = compare::compare(&media, &registry, &contestants, &points, truth.as_ref(), &report::Bar::new())?;
+    let rows =
+        compare::compare(&media, &registry, &contestants, &points, truth.as_ref(), &report::Bar::new())?;
     Ok(describe(&rows, points.len()))
 }
 
@@ -55,7 +56,8 @@ fn open(args: &Compare, common: &Common) -> anyhow::Result<(Arc<Media>, Vec<Seed
 /// `--set` for the trackers that have such a parameter; one that none has is an error of the first.
 fn values(registry: &Registry, name: &str, set: &[String]) -> anyhow::Result<Values> {
     let params = &registry.find(Kind::Tracker, name)?.params;
-    let known = |text: &&String| params.iter().any(|p| text.split_once('=').is_some_and(|(id, _)| id.trim() == p.id));
+    let known =
+        |text: &&String| params.iter().any(|p| text.split_once('=').is_some_and(|(id, _)| id.trim() == p.id));
     let set: Vec<String> = set.iter().filter(known).cloned().collect();
     track::values(registry, Kind::Tracker, name, &set)
 }
@@ -64,7 +66,8 @@ fn describe(rows: &[Row], n_points: usize) -> Answer {
     let head = ["tracker", "δavg", "<1 px", "median", "survival", "ok", "lost", "kept", "ms/frame"];
     let mut table = vec![head.map(str::to_owned).to_vec()];
     for row in rows {
-        let number = |value: Option<f64>, digits: usize| value.map_or("–".to_owned(), |v| format!("{v:.digits$}"));
+        let number =
+            |value: Option<f64>, digits: usize| value.map_or("–".to_owned(), |v| format!("{v:.digits$}"));
         let of = |part: fn(&honami_workbench::compare::Accuracy) -> f64| row.accuracy.as_ref().map(part);
         table.push(vec![
             row.tracker.clone(),
@@ -79,7 +82,10 @@ fn describe(rows: &[Row], n_points: usize) -> Answer {
         ]);
     }
     let text = format!("{n_points} points\n{}", report::table(&table));
-    Answer { json: json!({ "points": n_points, "trackers": rows.iter().map(entry).collect::<Vec<_>>() }), text }
+    Answer {
+        json: json!({ "points": n_points, "trackers": rows.iter().map(entry).collect::<Vec<_>>() }),
+        text,
+    }
 }
 
 fn entry(row: &Row) -> serde_json::Value {

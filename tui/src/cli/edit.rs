@@ -62,7 +62,9 @@ fn transaction(project: &mut Project, words: &[&str]) -> anyhow::Result<Transact
             let from = project.shown(track)?.and_then(|span| span.get(frame).map(|at| [at.x, at.y]));
             Transaction::set_key(track, frame, to, from)
         }
-        ["clear", track, frame] => Transaction::clear_key(TrackId(whole("track", track)?), whole("frame", frame)?),
+        ["clear", track, frame] => {
+            Transaction::clear_key(TrackId(whole("track", track)?), whole("frame", frame)?)
+        }
         ["delete", ref tracks @ ..] if !tracks.is_empty() => Transaction::delete_tracks(set(tracks)?),
         ["restore", ref tracks @ ..] if !tracks.is_empty() => Transaction::restore_tracks(set(tracks)?),
         ["cut", k] => Transaction::set_cut(whole("number of groups", k)?),
@@ -75,7 +77,9 @@ fn place(project: &Project, frame: &str, x: &str, y: &str) -> anyhow::Result<(u3
     let clip = &project.clip().clip;
     let (width, height, n_frames) = (clip.width, clip.height, clip.n_frames());
     let frame = whole("frame", frame)?;
-    let number = |word: &str| word.parse::<f32>().ok().with_context(|| format!("wanted a position in pixels, got {word}"));
+    let number = |word: &str| {
+        word.parse::<f32>().ok().with_context(|| format!("wanted a position in pixels, got {word}"))
+    };
     let at = [number(x)?, number(y)?];
     let inside = |v: f32, size: u32| (-0.5..size as f32 - 0.5).contains(&v);
     ensure!(

@@ -56,19 +56,27 @@ pub(super) fn plugin(command: &Plugin, common: &Common) -> anyhow::Result<Answer
 /// The plugin of that name, whatever its kind.
 fn named<'r>(registry: &'r Registry, name: &str) -> anyhow::Result<&'r PluginInfo> {
     let is_it = |plugin: &&PluginInfo| plugin.id == name || plugin.short_name == name;
-    let known = || registry.plugins().iter().map(|plugin| plugin.short_name.as_str()).collect::<Vec<_>>().join(", ");
-    registry.plugins().iter().find(is_it).with_context(|| format!("there is no plugin {name:?}; there are: {}", known()))
+    let known =
+        || registry.plugins().iter().map(|plugin| plugin.short_name.as_str()).collect::<Vec<_>>().join(", ");
+    registry
+        .plugins()
+        .iter()
+        .find(is_it)
+        .with_context(|| format!("there is no plugin {name:?}; there are: {}", known()))
 }
 
 fn list(registry: &Registry) -> Answer {
     let head = ["name", "kind", "version", "", "what it is"].map(str::to_owned).to_vec();
     let row = |plugin: &PluginInfo| {
-        let cells = [&plugin.short_name, &plugin.kind.to_string(), &plugin.version, trust(plugin), &plugin.name];
+        let cells =
+            [&plugin.short_name, &plugin.kind.to_string(), &plugin.version, trust(plugin), &plugin.name];
         cells.map(ToString::to_string).to_vec()
     };
-    let mut text = report::table(&std::iter::once(head).chain(registry.plugins().iter().map(row)).collect::<Vec<_>>());
+    let mut text =
+        report::table(&std::iter::once(head).chain(registry.plugins().iter().map(row)).collect::<Vec<_>>());
     if registry.plugins().is_empty() {
-        text = "no plugins found: `cargo build --release` builds the shipped ones beside the program".to_owned();
+        text =
+            "no plugins found: `cargo build --release` builds the shipped ones beside the program".to_owned();
     }
     for plugin in registry.plugins() {
         if let Trust::No(why) = &plugin.trust {
@@ -113,14 +121,19 @@ fn describe(plugin: &PluginInfo) -> serde_json::Value {
 fn info(plugin: &PluginInfo) -> anyhow::Result<Answer> {
     let sha256 = plugin.sha256()?;
     let mut text = format!("{} {} · {} · {}\n", plugin.name, plugin.version, plugin.kind, trust(plugin));
-    text += &format!("{}\nid {} · ABI {}.{} · {}\n", plugin.doc, plugin.id, plugin.abi.0, plugin.abi.1, plugin.license);
+    text += &format!(
+        "{}\nid {} · ABI {}.{} · {}\n",
+        plugin.doc, plugin.id, plugin.abi.0, plugin.abi.1, plugin.license
+    );
     text += &format!("{} sha256 {}\n", plugin.library.display(), &sha256[..16]);
     for source in &plugin.cite {
         text += &format!("from {source}\n");
     }
     text += "\n";
     let head = ["parameter", "default", "takes", ""].map(str::to_owned).to_vec();
-    let row = |param: &Param| vec![param.id.clone(), param.default().to_string(), param.wanted(), first_line(&param.doc)];
+    let row = |param: &Param| {
+        vec![param.id.clone(), param.default().to_string(), param.wanted(), first_line(&param.doc)]
+    };
     text += &report::table(&std::iter::once(head).chain(plugin.params.iter().map(row)).collect::<Vec<_>>());
     let mut json = describe(plugin);
     json["sha256"] = sha256.into();

@@ -12,7 +12,8 @@ pub(super) fn log(args: &Project, common: &Common) -> anyhow::Result<Answer> {
     let lines = session.project.log()?;
     let text = lines.iter().map(line).collect::<Vec<_>>().join("\n");
     let text = if text.is_empty() { "nothing was done to this project yet".to_owned() } else { text };
-    let json = json!({ "revision": session.project.revision(), "log": lines.iter().map(entry).collect::<Vec<_>>() });
+    let json =
+        json!({ "revision": session.project.revision(), "log": lines.iter().map(entry).collect::<Vec<_>>() });
     Ok(Answer { json, text })
 }
 
@@ -23,7 +24,10 @@ fn line(line: &LogLine) -> String {
         LogItem::Run(run) => {
             let (made, found) = (&run.head.provenance, &run.found);
             let state = &run.state;
-            format!("{date}  run {}  {} frames {}..{}, {state}  {made}", run.id, run.tracks, found.start, found.end)
+            format!(
+                "{date}  run {}  {} frames {}..{}, {state}  {made}",
+                run.id, run.tracks, found.start, found.end
+            )
         }
         LogItem::Clustering(info) => {
             let made = &info.provenance;

@@ -16,7 +16,12 @@ pub(super) fn new(args: &New, common: &Common) -> anyhow::Result<Answer> {
 }
 
 /// Makes a project of a clip.
-pub(super) fn make(project: &Path, clip: &Path, fps: Option<f64>, common: &Common) -> anyhow::Result<Session> {
+pub(super) fn make(
+    project: &Path,
+    clip: &Path,
+    fps: Option<f64>,
+    common: &Common,
+) -> anyhow::Result<Session> {
     Ok(Session::create(project, clip, fps, &options(common))?)
 }
 

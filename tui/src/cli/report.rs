@@ -22,7 +22,11 @@ impl Bar {
         }
         let stop = Arc::new(AtomicBool::new(false));
         // The second Ctrl-C ends the program at once: whoever presses twice means it.
-        let second = signal_hook::flag::register_conditional_shutdown(signal_hook::consts::SIGINT, 130, Arc::clone(&stop));
+        let second = signal_hook::flag::register_conditional_shutdown(
+            signal_hook::consts::SIGINT,
+            130,
+            Arc::clone(&stop),
+        );
         let first = signal_hook::flag::register(signal_hook::consts::SIGINT, Arc::clone(&stop));
         if second.is_err() || first.is_err() {
             bar.suspend(|| say("Ctrl-C cannot be caught here: it ends the program at once"));
@@ -73,7 +77,9 @@ fn chain(error: &anyhow::Error) -> String {
 /// Columns aligned to their widest cell, two spaces apart; the first row is the head.
 pub(super) fn table(rows: &[Vec<String>]) -> String {
     let n_columns = rows.iter().map(Vec::len).max().unwrap_or(0);
-    let width = |column: usize| rows.iter().filter_map(|r| r.get(column)).map(|c| c.chars().count()).max().unwrap_or(0);
+    let width = |column: usize| {
+        rows.iter().filter_map(|r| r.get(column)).map(|c| c.chars().count()).max().unwrap_or(0)
+    };
     let widths: Vec<usize> = (0..n_columns).map(width).collect();
     let line = |row: &Vec<String>| {
         let cells = row.iter().zip(&widths).map(|(cell, &width)| format!("{cell:width$}"));

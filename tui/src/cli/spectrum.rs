@@ -19,7 +19,10 @@ pub(super) fn spectrum(args: &Spectrum, common: &Common) -> anyhow::Result<Answe
     };
     if let Some(track) = args.track {
         spectra.lines.retain(|line| matches!(line.subject, Subject::Track(id) if id.0 == track));
-        anyhow::ensure!(!spectra.lines.is_empty(), "track {track} is not there, or is seen in fewer than 8 frames");
+        anyhow::ensure!(
+            !spectra.lines.is_empty(),
+            "track {track} is not there, or is seen in fewer than 8 frames"
+        );
     }
     Ok(describe(&spectra))
 }
@@ -76,7 +79,10 @@ fn alias(spectra: &Spectra) -> Option<String> {
     let aliases: Vec<String> = strongest.aliases_hz.iter().map(|hz| format!("{hz:.2}")).collect();
     strongest.near_nyquist.then(|| {
         let hz = strongest.hz;
-        format!("{hz:.2} Hz? may be an alias: at this frame rate {} Hz look the same; film faster to know", aliases.join(", "))
+        format!(
+            "{hz:.2} Hz? may be an alias: at this frame rate {} Hz look the same; film faster to know",
+            aliases.join(", ")
+        )
     })
 }
 

@@ -87,7 +87,8 @@ pub(super) fn demo(args: &Demo, common: &Common) -> anyhow::Result<Option<Answer
     if args.headless || !std::io::stdout().is_terminal() {
         let n_tracks = session.project.document().tracks().count();
         let n_groups = session.project.grouping()?.map_or(0, |grouping| grouping.nodes.len());
-        let json = json!({ "project": file, "clip": clip, "truth": truth, "tracks": n_tracks, "groups": n_groups });
+        let json =
+            json!({ "project": file, "clip": clip, "truth": truth, "tracks": n_tracks, "groups": n_groups });
         return Ok(Some(Answer { json, text }));
     }
     crate::app::run(Some(session), &options(common))?;

@@ -1,9 +1,9 @@
 //! `track`: follow features through the clip.
 
+use honami_workbench::compare::read_points;
 use honami_workbench::plugins::{Kind, Registry, Values};
 use honami_workbench::session::Session;
 use honami_workbench::track::{self, Area, PointSource, TrackOutcome, TrackRequest};
-use honami_workbench::compare::read_points;
 use serde_json::json;
 
 use super::args::{Common, Region, Track};
@@ -20,14 +20,22 @@ pub(super) fn track(args: &Track, common: &Common) -> anyhow::Result<Answer> {
     let plugin = args.plugin.with.as_deref().or(detect).unwrap_or(DEFAULT).to_owned();
     if let Some(detect) = detect {
         anyhow::ensure!(
-            session.registry.find(Kind::Tracker, detect)?.id == session.registry.find(Kind::Tracker, &plugin)?.id,
+            session.registry.find(Kind::Tracker, detect)?.id
+                == session.registry.find(Kind::Tracker, &plugin)?.id,
             "features are chosen by the tracker that follows them: --detect {detect} needs --with {detect}"
         );
     }
     let params = values(&session.registry, Kind::Tracker, &plugin, &args.plugin.set)?;
     let n_frames = session.media.clip().n_frames();
     let frames = args.frames.map_or(0..n_frames, |range| range.start..range.end.unwrap_or(n_frames));
-    let request = TrackRequest { plugin, params, points: points(args, &session)?, frames, every: args.every, area: area(args) };
+    let request = TrackRequest {
+        plugin,
+        params,
+        points: points(args, &session)?,
+        frames,
+        every: args.every,
+        area: area(args),
+    };
     Ok(describe(&run(&mut session, &request)?))
 }
 
@@ -72,7 +80,12 @@ fn area(args: &Track) -> Area {
 }
 
 /// Parameter values from `--set k=v`.
-pub(super) fn values(registry: &Registry, kind: Kind, plugin: &str, set: &[String]) -> anyhow::Result<Values> {
+pub(super) fn values(
+    registry: &Registry,
+    kind: Kind,
+    plugin: &str,
+    set: &[String],
+) -> anyhow::Result<Values> {
     let plugin = registry.find(kind, plugin)?;
     let mut values = Values::defaults(&plugin.params);
     for assignment in set {

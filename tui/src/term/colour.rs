@@ -126,7 +126,15 @@ fn rgb_of_index(n: u8) -> [u8; 3] {
 }
 
 fn nearest_256(rgb: [u8; 3]) -> u8 {
-    let level = rgb.map(|c| if c < 48 { 0 } else if c < 115 { 1 } else { (c - 35) / 40 });
+    let level = rgb.map(|c| {
+        if c < 48 {
+            0
+        } else if c < 115 {
+            1
+        } else {
+            (c - 35) / 40
+        }
+    });
     let cube = 16 + 36 * level[0] + 6 * level[1] + level[2];
     let mean = rgb.iter().map(|&c| u32::from(c)).sum::<u32>() / 3;
     let gray = 232 + u8::try_from(mean.saturating_sub(3) / 10).unwrap_or(23).min(23);
@@ -149,7 +157,9 @@ mod tests {
 
     #[test]
     fn nearest_colours() {
-        for (rgb, index) in [([0, 0, 0], 16), ([255, 255, 255], 231), ([128, 128, 128], 244), ([250, 10, 5], 196)] {
+        for (rgb, index) in
+            [([0, 0, 0], 16), ([255, 255, 255], 231), ([128, 128, 128], 244), ([250, 10, 5], 196)]
+        {
             assert_eq!(nearest_256(rgb), index);
         }
         // What the cube and the grays hold exactly is kept exactly.

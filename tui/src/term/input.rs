@@ -218,7 +218,8 @@ fn string_end(bytes: &[u8]) -> Option<(usize, usize)> {
 
 fn head(bytes: &[u8]) -> Head {
     let key = |code| Head::Whole(Some(Event::Key(Key::plain(code))), 1);
-    let ctrl = |c: u8| Head::Whole(Some(Event::Key(Key { ctrl: true, ..Key::plain(Code::Char(char::from(c))) })), 1);
+    let ctrl =
+        |c: u8| Head::Whole(Some(Event::Key(Key { ctrl: true, ..Key::plain(Code::Char(char::from(c))) })), 1);
     match bytes[0] {
         0x1b => escape(bytes),
         b'\r' | b'\n' => key(Code::Enter),

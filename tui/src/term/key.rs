@@ -122,7 +122,9 @@ impl FromStr for Key {
         loop {
             let held = [("Ctrl-", &mut key.ctrl), ("Alt-", &mut key.alt), ("Shift-", &mut key.shift)]
                 .into_iter()
-                .find_map(|(name, flag)| rest.strip_prefix(name).filter(|r| !r.is_empty()).map(|r| (r, flag)));
+                .find_map(|(name, flag)| {
+                    rest.strip_prefix(name).filter(|r| !r.is_empty()).map(|r| (r, flag))
+                });
             let Some((after, flag)) = held else { break };
             *flag = true;
             rest = after;
@@ -147,7 +149,9 @@ mod tests {
 
     #[test]
     fn names_read_back() {
-        for word in ["g", "G", "-", "Ctrl-r", "Alt-Left", "Shift-Tab", "space", "Ctrl-space", "F7", "é", "Ctrl--"] {
+        for word in
+            ["g", "G", "-", "Ctrl-r", "Alt-Left", "Shift-Tab", "space", "Ctrl-space", "F7", "é", "Ctrl--"]
+        {
             assert_eq!(word.parse::<Key>().map(|k| k.to_string()), Ok(word.to_owned()));
         }
         assert_eq!("Entr".parse::<Key>(), Err(KeyError("Entr".to_owned())));

@@ -97,8 +97,7 @@ impl Link {
     /// Bytes per second that the link carries; `None` while unknown.
     #[must_use]
     pub fn goodput(&self) -> Option<f64> {
-        let (bytes, seconds) =
-            self.served.iter().fold((0.0, 0.0), |(b, s), &(n, t)| (b + n as f64, s + t));
+        let (bytes, seconds) = self.served.iter().fold((0.0, 0.0), |(b, s), &(n, t)| (b + n as f64, s + t));
         (!self.served.is_empty()).then(|| bytes / seconds)
     }
 

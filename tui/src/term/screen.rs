@@ -66,8 +66,8 @@ impl Screen {
         let var = |name: &str| std::env::var(name).ok();
         // Catch signals before anything needs to be undone.
         let signals = Signals::catch()?;
-        let in_multiplexer =
-            var("TMUX").is_some() || var("TERM").is_some_and(|t| t.starts_with("tmux") || t.starts_with("screen"));
+        let in_multiplexer = var("TMUX").is_some()
+            || var("TERM").is_some_and(|t| t.starts_with("tmux") || t.starts_with("screen"));
         let mut screen = Self {
             tty: None,
             log: log.to_owned(),

@@ -149,7 +149,10 @@ fn open_log(path: &Path) -> io::Result<File> {
 }
 
 /// Points a standard descriptor elsewhere if it is a terminal; returns the old one.
-fn redirect(fd: BorrowedFd<'_>, point: impl FnOnce() -> rustix::io::Result<()>) -> io::Result<Option<OwnedFd>> {
+fn redirect(
+    fd: BorrowedFd<'_>,
+    point: impl FnOnce() -> rustix::io::Result<()>,
+) -> io::Result<Option<OwnedFd>> {
     if !termios::isatty(fd) {
         return Ok(None);
     }

@@ -1,7 +1,8 @@
 //! Which points are live in which frame of a stream: the rule that every row of a tracker is held against.
 
 use crate::reply::Table;
-use crate::types::{PointRow, Points, Status};
+use crate::types::{PointRow, Points};
+use honami_model::track::Status;
 use honami_abi::{FB_NONE, NCC_NONE};
 use std::collections::{BTreeSet, VecDeque};
 use std::ops::Range;

@@ -1,9 +1,10 @@
 //! What the tests share: libraries built by cargo and cc, a store of their own, a small stream.
 
 use honami_host::{
-    CallContext, FrameView, Gray, Host, HostError, Kind, PluginInfo, Point, Points, Registry, SearchPath,
+    CallContext, FrameView, Host, HostError, Kind, PluginInfo, Point, Points, Registry, SearchPath,
     StreamInfo, Tracker, Values,
 };
+use honami_model::picture::Gray;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;

@@ -6,9 +6,11 @@ mod drift;
 use crate::tools::{HEIGHT, WIDTH, host, ids, of_zoo, pixels, point, push, start, stream, view};
 use honami_host::draft::Gust;
 use honami_host::{
-    CallContext, DetectRequest, Flow, Gray, HostError, Kind, Level, Merge, ParamKind, Status, StreamInfo,
-    Tracks, Value, Values,
+    CallContext, DetectRequest, Flow, HostError, Kind, Level, ParamKind, StreamInfo, Tracks, Value, Values,
 };
+use honami_model::hierarchy::Merge;
+use honami_model::picture::Gray;
+use honami_model::track::Status;
 use honami_plugin::{Frame, Seed, testing};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
@@ -240,7 +242,7 @@ fn clusterings_come_checked_with_their_frame_notes() {
     let clustering = clusterer.run(&tracks, &cx).unwrap();
     // x of the first sample + samples seen + time of the last one.
     assert_eq!(
-        clustering.merges,
+        clustering.dendrogram.merges(),
         [
             Merge { a: 0, b: 1, height: 2.0 + 1.0 + 1.75, size: 2 },
             Merge { a: 3, b: 2, height: 3.0 + 0.0 + 0.5, size: 3 },

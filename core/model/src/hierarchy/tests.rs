@@ -30,15 +30,15 @@ fn cut_undoes_the_highest_merges() {
 #[test]
 fn refuses_rows_that_are_no_tree() {
     let cases = [
-        (3, vec![merge(0, 1, 1.0, 2)], "n leaves"),
+        (3, vec![merge(0, 1, 1.0, 2)], "1 merges of 3 tracks, not 2"),
         (2, vec![merge(0, 2, 1.0, 2)], "exist"),
         (3, vec![merge(0, 1, 1.0, 2), merge(0, 2, 2.0, 2)], "second time"),
-        (2, vec![merge(0, 1, f64::NAN, 2)], "finite"),
+        (2, vec![merge(0, 1, f64::NAN, 2)], "height NaN"),
         (2, vec![merge(0, 1, 1.0, 3)], "size"),
     ];
     for (n, rows, want) in cases {
         let error = Dendrogram::new(n, rows).unwrap_err();
-        assert!(error.why.contains(want), "{error}");
+        assert!(error.to_string().contains(want), "{error}");
     }
     assert!(Dendrogram::new(0, vec![]).is_ok() && Dendrogram::new(1, vec![]).is_ok());
 }

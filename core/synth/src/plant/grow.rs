@@ -55,9 +55,9 @@ impl<'a> Grower<'a> {
             centre: Point::new(width_px * 0.5, height_px * 0.46),
             radius: Point::new((width_px * 0.45).min(height_px * 0.66), height_px * 0.42),
         };
-        // Leaves of length l cover about l²/3 each; they are to cover the crown nearly twice, within reason.
+        // Leaves of length l cover about l²/3 each; they are to cover the crown one and a half times, within reason.
         let crown_px2 = std::f64::consts::PI * crown.radius.x * crown.radius.y;
-        let length_px = (1.75 * 3.0 * crown_px2 / f64::from(settings.n_leaves)).sqrt();
+        let length_px = (1.5 * 3.0 * crown_px2 / f64::from(settings.n_leaves)).sqrt();
         let half_length_px = length_px.clamp(0.022 * height_px, 0.082 * height_px) * 0.5;
         Self {
             rng,
@@ -123,8 +123,8 @@ impl<'a> Grower<'a> {
     fn fork(&mut self, carrier: usize, tip: Point) -> f64 {
         let local = self.frames[carrier].into_local(tip);
         let length_px = self.branches[carrier].length_px;
-        let setback_px = (0.9 * local.y.abs()).max(0.16 * self.height_px);
-        ((local.x - setback_px) / length_px + self.vary(0.04)).clamp(0.28, 0.96)
+        let setback_px = (0.9 * local.y.abs()).max(0.2 * self.height_px);
+        ((local.x - setback_px) / length_px + self.vary(0.04)).clamp(0.22, 0.96)
     }
 
     /// A new branch from a share of its parent's length to `tip`; the stem stands on `foot`.
@@ -192,8 +192,9 @@ impl<'a> Grower<'a> {
         let half_length_px =
             self.half_length_px * self.rng.random_range(0.78..1.18) * (1.0 - 0.28 * ahead.abs());
         let half_width_px = half_length_px * self.rng.random_range(0.46..0.6);
-        let petiole_px = half_length_px * self.rng.random_range(0.3..0.9);
-        let centre = frame.out(base) + Point::unit(frame.angle_rad + turn_rad) * (petiole_px + half_length_px);
+        let petiole_px = half_length_px * self.rng.random_range(0.3..1.7) * (1.0 - 0.5 * share);
+        let centre =
+            frame.out(base) + Point::unit(frame.angle_rad + turn_rad) * (petiole_px + half_length_px);
         let nearness = self.nearness[branch] + 0.22 * ahead + self.vary(0.05);
         let colour = self.leaf_colour(centre, nearness);
         let texture = Texture::new(self.rng.random(), half_length_px, half_width_px);
@@ -222,8 +223,8 @@ impl<'a> Grower<'a> {
     fn leaf_colour(&mut self, centre: Point, nearness: f64) -> [f32; 3] {
         let lit = self.crown.lit(centre);
         let inside = 1.0 - self.crown.outness(centre).min(1.0);
-        let light = 0.7 + 0.24 * nearness + 0.2 * lit - 0.22 * inside * (1.0 - nearness) + self.vary(0.1);
-        let light = light.clamp(0.26, 1.16);
+        let light = 0.76 + 0.2 * nearness + 0.2 * lit - 0.2 * inside * (1.0 - nearness) + self.vary(0.1);
+        let light = light.clamp(0.4, 1.16);
         let sunny = (0.42 + 0.2 * lit + 0.2 * nearness + self.vary(0.26)).clamp(0.0, 1.0);
         let mix = |shade: f64, sun: f64| ((shade + sunny * (sun - shade)) * light) as f32;
         [mix(58.0, 162.0), mix(116.0, 186.0), mix(62.0, 78.0)]

@@ -28,7 +28,9 @@ fn what_does_not_count_is_not_shown() {
     let mut form = Form::new(Task::Track, &state.plugins, true).unwrap();
     let ids = |form: &Form| {
         let rows = form.rows();
-        rows.iter().filter_map(|r| if let Row::Param(p, _) = r { Some(p.id.clone()) } else { None }).collect::<Vec<_>>()
+        rows.iter()
+            .filter_map(|r| if let Row::Param(p, _) = r { Some(p.id.clone()) } else { None })
+            .collect::<Vec<_>>()
     };
     assert_eq!(ids(&form), ["@features", "@every", "radius", "motion", "check", "label"]);
     assert!(form.rows().contains(&Row::Fold(1)));

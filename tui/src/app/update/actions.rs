@@ -53,6 +53,7 @@ pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {
         Action::ZoomIn => zoom(state, 1),
         Action::ZoomOut => zoom(state, -1),
         Action::Follow => follow(state),
+        Action::Marks => state.marks_all = !state.marks_all,
         Action::Column => state.column = !state.column,
         Action::Palette => open_menu(state, "actions"),
         Action::Help => open_menu(state, "what works here"),
@@ -112,7 +113,8 @@ fn accept(state: &mut State) -> Vec<Effect> {
 
 fn run(state: &mut State) -> Vec<Effect> {
     if let Some(job) = &state.job {
-        let line = format!("{} is still running: wait for it, or stop it with Esc while reviewing", job.plugin);
+        let line =
+            format!("{} is still running: wait for it, or stop it with Esc while reviewing", job.plugin);
         complain(state, line);
         return Vec::new();
     }
@@ -176,7 +178,9 @@ fn open_form(state: &mut State, task: Task) {
     }
     match Form::new(task, &state.plugins, !state.tracks.is_empty()) {
         Some(form) => state.mode = Mode::Form(Box::new(form)),
-        None => complain(state, format!("no {word} was found; `honami doctor` says where {plugin} is looked for")),
+        None => {
+            complain(state, format!("no {word} was found; `honami doctor` says where {plugin} is looked for"))
+        }
     }
 }
 

@@ -50,13 +50,21 @@ fn line(state: &State, effects: &[Effect]) -> String {
         Mode::Place([x, y]) => format!("place {x} {y}"),
         Mode::Move { from, to } => format!("move {} {}", to[0] - from[0], to[1] - from[1]),
         Mode::Form(form) => format!("form {:?} row {} typed {:?}", form.task, form.at, form.typed),
-        Mode::Menu(menu) => format!("menu {:?} of {}", menu.chosen().map(|r| r.label.as_str()), menu.rows().len()),
+        Mode::Menu(menu) => {
+            format!("menu {:?} of {}", menu.chosen().map(|r| r.label.as_str()), menu.rows().len())
+        }
         Mode::Prompt(typed) => format!("prompt {typed:?}"),
     }];
-    words.push(format!("frame {} track {}", state.frame, state.selected.map_or("-".to_owned(), |t| t.to_string())));
+    words.push(format!(
+        "frame {} track {}",
+        state.frame,
+        state.selected.map_or("-".to_owned(), |t| t.to_string())
+    ));
     words.extend(state.count.map(|n| format!("count {n}")));
     words.extend(state.play.map(|play| format!("play {}", play.rate)));
-    words.extend(state.notice.as_ref().map(|n| format!("{} {}", if n.is_error { "error" } else { "said" }, n.text)));
+    words.extend(
+        state.notice.as_ref().map(|n| format!("{} {}", if n.is_error { "error" } else { "said" }, n.text)),
+    );
     words.extend(effects.iter().map(|effect| match effect {
         Effect::Commit(transaction) => format!("commit {}", transaction.label),
         Effect::Run { plugin, values, existing, every, .. } => {
@@ -152,7 +160,11 @@ fn selecting_tracks() {
         ("", "3 g t", "review | frame 0 track 1 | error there is no track 3"),
         ("", "/ 7 Enter", "review | frame 0 track 7"),
         ("track=7", "/ b u d Enter", "review | frame 0 track 1"),
-        ("empty", "n", "review | frame 0 track - | error there are no tracks yet: t follows features, a adds one by hand"),
+        (
+            "empty",
+            "n",
+            "review | frame 0 track - | error there are no tracks yet: t follows features, a adds one by hand",
+        ),
     ] {
         check(from, keys, expect);
     }
@@ -168,11 +180,19 @@ fn editing() {
         ("frame=20", "m l Enter", &format!("{sway} | commit track 1: key-frame at 20 (moved 1.0 px)")),
         ("frame=20", "m l Esc", sway),
         ("frame=20", "m l q", sway),
-        ("frame=80 track=2", "m Enter", "review | frame 80 track 2 | commit track 2: key-frame at 80 (placed at 66.1, 120.0)"),
+        (
+            "frame=80 track=2",
+            "m Enter",
+            "review | frame 80 track 2 | commit track 2: key-frame at 80 (placed at 66.1, 120.0)",
+        ),
         ("frame=20", "Enter", &format!("{sway} | commit track 1: key-frame at 20 (confirmed)")),
         ("frame=50", "Enter", "review | frame 50 track 1 | said track 1: frame 50 is a key-frame already"),
         ("frame=50", "Backspace", "review | frame 50 track 1 | commit track 1: key-frame at 50 cleared"),
-        ("frame=20", "Backspace", &format!("{sway} | error no key-frame of the selected track is here; [ and ] go to them")),
+        (
+            "frame=20",
+            "Backspace",
+            &format!("{sway} | error no key-frame of the selected track is here; [ and ] go to them"),
+        ),
         ("", "d", "review | frame 0 track 2 | commit track 1 deleted"),
         ("track=7", "d", "review | frame 0 track 2 | commit track 7 deleted"),
         ("", "a", "place 160 120 | frame 0 track 1"),
@@ -184,8 +204,16 @@ fn editing() {
         ("", "9 +", "review | frame 0 track 1 | commit cut into 3 groups"),
         ("", "-", "review | frame 0 track 1 | commit cut into 1 group"),
         ("empty", "+", "review | frame 0 track - | error there is no hierarchy to cut; c groups the tracks"),
-        ("empty", "m", "review | frame 0 track - | error select a track first: n takes the next, a click takes the nearest"),
-        ("locked", "d", "review | frame 0 track 1 | error read only: ada on lab2 holds this project; nothing can be changed here"),
+        (
+            "empty",
+            "m",
+            "review | frame 0 track - | error select a track first: n takes the next, a click takes the nearest",
+        ),
+        (
+            "locked",
+            "d",
+            "review | frame 0 track 1 | error read only: ada on lab2 holds this project; nothing can be changed here",
+        ),
     ] {
         check(from, keys, expect);
     }
@@ -212,16 +240,47 @@ fn forms() {
         ("", "t j j j l l Enter", &format!("review | frame 0 track 1 | {klt} {rest} radius=12")),
         ("", "t j j j 2 5 Enter Enter", &format!("review | frame 0 track 1 | {klt} {rest} radius=25")),
         ("", "t j j j j j j j j j k", "form Track row 6 typed None | frame 0 track 1"),
-        ("", "t j j j 9 9 Enter", "form Track row 3 typed Some(\"99\") | frame 0 track 1 | error radius: wanted a whole number, 2 to 50 (px), got \"99\""),
+        (
+            "",
+            "t j j j 9 9 Enter",
+            "form Track row 3 typed Some(\"99\") | frame 0 track 1 | error radius: wanted a whole number, 2 to 50 (px), got \"99\"",
+        ),
         ("", "t j j j 9 9 Esc Esc", "review | frame 0 track 1"),
-        ("", "t j j j j j l k l l Enter", &format!("review | frame 0 track 1 | {klt} {} radius=10", rest.replace("check=true", "check=false"))),
-        ("", "t j l Enter", &format!("review | frame 0 track 1 | {} {rest} radius=10", klt.replace("false", "true"))),
-        ("", "t j j l l Enter", &format!("review | frame 0 track 1 | {} {rest} radius=10", klt.replace("None", "Some(10)"))),
+        (
+            "",
+            "t j j j j j l k l l Enter",
+            &format!(
+                "review | frame 0 track 1 | {klt} {} radius=10",
+                rest.replace("check=true", "check=false")
+            ),
+        ),
+        (
+            "",
+            "t j l Enter",
+            &format!("review | frame 0 track 1 | {} {rest} radius=10", klt.replace("false", "true")),
+        ),
+        (
+            "",
+            "t j j l l Enter",
+            &format!("review | frame 0 track 1 | {} {rest} radius=10", klt.replace("None", "Some(10)")),
+        ),
         ("", "t l Enter", "review | frame 0 track 1 | run flow existing=true every=None "),
         ("", "c Enter", "review | frame 0 track 1 | run movement existing=false every=None "),
-        ("job", "t Enter", "form Track row 0 typed None | frame 0 track 1 | error klt is still running: wait for it, or stop it with Esc while reviewing"),
-        ("bare", "t", "review | frame 0 track 1 | error no tracker was found; `honami doctor` says where tracker-klt is looked for"),
-        ("empty", "c", "review | frame 0 track - | error two tracks or more can be grouped; t follows features first"),
+        (
+            "job",
+            "t Enter",
+            "form Track row 0 typed None | frame 0 track 1 | error klt is still running: wait for it, or stop it with Esc while reviewing",
+        ),
+        (
+            "bare",
+            "t",
+            "review | frame 0 track 1 | error no tracker was found; `honami doctor` says where tracker-klt is looked for",
+        ),
+        (
+            "empty",
+            "c",
+            "review | frame 0 track - | error two tracks or more can be grouped; t follows features first",
+        ),
     ] {
         check(from, keys, expect);
     }
@@ -243,7 +302,11 @@ fn menus_do_what_they_say() {
     check("", ": u n d o Enter", "review | frame 0 track 1 | Undo");
     check("", ": q q", "menu None of 0 | frame 0 track 1");
     check("", ": q q Enter", "review | frame 0 track 1");
-    check("frame=20", "m l : z o o m Enter Enter", "review | frame 20 track 1 | commit track 1: key-frame at 20 (moved 1.0 px)");
+    check(
+        "frame=20",
+        "m l : z o o m Enter Enter",
+        "review | frame 20 track 1 | commit track 1: key-frame at 20 (moved 1.0 px)",
+    );
     check("frame=20", "m ? Esc", "move 0 0 | frame 20 track 1");
     check("", "? Down Down Up Enter", "review | frame 0 track 2");
 }

@@ -107,13 +107,18 @@ pub(super) fn go_key(state: &mut State, by: i64) {
     };
     match target {
         Some(frame) => go(state, frame),
-        None => say(state, format!("track {id}: no key-frame {}", if by > 0 { "after this" } else { "before this" })),
+        None => say(
+            state,
+            format!("track {id}: no key-frame {}", if by > 0 { "after this" } else { "before this" }),
+        ),
     }
 }
 
 /// Following, the selected track stays in the middle.
 pub(super) fn keep_in_view(state: &mut State) {
-    if state.follow && let Some(at) = state.selected_at() {
+    if state.follow
+        && let Some(at) = state.selected_at()
+    {
         state.centre = at;
     }
 }

@@ -16,7 +16,8 @@ const GROUP_ROWS: u16 = 14;
 
 /// Rows of the tracks' list, and of the groups' below it, headings included.
 fn split(state: &State, area: Rect) -> (Rect, Rect) {
-    let wanted = state.groups.as_ref().map_or(0, |g| 2 + u16::try_from(g.k).unwrap_or(u16::MAX).min(GROUP_ROWS));
+    let wanted =
+        state.groups.as_ref().map_or(0, |g| 2 + u16::try_from(g.k).unwrap_or(u16::MAX).min(GROUP_ROWS));
     let below = wanted.min(area.height / 2);
     (Rect { height: area.height - below, ..area }, Rect { y: area.bottom() - below, height: below, ..area })
 }

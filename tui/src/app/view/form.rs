@@ -22,7 +22,9 @@ pub(super) fn draw(form: &Form, area: Rect, frame: &mut Frame) {
     let inside = panel(frame, area, 78, wanted);
     let n_listed = usize::from(inside.height.saturating_sub(3)).max(1);
     let first = form.at.saturating_sub(n_listed - 1);
-    let labels = rows.iter().filter_map(|row| if let Row::Param(param, _) = row { Some(label_of(param)) } else { None });
+    let labels = rows
+        .iter()
+        .filter_map(|row| if let Row::Param(param, _) = row { Some(label_of(param)) } else { None });
     let label_width = labels.map(|label| label.chars().count()).max().unwrap_or(0).clamp(LABEL.0, LABEL.1);
     for (y, (i, row)) in (1..).zip(rows.iter().enumerate().skip(first).take(n_listed)) {
         put(frame, inside, y, &row_line(form, row, i == form.at, label_width));
@@ -66,11 +68,15 @@ fn row_line(form: &Form, row: &Row<'_>, is_here: bool, width: usize) -> Line<'st
                 Span::styled(others, style::DIM),
             ])
         }
-        Row::Fold(n) => Line::from(vec![label(&format!("advanced {} {n}", if form.unfolded { "▾" } else { "▸" }))]),
+        Row::Fold(n) => {
+            Line::from(vec![label(&format!("advanced {} {n}", if form.unfolded { "▾" } else { "▸" }))])
+        }
         Row::Param(param, value) => {
             let mut spans = vec![label(label_of(param))];
             match &form.typed {
-                Some(typed) if is_here => spans.push(Span::styled(format!("{typed}▏ {}", param.unit), style::BOLD)),
+                Some(typed) if is_here => {
+                    spans.push(Span::styled(format!("{typed}▏ {}", param.unit), style::BOLD))
+                }
                 _ => spans.extend(value_spans(param, value)),
             }
             Line::from(spans)

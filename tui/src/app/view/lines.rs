@@ -85,7 +85,9 @@ fn sample_words(row: &TrackRow, frame: u32) -> String {
     let mut words = vec![match row.span.get(frame) {
         None => "not here".to_owned(),
         Some(sample) if sample.source == Source::Key => "key-frame".to_owned(),
-        Some(sample) if sample.source == Source::Interpolated && sample.status.is_seen() => "interpolated".to_owned(),
+        Some(sample) if sample.source == Source::Interpolated && sample.status.is_seen() => {
+            "interpolated".to_owned()
+        }
         Some(sample) => match sample.status {
             Status::Lost => "lost",
             Status::Tracked | Status::Newborn => sample.source.word(),
@@ -96,7 +98,8 @@ fn sample_words(row: &TrackRow, frame: u32) -> String {
         .to_owned(),
     }];
     if let Some(quality) = row.span.get(frame).map(|s| s.quality) {
-        words.extend(quality.fb_px.map(|fb| format!("FB {fb:.2} px")));
+        let digits = |fb: f32| if fb < 0.1 { 3 } else { 2 };
+        words.extend(quality.fb_px.map(|fb| format!("FB {fb:.*} px", digits(fb))));
         words.extend(quality.ncc.map(|ncc| format!("NCC {ncc:.2}").replace("0.", ".")));
     }
     words.extend(row.worst.map(|frame| format!("worst {frame}")));
@@ -128,7 +131,9 @@ pub(super) fn time(state: &State, area: Rect, frame: &mut Frame) {
     for x in bar.left()..bar.right() {
         let frames = frame_at(bar, n, x)..=frame_at(bar, n, x + 1).max(frame_at(bar, n, x) + 1) - 1;
         let lost = row.is_some_and(|row| {
-            frames.clone().any(|f| row.span.get(f).is_some_and(|s| matches!(s.status, Status::Lost | Status::Rejected)))
+            frames
+                .clone()
+                .any(|f| row.span.get(f).is_some_and(|s| matches!(s.status, Status::Lost | Status::Rejected)))
         });
         let outlier = outliers.iter().any(|f| frames.contains(f));
         let (glyph, style) = match () {
@@ -184,7 +189,8 @@ fn hint_line(state: &State, room: usize) -> Line<'static> {
         .collect();
     let mut hints = state.keys.hints(context);
     hints.retain(|(_, word)| useful.contains(word));
-    let width = |(keys, word): &(String, &str)| Line::raw(keys.as_str()).width() + 1 + word.chars().count() + 2;
+    let width =
+        |(keys, word): &(String, &str)| Line::raw(keys.as_str()).width() + 1 + word.chars().count() + 2;
     let help = hints.iter().position(|(_, word)| *word == "help").map(|at| hints.remove(at));
     let reserved = help.as_ref().map_or(0, width);
     let mut used = reserved;

@@ -17,10 +17,15 @@ const KEYS: usize = 14;
 pub(super) fn draw(menu: &Menu, area: Rect, frame: &mut Frame) {
     let n_rows = u16::try_from(menu.rows().len()).unwrap_or(u16::MAX).max(1);
     let inside = panel(frame, area, 100, n_rows.saturating_add(1));
+    // What the chosen row does, in full; before anything is chosen by typing, what the list is.
+    let about = match menu.chosen().filter(|_| !menu.typed.is_empty() || menu.at > 0) {
+        Some(row) => row.detail.clone(),
+        None => format!("{}: type a part of a name", menu.title),
+    };
     let head = Line::from(vec![
         Span::styled(":", style::ACCENT),
         Span::styled(format!("{}▏", menu.typed), style::BOLD),
-        Span::styled(format!("  {}: type a part of a name", menu.title), style::DIM),
+        Span::styled(format!("  {about}"), style::DIM),
     ]);
     put(frame, inside, 0, &head);
     let n_listed = usize::from(inside.height.saturating_sub(1)).max(1);
@@ -47,7 +52,8 @@ pub(super) fn which_key(state: &State, area: Rect, frame: &mut Frame) {
     let context = state.mode.context();
     let follow: Vec<_> = state.keys.after(context, &state.pending).collect();
     let n = u16::try_from(follow.len()).unwrap_or(u16::MAX);
-    let rows = Rect { y: area.bottom().saturating_sub(n.min(area.height)), height: n.min(area.height), ..area };
+    let rows =
+        Rect { y: area.bottom().saturating_sub(n.min(area.height)), height: n.min(area.height), ..area };
     fill(frame, rows, style::PANEL);
     let inside = Rect { x: rows.x + 1, width: rows.width.saturating_sub(2), ..rows };
     for (y, binding) in (0..).zip(follow) {

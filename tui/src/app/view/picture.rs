@@ -90,14 +90,17 @@ impl Canvas<'_> {
         if let Some(row) = selected {
             self.path(row, frame);
         }
-        for row in &state.tracks {
+        for row in state.tracks.iter().filter(|row| state.marks_all || state.selected == Some(row.id)) {
             let Some(sample) = row.span.get(frame) else { continue };
             let colour = match sample.status {
-                Status::Tracked | Status::Newborn => style::group(state.groups.as_ref().and_then(|g| g.of(row.id))),
+                Status::Tracked | Status::Newborn => {
+                    style::group(state.groups.as_ref().and_then(|g| g.of(row.id)))
+                }
                 Status::Outside | Status::Rejected => continue,
                 Status::Lost | Status::Occluded => UNSEEN,
             };
-            self.mark([sample.x, sample.y], &[(0, 0)], colour, 'o');
+            self.mark([sample.x, sample.y], &[], colour, 'o');
+            self.tint([sample.x, sample.y], colour);
         }
         let moving = matches!(state.mode, Mode::Move { .. });
         if let Some(row) = selected.filter(|_| !moving)
@@ -126,6 +129,19 @@ impl Canvas<'_> {
                 self.mark(to, &CROSS, CURSOR, '+');
             }
             _ => {}
+        }
+    }
+
+    /// Colours one pixel, letting the picture through a little: marks by the hundred must not hide it.
+    fn tint(&mut self, at: [f32; 2], colour: [u8; 3]) {
+        let Some((x, y)) = self.lens.pixel_of(at) else { return };
+        let i = (y * self.lens.size().0 + x) as usize;
+        let mix = |a: u8, b: u8| ((u16::from(a) + 2 * u16::from(b)) / 3) as u8;
+        let [r, g, b] = self.pixels[i];
+        // A second mark on the same pixel changes nothing more.
+        if self.weights[i] == PICTURE {
+            self.pixels[i] = [mix(r, colour[0]), mix(g, colour[1]), mix(b, colour[2])];
+            self.weights[i] = MARK;
         }
     }
 

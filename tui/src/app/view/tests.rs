@@ -63,7 +63,8 @@ fn check(name: &str, size: (u16, u16), keys: &str, change: impl FnOnce(&mut Stat
     }
     let shot = fixture::shot(&state, Layout::of(&state).picture);
     let seen = dump(&draw(&state, Some(&shot)));
-    let file = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("src/app/view/screens").join(format!("{name}.txt"));
+    let file =
+        PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("src/app/view/screens").join(format!("{name}.txt"));
     if std::env::var_os("REGENERATE").is_some() {
         std::fs::create_dir_all(file.parent().unwrap()).unwrap();
         std::fs::write(&file, &seen).unwrap();
@@ -80,7 +81,8 @@ fn screens() {
         let (plugin, what) = ("klt".to_owned(), "frame".to_owned());
         let since = std::time::Duration::ZERO;
         state.now = std::time::Duration::from_secs(4);
-        state.job = Some(Job { plugin, what, done: (50, 100), since, keeps_frames: true, is_stopping: false });
+        state.job =
+            Some(Job { plugin, what, done: (50, 100), since, keeps_frames: true, is_stopping: false });
     };
     check("review_80x24", small, "", |_| {});
     check("review_120x40", large, "", |_| {});
@@ -105,9 +107,11 @@ fn screens() {
     check("prompt_80x24", small, "g f 1 2", |_| {});
     check("job_80x24", small, "", job);
     check("error_80x24", small, "", |state| {
-        state.notice = Some(Notice { text: "radius: wanted 2 to 50 (px), got 99".to_owned(), is_error: true });
+        state.notice =
+            Some(Notice { text: "radius: wanted 2 to 50 (px), got 99".to_owned(), is_error: true });
     });
     check("zoomed_80x24", small, "z z f", |_| {});
+    check("unmarked_80x24", small, "M", |_| {});
     check("tiny_40x12", (40, 12), "", |_| {});
     check("least_20x5", (20, 5), "", |_| {});
     check("wide_names_80x24", small, "", |state| state.tracks[0].name = Some("芽の左".to_owned()));
@@ -144,6 +148,8 @@ fn marks_lie_where_the_tracks_are() {
     let frame = draw(&state, Some(&shot));
     let (x, y) = shot.lens.pixel_of(state.tracks[0].at(0).unwrap()).unwrap();
     let cell = &frame.cells[(shot.lens.area.x + x as u16, shot.lens.area.y + y as u16 / 2)];
-    let [r, g, b] = style::group(None);
-    assert!([cell.fg, cell.bg][y as usize % 2] == Color::Rgb(r, g, b), "{cell:?}");
+    let below = shot.pixels[(y * shot.lens.size().0 + x) as usize];
+    let mixed: Vec<u8> =
+        (0..3).map(|c| ((u16::from(below[c]) + 2 * u16::from(style::group(None)[c])) / 3) as u8).collect();
+    assert_eq!([cell.fg, cell.bg][y as usize % 2], Color::Rgb(mixed[0], mixed[1], mixed[2]));
 }

@@ -1,0 +1,333 @@
+//! Every command on a small generated clip: what it does, and the keys that scripts rely on.
+
+use std::fs;
+use std::path::Path;
+
+use honami_tests::{Bench, by_track, rows};
+use serde_json::Value;
+
+/// The answer has these keys; more may be added to it.
+#[track_caller]
+fn assert_keys(answer: &Value, keys: &str) {
+    let missing: Vec<&str> = keys.split_whitespace().filter(|key| answer.get(key).is_none()).collect();
+    assert!(missing.is_empty(), "{missing:?} are not in {answer:#}");
+}
+
+/// Every kind of clip that can be generated here.
+fn clips() -> Vec<&'static str> {
+    let doctor = Bench::new().json("doctor");
+    let findings = doctor["findings"].as_array().unwrap().iter();
+    let has_ffmpeg =
+        findings.into_iter().any(|finding| finding["what"] == "ffmpeg" && finding["there"] == true);
+    let mut clips = vec!["folder", "clip.y4m"];
+    if has_ffmpeg {
+        clips.push("clip.mp4");
+    } else {
+        eprintln!("skipped: needs ffmpeg (clip.mp4)");
+    }
+    clips
+}
+
+#[test]
+fn the_whole_job_on_every_kind_of_clip() {
+    for clip in clips() {
+        let bench = Bench::new();
+        let made = bench.json(&format!("synth {clip} --size 320x180 --frames 40 --leaves 120 --seed 3"));
+        assert_keys(&made, "clip truth leaves branches step_px");
+        let truth = made["truth"].as_str().unwrap();
+
+        let new = bench.json(&format!("new p.honami {clip}"));
+        assert_keys(&new, "frames width height fps variable_rate sha256");
+        assert_eq!((&new["frames"], &new["width"], &new["height"]), (&40.into(), &320.into(), &180.into()));
+        assert_eq!(new["variable_rate"], false);
+        assert!((new["fps"].as_f64().unwrap() - 25.0).abs() < 1e-6, "{new}");
+
+        let track = bench.json("track p.honami");
+        assert_keys(&track, "run tracks lost frames stopped seconds");
+        let n_tracks = track["tracks"].as_u64().unwrap();
+        assert!(n_tracks > 20 && track["stopped"] == false, "{clip}: {track}");
+
+        let cluster = bench.json("cluster p.honami --groups 5");
+        assert_keys(&cluster, "clustering tracks groups outlier_frames seconds");
+        let sizes = cluster["groups"].as_array().unwrap().iter().map(|size| size.as_u64().unwrap());
+        assert_eq!((sizes.clone().count(), sizes.sum::<u64>()), (5, n_tracks));
+
+        let compare = bench.json(&format!("compare p.honami --with klt --truth {truth}"));
+        let [klt, nothing] = &compare["trackers"].as_array().unwrap()[..] else { panic!("{compare}") };
+        assert_keys(klt, "tracker delta_avg within_1px median_px survival ok_tracks kept ms_per_frame");
+        let delta_avg = |row: &Value| row["delta_avg"].as_f64().unwrap();
+        assert!(
+            delta_avg(klt) > delta_avg(nothing) + 0.1,
+            "{clip}: tracking beats standing still: {compare}"
+        );
+
+        let spectrum = bench.json("spectrum p.honami");
+        assert_keys(&spectrum, "fps nyquist_hz resolution_hz lines");
+        let subjects =
+            spectrum["lines"].as_array().unwrap().iter().map(|line| line["subject"].as_str().unwrap());
+        assert_eq!(subjects.clone().next(), Some("all"));
+        assert_eq!(subjects.filter(|subject| subject.starts_with("group")).count(), 5);
+
+        let export = bench.json("export p.honami tracks out.csv");
+        assert_keys(&export, "file tracks samples");
+        assert_eq!(by_track(&rows(&bench.path("out.csv"))).len() as u64, n_tracks);
+    }
+}
+
+#[test]
+fn the_same_seed_gives_the_same_clip_and_the_same_tracks() {
+    let tables = [1, 1, 2].map(|seed| {
+        let bench = Bench::new();
+        bench.synth("clip.y4m", 20, &format!("--seed {seed}"));
+        bench.json("new p.honami clip.y4m");
+        bench.json("track p.honami");
+        bench.json("export p.honami tracks out.csv");
+        fs::read_to_string(bench.path("out.csv")).unwrap()
+    });
+    assert_eq!(tables[0], tables[1]);
+    assert_ne!(tables[0], tables[2]);
+}
+
+#[test]
+fn exported_tracks_have_the_columns_of_the_table_and_true_times() {
+    let bench = Bench::new();
+    bench.synth("clip.y4m", 40, "--fps 50");
+    bench.json("new p.honami clip.y4m");
+    bench.json("track p.honami --frames 4..30");
+    let samples = bench.samples("p.honami");
+    let text = fs::read_to_string(bench.path("p.honami.csv")).unwrap();
+    assert_eq!(text.lines().next(), Some("track,frame,time_s,x,y,status,source,quality,fb,ncc,run"));
+    for (id, track) in by_track(&samples) {
+        let frames: Vec<u32> = track.iter().map(|row| row["frame"].parse().unwrap()).collect();
+        assert_eq!(frames, (4..30).collect::<Vec<_>>(), "track {id}");
+        for row in track {
+            let (frame, time_s): (f64, f64) = (row["frame"].parse().unwrap(), row["time_s"].parse().unwrap());
+            assert!((time_s - frame / 50.0).abs() < 1e-9, "{row:?}");
+            assert_eq!((row["source"].as_str(), row["run"].as_str()), ("tracked", "1"));
+            assert_eq!(
+                row["fb"].is_empty(),
+                row["frame"] == "4",
+                "every step but the first has its error: {row:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn exported_tracks_have_the_spectrum_of_the_project() {
+    let bench = Bench::new();
+    bench.synth("clip.y4m", 80, "--wind wind");
+    bench.json("new p.honami clip.y4m");
+    bench.json("track p.honami");
+    bench.json("export p.honami tracks out.csv");
+    let [project, table] = ["p.honami", "out.csv"].map(|source| bench.json(&format!("spectrum {source}")));
+    assert_eq!(project["lines"], table["lines"]);
+    let n_peaks =
+        project["lines"].as_array().unwrap().iter().flat_map(|line| line["peaks"].as_array().unwrap());
+    assert!(n_peaks.count() > 5, "there is something to compare: {project}");
+}
+
+#[test]
+fn features_come_from_where_they_are_asked_for() {
+    let bench = Bench::new();
+    bench.synth("clip.y4m", 12, "");
+    fs::write(bench.path("points.csv"), "id,x,y,frame\n7,80,60,0\n9,40.5,30.25,3\n").unwrap();
+    write_mask(&bench.path("mask.bmp"));
+    let position = |row: &honami_tests::Row| [&row["x"], &row["y"]].map(|v| v.parse::<f64>().unwrap());
+    // Options, and where the features may begin.
+    let table: [(&str, fn([f64; 2]) -> bool); 4] = [
+        ("--detect", |_| true),
+        ("--detect klt --region 20,10,60,50", |[x, y]| {
+            (20.0..80.0).contains(&x) && (10.0..60.0).contains(&y)
+        }),
+        ("--mask mask.bmp", |[x, _]| x >= 80.0),
+        ("--points points.csv", |at| at == [80.0, 60.0] || at == [40.5, 30.25]),
+    ];
+    let mut n_found = Vec::new();
+    for (options, allowed) in table {
+        bench.json("new p.honami clip.y4m");
+        bench.json(&format!("track p.honami {options}"));
+        let samples = bench.samples("p.honami");
+        let tracks = by_track(&samples);
+        for rows in tracks.values() {
+            assert!(allowed(position(rows[0])), "{options}: {:?}", rows[0]);
+        }
+        if options.starts_with("--points") {
+            let starts: Vec<_> = tracks.iter().map(|(id, rows)| (*id, rows[0]["frame"].as_str())).collect();
+            assert_eq!(starts, [(7, "0"), (9, "3")]);
+        }
+        n_found.push(tracks.len());
+        fs::remove_file(bench.path("p.honami")).unwrap();
+    }
+    assert!(
+        n_found[0] > n_found[1] && n_found[0] > n_found[2] && n_found[1] > 0 && n_found[2] > 0,
+        "{n_found:?}"
+    );
+}
+
+/// A picture of 160x120 pixels, black in its left half and white in its right.
+fn write_mask(path: &Path) {
+    let header: [u32; 13] = [54 + 3 * 160 * 120, 0, 54, 40, 160, 120, 1 | 24 << 16, 0, 0, 0, 0, 0, 0];
+    let line: Vec<u8> = (0..3 * 160).map(|byte| if byte < 3 * 80 { 0 } else { 255 }).collect();
+    let header = header.iter().flat_map(|word| word.to_le_bytes());
+    fs::write(path, [b"BM".to_vec(), header.collect(), line.repeat(120)].concat()).unwrap();
+}
+
+#[test]
+fn new_features_are_found_on_the_way() {
+    let bench = Bench::new();
+    bench.synth("clip.y4m", 30, "--wind storm");
+    bench.json("new p.honami clip.y4m");
+    bench.json("track p.honami --detect --every 10 --set lose_fb=0.5 --set distance=4 --frames 2..");
+    let samples = bench.samples("p.honami");
+    let starts = by_track(&samples).into_values().map(|rows| rows[0]["frame"].parse::<u32>().unwrap());
+    let starts: std::collections::BTreeSet<u32> = starts.collect();
+    assert!(starts.len() > 1 && starts.iter().all(|frame| [2, 12, 22].contains(frame)), "{starts:?}");
+}
+
+#[test]
+fn parameters_are_kept_with_the_run() {
+    let bench = Bench::new();
+    bench.synth("clip.y4m", 8, "");
+    bench.json("new p.honami clip.y4m");
+    bench.json("track p.honami --with org.honami.klt --set method=harris --set quality=0.05 --set radius=6");
+    bench.json("cluster p.honami --with movement --set linkage=average");
+    let (runs, clusterings) = (bench.log("p.honami", "run"), bench.log("p.honami", "clustering"));
+    assert_eq!((runs.len(), clusterings.len()), (1, 1));
+    let made = &runs[0]["provenance"];
+    assert_keys(
+        made,
+        "plugin_id plugin_version plugin_sha256 abi params seed input_revision sandbox simd date",
+    );
+    assert_eq!(made["plugin_id"], "org.honami.klt");
+    let params = &made["params"];
+    assert_eq!(
+        (&params["method"], &params["quality"], &params["radius"]),
+        (&"harris".into(), &0.05.into(), &6.into())
+    );
+    assert_eq!(params["levels"], 4, "what was not set is kept, too");
+    assert_eq!(clusterings[0]["provenance"]["params"]["linkage"], "average");
+    let text = bench.text("log p.honami");
+    for words in ["org.honami.klt", "method=harris", "radius=6", "project made", "linkage=average"] {
+        assert!(text.contains(words), "{words} is not in:\n{text}");
+    }
+}
+
+#[test]
+fn scripted_corrections_are_answered_and_undone() {
+    let bench = Bench::tracked();
+    bench.json("cluster p.honami");
+    let script = "\
+        key 0 5 20 30   # a remark\n\n\
+        undo\nredo\n\
+        add 3 10 11.5\n\
+        key 1 2 50 60\nclear 1 2\n\
+        delete 2 3\nrestore 3\n\
+        cut 2\n";
+    let said = bench.edit("p.honami", script).text();
+    let answers: Vec<&str> = said.lines().map(|line| line.split_once("  ").unwrap().1).collect();
+    assert_eq!(answers.len(), 9, "{said}");
+    for (answer, words) in answers.iter().zip([
+        "track 0: key-frame at 5",
+        "undo: track 0",
+        "redo: track 0",
+        "placed at frame 3 (10.0, 11.5)",
+        "track 1: key-frame at 2",
+        "track 1: key-frame at 2 cleared",
+        "2 tracks deleted",
+        "track 3 restored",
+        "cut into 2 groups",
+    ]) {
+        assert!(answer.contains(words), "{words} is not in {answer}");
+    }
+    let samples = bench.samples("p.honami");
+    let keys: Vec<_> = samples.iter().filter(|row| row["source"] == "key").collect();
+    let keys: Vec<_> =
+        keys.iter().map(|row| ["frame", "x", "y"].map(|column| row[column].as_str())).collect();
+    assert_eq!(keys, [["5", "20", "30"], ["3", "10", "11.5"]]);
+    let tracks = by_track(&samples);
+    assert!(!tracks.contains_key(&2) && tracks.contains_key(&3));
+    assert_eq!(bench.json("spectrum p.honami")["lines"][2]["subject"], "group 2");
+}
+
+#[test]
+fn a_script_of_corrections_ends_where_it_goes_wrong() {
+    let bench = Bench::tracked();
+    for (script, words) in [
+        ("key 0 3 20 30\nkey 999 3 10 10\ndelete 0\n", "line 2, key 999 3 10 10: there is no track 999"),
+        ("key 0 40 10 10", "in frame 40 is not in the clip of 160x120 pixels and 40 frames"),
+        ("add 3 500 10", "(500, 10) in frame 3 is not in the clip"),
+        ("add 3 nan 10", "(nan, 10) in frame 3 is not in the clip"),
+        ("add 3 a 10", "wanted a position in pixels, got a"),
+        ("delete", "this is no edit"),
+        ("delete 0 x", "wanted the track as a whole number, got x"),
+        ("clear 0 7", "track 0 has no key-frame at 7"),
+        ("restore 0", "track 0 is not deleted"),
+        ("cut 3", "no clustering is shown"),
+        ("redo", "nothing to redo"),
+        ("paint 3", "add FRAME X Y"),
+    ] {
+        let ran = bench.edit("p.honami", script);
+        assert_eq!(ran.code, Some(1), "{script}: {ran:?}");
+        assert!(ran.stderr.contains(words), "{script}: {words:?} is not in {:?}", ran.stderr);
+    }
+    let edits = bench.log("p.honami", "edit");
+    let last = edits.last().unwrap()["label"].as_str().unwrap();
+    assert!(
+        last.starts_with("track 0: key-frame at 3"),
+        "what came before is kept, and nothing after: {last}"
+    );
+}
+
+#[test]
+fn plugins_say_what_they_are_and_take() {
+    let bench = Bench::new();
+    let list = bench.json("plugin list");
+    let plugins = list["plugins"].as_array().unwrap();
+    for (name, kind) in [("klt", "tracker"), ("movement", "clusterer")] {
+        let plugin = plugins.iter().find(|plugin| plugin["short_name"] == name).unwrap();
+        assert_eq!((&plugin["kind"], &plugin["trust"]), (&kind.into(), &"shipped".into()));
+        let info = bench.json(&format!("plugin info {name}"));
+        assert_keys(&info, "id short_name kind version abi library sha256 interfaces params doc cite");
+        let text = bench.text(&format!("plugin info {}", info["id"].as_str().unwrap()));
+        for param in info["params"].as_array().unwrap() {
+            assert!(text.contains(param["id"].as_str().unwrap()), "{param} is not in:\n{text}");
+        }
+        assert!(bench.text("plugin list").contains(name));
+    }
+}
+
+#[test]
+fn doctor_manual_and_completions_know_every_command() {
+    let bench = Bench::new();
+    let doctor = bench.json("doctor");
+    for finding in doctor["findings"].as_array().unwrap() {
+        assert_keys(finding, "what there found adds advice");
+    }
+    bench.json("man pages");
+    let help = bench.text("--help");
+    let bash = bench.text("completions bash");
+    let commands =
+        "new track cluster edit compare spectrum export synth demo plugin log doctor completions man";
+    for command in commands.split(' ') {
+        assert!(help.contains(&format!("\n  {command} ")), "{command} is not in:\n{help}");
+        assert!(bash.contains(command), "{command} is not in the completions");
+        let page = fs::read_to_string(bench.path(&format!("pages/honami-{command}.1"))).unwrap();
+        assert!(page.contains(".SH NAME"), "{command}: {page}");
+        assert!(!bench.text(&format!("{command} --help")).is_empty());
+    }
+    for shell in ["zsh", "fish", "elvish", "powershell"] {
+        assert!(bench.text(&format!("completions {shell}")).contains("honami"));
+    }
+    assert!(bench.text("--version").starts_with("honami "));
+}
+
+#[test]
+fn the_demo_does_the_whole_job() {
+    let bench = Bench::new();
+    let demo = bench.json("demo --headless --folder demo");
+    assert_keys(&demo, "project clip truth tracks groups");
+    assert!(demo["tracks"].as_u64().unwrap() > 50 && demo["groups"].as_u64().unwrap() > 1, "{demo}");
+    assert_eq!(bench.json("demo --headless --folder demo"), demo, "a second demo finds its work done");
+    assert_eq!(bench.log("demo/shrub.honami", "run").len(), 1);
+}

@@ -1,0 +1,99 @@
+//! A run that is stopped, and one that is killed: what was tracked is kept, and nothing else is hurt.
+
+use std::process::{Child, Stdio};
+
+use honami_tests::{Bench, Ran, by_track};
+use rusqlite::{Connection, OpenFlags};
+use rustix::process::{Pid, Signal, kill_process};
+
+/// Frames of the clip: many more than are tracked before the signal comes.
+const N_FRAMES: u32 = 400;
+
+/// Frames that are kept at a time.
+const CHUNK: u64 = 64;
+
+/// A project with a short run and a correction in it, and a second run at work that has kept some frames.
+fn at_work() -> (Bench, Child) {
+    let bench = Bench::new();
+    bench.synth("clip.y4m", N_FRAMES, "--leaves 40");
+    bench.json("new p.honami clip.y4m");
+    bench.json("track p.honami --frames 0..8");
+    assert_eq!(bench.edit("p.honami", "key 0 3 20 30").code, Some(0));
+    // A large window makes every frame slow.
+    let mut command =
+        bench.command("track p.honami --detect --json --set radius=50 --set levels=1".split(' '));
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let database =
+        Connection::open_with_flags(bench.path("p.honami"), OpenFlags::SQLITE_OPEN_READ_ONLY).unwrap();
+    database.busy_timeout(std::time::Duration::from_secs(20)).unwrap();
+    let n_chunks =
+        || database.query_row("SELECT COUNT(*) FROM chunk", [], |row| row.get::<_, u32>(0)).unwrap();
+    while n_chunks() == 0 {
+        assert_eq!(child.try_wait().unwrap(), None, "the run has ended before it could be stopped");
+        std::thread::yield_now();
+    }
+    (bench, child)
+}
+
+/// The correction, as exported.
+fn assert_corrected(bench: &Bench) {
+    let samples = bench.samples("p.honami");
+    let keys: Vec<_> = samples.iter().filter(|row| row["source"] == "key").collect();
+    assert_eq!(keys.len(), 1);
+    assert_eq!(["track", "frame", "x", "y"].map(|column| keys[0][column].as_str()), ["0", "3", "20", "30"]);
+}
+
+#[test]
+fn a_run_that_is_stopped_keeps_its_frames() {
+    let (bench, child) = at_work();
+    kill_process(Pid::from_child(&child), Signal::INT).unwrap();
+    let output = child.wait_with_output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    let ran = Ran { stdout: text(output.stdout), stderr: text(output.stderr), code: output.status.code() };
+    let track = ran.json();
+    assert_eq!(track["stopped"], true);
+    let end = track["frames"][1].as_u64().unwrap();
+    assert!((CHUNK..u64::from(N_FRAMES)).contains(&end), "{track}");
+
+    let run = &bench.log("p.honami", "run")[1];
+    assert_eq!((&run["state"], &run["frames"]), (&"stopped: stopped".into(), &track["frames"]));
+    let samples = bench.samples("p.honami");
+    let n_frames = samples.iter().filter(|row| row["run"] == "2").map(|row| &row["frame"]);
+    assert_eq!(n_frames.collect::<std::collections::BTreeSet<_>>().len() as u64, end);
+    assert_corrected(&bench);
+    // What it showed is one edit.
+    assert_eq!(bench.edit("p.honami", "undo").code, Some(0));
+    assert!(bench.samples("p.honami").iter().all(|row| row["run"] != "2"));
+}
+
+#[test]
+fn a_run_that_is_killed_keeps_its_frames() {
+    let (bench, mut child) = at_work();
+    let before = bench.json("log p.honami");
+    child.kill().unwrap();
+    child.wait().unwrap();
+
+    // A reader sees it as it is, without writing.
+    assert_eq!(bench.log("p.honami", "run")[1]["state"], "interrupted");
+    assert_corrected(&bench);
+
+    // The next writer keeps its frames.
+    let ran = bench.edit("p.honami", "key 1 5 40 50");
+    assert!(ran.code == Some(0) && ran.stderr.contains("run 2 was interrupted at frame"), "{ran:?}");
+    let run = &bench.log("p.honami", "run")[1];
+    assert_eq!(run["state"], "interrupted");
+    let end = run["frames"][1].as_u64().unwrap();
+    assert!(end >= CHUNK && end % CHUNK == 0 && end < u64::from(N_FRAMES), "{run}");
+    let samples = bench.samples("p.honami");
+    for (id, track) in by_track(&samples) {
+        let of_run = track.iter().filter(|row| row["run"] == "2").count() as u64;
+        assert!([0, end].contains(&of_run), "track {id} is whole: {of_run} of {end} frames");
+    }
+    let edits = |log: &serde_json::Value| {
+        let lines = log["log"].as_array().unwrap().iter().filter(|line| line["what"] == "edit");
+        lines.cloned().collect::<Vec<_>>()
+    };
+    let now = edits(&bench.json("log p.honami"));
+    let before = edits(&before);
+    assert_eq!(now[..before.len()], before, "nothing that was done before is hurt");
+}

@@ -1,0 +1,159 @@
+//! Wrong input: one line that says what was wanted and what came, the right exit code, nothing left behind.
+
+use std::collections::BTreeSet;
+use std::fs;
+
+use honami_tests::Bench;
+
+/// The work failed.
+const FAILED: i32 = 1;
+/// The command line was not understood.
+const USAGE: i32 = 2;
+
+/// A command line, how it ends, and words that the error has.
+type Case = (&'static str, i32, &'static [&'static str]);
+
+const CASES: &[Case] = &[
+    // Projects and clips.
+    ("new q.honami missing.mp4", FAILED, &["no such file", "missing.mp4"]),
+    ("new q.honami empty", FAILED, &["no PNG, JPEG, TIFF or BMP image", "empty"]),
+    ("new q.honami points.csv", FAILED, &["not a video", "points.csv"]),
+    ("new q.honami cut.y4m", FAILED, &["cut.y4m"]),
+    ("new p.honami clip.y4m", FAILED, &["exists already", "choose another name", "p.honami"]),
+    ("new nowhere/q.honami clip.y4m", FAILED, &["nowhere/q.honami", "No such file"]),
+    ("new q.honami clip.y4m --fps 0", FAILED, &["frame rate", "positive", "0"]),
+    ("new q.honami", USAGE, &["<CLIP>"]),
+    ("log missing.honami", FAILED, &["cannot open the project", "missing.honami"]),
+    ("log text.honami", FAILED, &["not a honami project", "honami new", "text.honami"]),
+    ("track text.honami", FAILED, &["not a honami project"]),
+    ("export text.honami tracks out.csv", FAILED, &["not a honami project"]),
+    // Plugins and their parameters.
+    ("track p.honami --with nothing", FAILED, &["no tracker \"nothing\"", "there are:", "klt"]),
+    ("track p.honami --with movement", FAILED, &["no tracker \"movement\""]),
+    ("cluster p.honami --with klt", FAILED, &["no clusterer \"klt\"", "movement"]),
+    ("plugin info nothing", FAILED, &["no plugin \"nothing\"", "there are:"]),
+    ("track p.honami --set foo=1", FAILED, &["no parameter \"foo\"", "there are: radius"]),
+    ("track p.honami --set radius", FAILED, &["name=value"]),
+    ("track p.honami --set radius=wide", FAILED, &["radius", "whole number, 1 to 100 (px)", "wide"]),
+    ("track p.honami --set radius=0", FAILED, &["radius", "1 to 100", "\"0\""]),
+    ("track p.honami --set method=fast", FAILED, &["one of shi-tomasi, harris", "fast"]),
+    // Frames, areas and points.
+    ("track p.honami --frames 0..41", FAILED, &["0..41", "0..40"]),
+    ("track p.honami --frames 5..5", USAGE, &["A..B", "5..5"]),
+    ("track p.honami --frames all", USAGE, &["A..B", "all"]),
+    ("track p.honami --every 0", USAGE, &["--every"]),
+    ("track p.honami --detect --mask small.y4m", FAILED, &["mask", "64", "48", "160", "120", "small.y4m"]),
+    ("track p.honami --detect --mask missing.png", FAILED, &["missing.png"]),
+    ("track p.honami --region 1,2,3", USAGE, &["x,y,w,h", "1,2,3"]),
+    ("track p.honami --mask small.y4m --region 1,2,3,4", USAGE, &["--mask", "--region"]),
+    ("track p.honami --points outside.csv", FAILED, &["point 0", "(500, 20)", "160x120"]),
+    ("track p.honami --points late.csv", FAILED, &["point 1", "frame 40", "40 frames"]),
+    ("track p.honami --points columns.csv", FAILED, &["columns.csv line 1", "id,x,y", "`y` is missing"]),
+    ("track p.honami --points words.csv", FAILED, &["words.csv line 2", "column `x`", "`a`"]),
+    ("track p.honami --points missing.csv", FAILED, &["missing.csv"]),
+    ("track p.honami --points points.csv --detect", USAGE, &["--points", "--detect"]),
+    // Results.
+    ("cluster p.honami --groups 0", FAILED, &["at least 1 group", "0"]),
+    ("cluster bare.honami", FAILED, &["no tracks yet", "honami track"]),
+    ("export p.honami tracks out.txt", FAILED, &[".csv", "out.txt"]),
+    ("export p.honami tracks nowhere/out.csv", FAILED, &["nowhere/out.csv"]),
+    ("export bare.honami tracks out.csv", FAILED, &["no tracks yet", "honami track"]),
+    ("export p.honami pictures out.csv", USAGE, &["pictures", "tracks"]),
+    ("spectrum p.honami --track 9999", FAILED, &["track 9999"]),
+    ("spectrum points.csv", FAILED, &["points.csv", "`track` is missing"]),
+    ("spectrum bare.honami", FAILED, &["no tracks yet"]),
+    ("compare clip.y4m", FAILED, &["no points", "--truth or --points"]),
+    ("compare clip.y4m --truth missing.csv", FAILED, &["missing.csv"]),
+    ("compare clip.y4m --truth points.csv", FAILED, &["points.csv line 1"]),
+    // Generated clips.
+    ("synth clip.y4m", FAILED, &["clip.y4m", "choose another name"]),
+    ("synth out.gif", FAILED, &[".mp4, .y4m or a folder", "out.gif"]),
+    ("synth out.y4m --size 1x1", USAGE, &["WxH", "1x1"]),
+    ("synth out.y4m --frames 1", USAGE, &["--frames"]),
+    ("synth out.y4m --wind gale", USAGE, &["gale", "storm"]),
+    // Anything else.
+    ("trak p.honami", USAGE, &["p.honami"]),
+    ("doctor --loud", USAGE, &["--loud"]),
+];
+
+fn files(bench: &Bench) -> BTreeSet<String> {
+    let name = |entry: std::io::Result<fs::DirEntry>| entry.unwrap().file_name().into_string().unwrap();
+    fs::read_dir(bench.path("")).unwrap().map(name).collect()
+}
+
+#[test]
+fn wrong_input_is_told_in_one_line_and_leaves_nothing_behind() {
+    let bench = Bench::tracked();
+    bench.json("new bare.honami clip.y4m");
+    bench.json("synth small.y4m --size 64x48 --frames 2");
+    fs::create_dir(bench.path("empty")).unwrap();
+    let clip = fs::read(bench.path("clip.y4m")).unwrap();
+    fs::write(bench.path("cut.y4m"), &clip[..30]).unwrap();
+    for (name, text) in [
+        ("text.honami", "dear diary"),
+        ("points.csv", "id,x,y\n0,10,10\n"),
+        ("outside.csv", "id,x,y\n0,500,20\n"),
+        ("late.csv", "id,x,y,frame\n0,20,20,3\n1,20,20,40\n"),
+        ("columns.csv", "id,x\n0,500\n"),
+        ("words.csv", "id,x,y\n0,a,20\n"),
+    ] {
+        fs::write(bench.path(name), text).unwrap();
+    }
+    let (before, log) = (files(&bench), bench.json("log p.honami"));
+    for &(line, code, words) in CASES {
+        let ran = bench.line(line);
+        assert_eq!(ran.code, Some(code), "honami {line}: {ran:?}");
+        assert_eq!(ran.stdout, "", "honami {line}");
+        for word in words {
+            assert!(ran.stderr.contains(word), "honami {line}: {word:?} is not in {:?}", ran.stderr);
+        }
+        if code == FAILED {
+            assert!(ran.stderr.starts_with("honami: ") && ran.stderr.lines().count() == 1, "{line}: {ran:?}");
+        }
+        assert_eq!(files(&bench), before, "honami {line}");
+    }
+    assert_eq!(bench.json("log p.honami"), log, "the project is as it was");
+}
+
+#[test]
+fn errors_never_tell_the_same_cause_twice() {
+    let bench = Bench::new();
+    for line in ["log missing.honami", "compare missing.y4m --points missing.csv", "spectrum missing.csv"] {
+        let told = bench.line(line).stderr;
+        assert_eq!(told.matches("o such file").count(), 1, "honami {line}: {told}");
+    }
+}
+
+#[test]
+fn a_reader_that_goes_away_is_no_failure() {
+    let bench = Bench::new();
+    let mut child =
+        bench.command(["completions", "bash"]).stdout(std::process::Stdio::piped()).spawn().unwrap();
+    drop(child.stdout.take());
+    assert_eq!(child.wait().unwrap().code(), Some(0));
+}
+
+#[test]
+fn a_clip_is_found_beside_its_moved_project_and_never_guessed() {
+    let bench = Bench::tracked();
+    fs::create_dir(bench.path("moved")).unwrap();
+    for name in ["p.honami", "clip.y4m"] {
+        fs::rename(bench.path(name), bench.path("moved").join(name)).unwrap();
+    }
+    bench.json("track moved/p.honami --frames 0..5");
+
+    bench.json("synth moved/other.y4m --size 160x120 --frames 40 --seed 9");
+    fs::rename(bench.path("moved/other.y4m"), bench.path("moved/clip.y4m")).unwrap();
+    let ran = bench.line("track moved/p.honami");
+    assert_eq!(ran.code, Some(1));
+    assert!(
+        ran.stderr.contains("not the project's clip") && ran.stderr.contains("SHA-256"),
+        "{}",
+        ran.stderr
+    );
+
+    fs::remove_file(bench.path("moved/clip.y4m")).unwrap();
+    let ran = bench.line("track moved/p.honami");
+    assert_eq!(ran.code, Some(1));
+    assert!(ran.stderr.contains("clip.y4m") && ran.stderr.contains("say where it is"), "{}", ran.stderr);
+}
