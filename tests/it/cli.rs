@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use honami_tests::{Bench, by_track, rows};
+use honami_tests::{Bench, Row, by_track, rows, skipped};
 use serde_json::Value;
 
 /// The answer has these keys; more may be added to it.
@@ -23,7 +23,7 @@ fn clips() -> Vec<&'static str> {
     if has_ffmpeg {
         clips.push("clip.mp4");
     } else {
-        eprintln!("skipped: needs ffmpeg (clip.mp4)");
+        skipped("ffmpeg (clip.mp4)");
     }
     clips
 }
@@ -133,24 +133,25 @@ fn features_come_from_where_they_are_asked_for() {
     bench.synth("clip.y4m", 12, "");
     fs::write(bench.path("points.csv"), "id,x,y,frame\n7,80,60,0\n9,40.5,30.25,3\n").unwrap();
     write_mask(&bench.path("mask.bmp"));
-    let position = |row: &honami_tests::Row| [&row["x"], &row["y"]].map(|v| v.parse::<f64>().unwrap());
-    // Options, and where the features may begin.
-    let table: [(&str, fn([f64; 2]) -> bool); 4] = [
-        ("--detect", |_| true),
-        ("--detect klt --region 20,10,60,50", |[x, y]| {
-            (20.0..80.0).contains(&x) && (10.0..60.0).contains(&y)
-        }),
-        ("--mask mask.bmp", |[x, _]| x >= 80.0),
-        ("--points points.csv", |at| at == [80.0, 60.0] || at == [40.5, 30.25]),
+    let inside = |row: &Row, [x, y, w, h]: [f64; 4]| {
+        let at = |column: &str| row[column].parse::<f64>().unwrap();
+        (x..x + w).contains(&(at("x") + 0.5)) && (y..y + h).contains(&(at("y") + 0.5))
+    };
+    // Options, and the rectangle of pixels in which all features begin; a pixel reaches half a pixel around its centre.
+    let table = [
+        ("--detect", [0.0, 0.0, 160.0, 120.0]),
+        ("--detect klt --region 20,10,60,50", [20.0, 10.0, 60.0, 50.0]),
+        ("--mask mask.bmp", [80.0, 0.0, 80.0, 120.0]),
+        ("--points points.csv", [40.0, 30.0, 41.0, 31.0]),
     ];
     let mut n_found = Vec::new();
-    for (options, allowed) in table {
+    for (options, area) in table {
         bench.json("new p.honami clip.y4m");
         bench.json(&format!("track p.honami {options}"));
         let samples = bench.samples("p.honami");
         let tracks = by_track(&samples);
         for rows in tracks.values() {
-            assert!(allowed(position(rows[0])), "{options}: {:?}", rows[0]);
+            assert!(inside(rows[0], area), "{options}: {:?}", rows[0]);
         }
         if options.starts_with("--points") {
             let starts: Vec<_> = tracks.iter().map(|(id, rows)| (*id, rows[0]["frame"].as_str())).collect();
@@ -211,72 +212,6 @@ fn parameters_are_kept_with_the_run() {
     for words in ["org.honami.klt", "method=harris", "radius=6", "project made", "linkage=average"] {
         assert!(text.contains(words), "{words} is not in:\n{text}");
     }
-}
-
-#[test]
-fn scripted_corrections_are_answered_and_undone() {
-    let bench = Bench::tracked();
-    bench.json("cluster p.honami");
-    let script = "\
-        key 0 5 20 30   # a remark\n\n\
-        undo\nredo\n\
-        add 3 10 11.5\n\
-        key 1 2 50 60\nclear 1 2\n\
-        delete 2 3\nrestore 3\n\
-        cut 2\n";
-    let said = bench.edit("p.honami", script).text();
-    let answers: Vec<&str> = said.lines().map(|line| line.split_once("  ").unwrap().1).collect();
-    assert_eq!(answers.len(), 9, "{said}");
-    for (answer, words) in answers.iter().zip([
-        "track 0: key-frame at 5",
-        "undo: track 0",
-        "redo: track 0",
-        "placed at frame 3 (10.0, 11.5)",
-        "track 1: key-frame at 2",
-        "track 1: key-frame at 2 cleared",
-        "2 tracks deleted",
-        "track 3 restored",
-        "cut into 2 groups",
-    ]) {
-        assert!(answer.contains(words), "{words} is not in {answer}");
-    }
-    let samples = bench.samples("p.honami");
-    let keys: Vec<_> = samples.iter().filter(|row| row["source"] == "key").collect();
-    let keys: Vec<_> =
-        keys.iter().map(|row| ["frame", "x", "y"].map(|column| row[column].as_str())).collect();
-    assert_eq!(keys, [["5", "20", "30"], ["3", "10", "11.5"]]);
-    let tracks = by_track(&samples);
-    assert!(!tracks.contains_key(&2) && tracks.contains_key(&3));
-    assert_eq!(bench.json("spectrum p.honami")["lines"][2]["subject"], "group 2");
-}
-
-#[test]
-fn a_script_of_corrections_ends_where_it_goes_wrong() {
-    let bench = Bench::tracked();
-    for (script, words) in [
-        ("key 0 3 20 30\nkey 999 3 10 10\ndelete 0\n", "line 2, key 999 3 10 10: there is no track 999"),
-        ("key 0 40 10 10", "in frame 40 is not in the clip of 160x120 pixels and 40 frames"),
-        ("add 3 500 10", "(500, 10) in frame 3 is not in the clip"),
-        ("add 3 nan 10", "(nan, 10) in frame 3 is not in the clip"),
-        ("add 3 a 10", "wanted a position in pixels, got a"),
-        ("delete", "this is no edit"),
-        ("delete 0 x", "wanted the track as a whole number, got x"),
-        ("clear 0 7", "track 0 has no key-frame at 7"),
-        ("restore 0", "track 0 is not deleted"),
-        ("cut 3", "no clustering is shown"),
-        ("redo", "nothing to redo"),
-        ("paint 3", "add FRAME X Y"),
-    ] {
-        let ran = bench.edit("p.honami", script);
-        assert_eq!(ran.code, Some(1), "{script}: {ran:?}");
-        assert!(ran.stderr.contains(words), "{script}: {words:?} is not in {:?}", ran.stderr);
-    }
-    let edits = bench.log("p.honami", "edit");
-    let last = edits.last().unwrap()["label"].as_str().unwrap();
-    assert!(
-        last.starts_with("track 0: key-frame at 3"),
-        "what came before is kept, and nothing after: {last}"
-    );
 }
 
 #[test]

@@ -20,7 +20,7 @@ fn project(name: &str, options: &str) -> Option<(Bench, Value)> {
 fn n_kept(samples: &[Row], n_frames: usize) -> usize {
     let is_good = |row: &&Row| row["status"] == "1" && row["fb"].parse::<f64>().is_ok_and(|fb| fb < 1.0);
     let is_kept = |rows: &&Vec<&Row>| {
-        rows.len() == n_frames && rows[0]["status"] == "1" && rows[1..].iter().all(|row| is_good(row))
+        rows.len() == n_frames && rows[0]["status"] == "1" && rows[1..].iter().all(is_good)
     };
     by_track(samples).values().filter(is_kept).count()
 }
@@ -36,7 +36,7 @@ fn leaves_in_wind_are_kept_over_the_whole_clip() {
             (&new["frames"], &new["width"], &new["height"]),
             (&n_frames.into(), &size[0].into(), &size[1].into())
         );
-        assert_eq!((&new["fps"], &new["variable_rate"]), (&25.0.into(), &false.into()));
+        assert!((new["fps"].as_f64().unwrap() - 25.0).abs() < 1e-6 && new["variable_rate"] == false, "{new}");
         let track = bench.json(&format!("track p.honami {HARRIS}"));
         assert!(track["tracks"].as_u64().unwrap() <= 400, "{name}: {track}");
         let kept = n_kept(&bench.samples("p.honami"), n_frames);

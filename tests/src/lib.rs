@@ -54,12 +54,17 @@ pub fn root() -> &'static Path {
 #[must_use]
 pub fn data(name: &str) -> Option<PathBuf> {
     let Some(folder) = std::env::var_os("HONAMI_DATA") else {
-        eprintln!("skipped: needs HONAMI_DATA ({name})");
+        skipped(&format!("HONAMI_DATA ({name})"));
         return None;
     };
     let path = Path::new(&folder).join(name);
     assert!(path.exists(), "HONAMI_DATA has no {name}");
     Some(path)
+}
+
+/// Says that a test, or a part of it, is skipped for want of something.
+pub fn skipped(wanted: &str) {
+    eprintln!("skipped: needs {wanted}");
 }
 
 /// What a run of the program printed and how it ended.

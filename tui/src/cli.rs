@@ -95,7 +95,7 @@ fn run(command: Command, common: &Common) -> anyhow::Result<Option<Answer>> {
 /// Opens the terminal UI on a project, or on a new project made from a clip.
 fn open(path: Option<&Path>, common: &Common) -> anyhow::Result<()> {
     let Some(path) = path else {
-        return crate::app::run(None, &options(common));
+        anyhow::bail!("a project or a clip is wanted: `honami CLIP` opens a clip, `honami demo` makes one");
     };
     let is_project = path.extension().is_some_and(|e| e == "honami");
     let project = if is_project { path.to_owned() } else { project::name_for(path) };
@@ -104,7 +104,7 @@ fn open(path: Option<&Path>, common: &Common) -> anyhow::Result<()> {
     } else {
         project::make(&project, path, None, common)?
     };
-    crate::app::run(Some(session), &options(common))
+    crate::app::run(session)
 }
 
 fn options(common: &Common) -> SessionOptions {

@@ -88,7 +88,8 @@ fn visible_at_first(truth: &Path) -> anyhow::Result<String> {
 }
 
 fn cluster(args: &[&str]) -> anyhow::Result<()> {
-    example("honami-motion", "cluster_bench", args).run()
+    example("honami-motion", "cluster_bench", args).run()?;
+    Step::new("python3").arg("tests/peers/linkage_scipy.py").run()
 }
 
 fn media(args: &[&str]) -> anyhow::Result<()> {

@@ -1,4 +1,4 @@
-//! What honami needs from the system: a C++ compiler to build, ffmpeg for most videos.
+//! What honami needs from the system: a C compiler to build, ffmpeg for most videos.
 
 use std::process::{Command, Stdio};
 
@@ -6,13 +6,12 @@ use anyhow::ensure;
 
 use crate::shell::Step;
 
-/// Makes sure that the bundled C and C++ sources (SQLite, openh264) can be built.
+/// Makes sure that the linker is there, and that the bundled C source of SQLite can be built.
 pub(crate) fn need_compiler() -> anyhow::Result<()> {
-    let there = || answers("cc") && answers("c++");
-    if !there() {
-        install("g++");
+    if !answers("cc") {
+        install("build-essential");
     }
-    ensure!(there(), "a C and C++ compiler is needed: install it with `apt-get install g++`");
+    ensure!(answers("cc"), "a C compiler is needed: install it with `apt-get install build-essential`");
     Ok(())
 }
 

@@ -1,6 +1,7 @@
 //! Renders one frame of a scene into a PNG: `look OUT.png [calm|wind|storm] [demo|benchmark] [frame] [seed]`.
 
 use std::error::Error;
+use std::io::Write;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -29,13 +30,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     image::RgbImage::from_fn(picture.width, picture.height, |x, y| image::Rgb(planes.rgb(x, y)))
         .save(&out)?;
     let seen = |frame: usize| scene.truth().leaves.iter().filter(|leaf| leaf.path[frame].visible).count();
-    eprintln!(
+    writeln!(
+        std::io::stdout(),
         "{} leaves ({} seen), {} branches, {:.3} px a frame; grown in {grown_ms:.0} ms, \
          {frame_ms:.1} ms a frame ({bytes} bytes)",
         scene.truth().leaves.len(),
         seen(frame as usize),
         scene.truth().branches.len(),
         scene.mean_step_px(),
-    );
+    )?;
     Ok(())
 }

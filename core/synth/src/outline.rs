@@ -57,9 +57,13 @@ impl Outline for LeafOutline {
         if u < -1.0 {
             return (PETIOLE_PX - off_px).min(x + self.half_length_px + self.petiole_px);
         }
-        let (round, taper) = (1.0 - u * u, 1.0 - self.ovate * u);
+        // Far beyond the tip both factors would be negative, and their product a ghost of the leaf.
+        let (round, taper) = (1.0 - u * u, (1.0 - self.ovate * u).max(0.2));
         let slope = (-2.0 * u * taper - self.ovate * round) * self.half_width_px / self.half_length_px;
-        (round * taper * self.half_width_px - off_px) / (1.0 + slope * slope).sqrt()
+        let half_px = round * taper * self.half_width_px;
+        let steep = (1.0 + slope * slope).sqrt();
+        // Where the blade is thinner than a pixel its far edge takes from the pixel too.
+        (half_px - off_px) / steep + ((half_px + off_px) / steep - 0.5).min(0.0)
     }
 }
 

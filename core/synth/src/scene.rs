@@ -90,17 +90,26 @@ fn time_secs(settings: &Settings, frame: u32) -> f64 {
 
 /// The scale of the sways that meets the level, and the step that it gives.
 ///
-/// Displacement is all but proportional to the scale, so a few proportional corrections meet the level.
+/// Displacement is all but proportional to the scale, so a few proportional corrections meet the level;
+/// where a leaf or two over a few frames make it a crooked function, halving what brackets it does.
 fn fit_scale(settings: &Settings, plant: &Plant, wind: &Wind) -> Result<(f64, f64), SynthError> {
     let wanted_px = settings.level.step_px(settings.height, settings.fps);
+    let (mut low, mut high) = (0.0, f64::INFINITY);
     let mut scale = 0.02;
     let mut reached_px = 0.0;
-    for _ in 0..12 {
+    for attempt in 0..40 {
         reached_px = mean_step_px(settings, plant, wind, scale);
         if (reached_px / wanted_px - 1.0).abs() < 1e-3 {
             return Ok((scale, reached_px));
         }
-        scale *= wanted_px / reached_px;
+        if reached_px < wanted_px {
+            low = scale;
+        } else {
+            high = scale;
+        }
+        let proportional = scale * wanted_px / reached_px;
+        let usable = attempt < 6 && low < proportional && proportional < high;
+        scale = if usable || high.is_infinite() { proportional } else { 0.5 * (low + high) };
     }
     Err(SynthError::Level { wanted_px, reached_px })
 }

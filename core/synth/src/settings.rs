@@ -155,7 +155,7 @@ pub enum SynthError {
     Lighting(f64),
     /// The plant cannot move as far as the level asks.
     #[error(
-        "this plant cannot sway by {wanted_px:.2} px a frame (it came to {reached_px:.2}); \
+        "this plant cannot sway by {wanted_px:.4} px a frame (it came to {reached_px:.4}); \
          use more frames, more leaves or another seed"
     )]
     Level {

@@ -117,12 +117,13 @@ fn the_smallest_and_shortest_scenes_work() {
 
 #[test]
 fn a_setting_out_of_range_is_named() {
-    let bad = |change: fn(&mut Settings)| {
+    type Change = fn(&mut Settings);
+    let bad = |change: Change| {
         let mut settings = small();
         change(&mut settings);
         Scene::new(&settings).unwrap_err().to_string()
     };
-    let cases: [(fn(&mut Settings), &str); 9] = [
+    let cases: [(Change, &str); 9] = [
         (|s| s.width = 16, "32x32 to 8192x8192 pixels, got 16x120"),
         (|s| s.height = 9000, "got 160x9000"),
         (|s| s.n_frames = 1, "2 to 20000 frames, got 1"),
@@ -137,6 +138,14 @@ fn a_setting_out_of_range_is_named() {
         let error = bad(change);
         assert!(error.contains(said), "{error:?} lacks {said:?}");
     }
+}
+
+#[test]
+fn a_plant_that_cannot_move_as_far_says_so() {
+    // One leaf, one step of a millisecond, at the turning point of its sway.
+    let tiny = Settings { seed: 22, width: 33, height: 32, n_leaves: 1, n_frames: 2, ..small() };
+    let error = Scene::new(&Settings { fps: 1000.0, level: Level::Storm, ..tiny }).unwrap_err();
+    assert!(matches!(error, SynthError::Level { .. }) && error.to_string().contains("use more frames"));
 }
 
 #[test]

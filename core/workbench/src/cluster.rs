@@ -63,7 +63,7 @@ pub struct ClusterOutcome {
 /// Loads the clusterer and gathers the shown tracks.
 ///
 /// # Errors
-/// [`WorkbenchError::NoTracks`], and when the plugin or its parameters are not what they must be.
+/// [`WorkbenchError::NoTracks`], [`WorkbenchError::Groups`], and when the plugin or its parameters are not what they must be.
 pub fn prepare(session: &Session, request: &ClusterRequest) -> Result<ClusterJob, WorkbenchError> {
     let plugin = session.registry.find(Kind::Clusterer, &request.plugin)?;
     let shown = session.project.shown_all()?;
@@ -74,12 +74,15 @@ pub fn prepare(session: &Session, request: &ClusterRequest) -> Result<ClusterJob
     tracks.max_threads = threads();
     tracks.seed = SEED;
     for (track, span) in shown.iter().filter(|(_, span)| moving(span)) {
-        let samples =
-            span.samples.iter().map(|sample| (sample.x, sample.y, sample.status));
+        let samples = span.samples.iter().map(|sample| (sample.x, sample.y, sample.status));
         tracks.push(track.0, i64::from(span.first_frame), samples);
     }
-    if tracks.is_empty() {
+    let n_tracks = tracks.len();
+    if n_tracks == 0 {
         return Err(WorkbenchError::NoTracks);
+    }
+    if let Some(groups) = request.groups.filter(|&k| k == 0 || k as usize > n_tracks) {
+        return Err(WorkbenchError::Groups { groups, n_tracks });
     }
     let (clusterer, origin) =
         honami_host::Host::new().clusterer(plugin, &request.params, &CallContext::silent())?;

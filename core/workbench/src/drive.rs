@@ -267,7 +267,8 @@ impl Board {
                     self.last.insert(row.id, Point { id: row.id, x: row.x, y: row.y });
                 }
                 let quality = Quality { fb_px: row.fb, ncc: row.ncc };
-                let sample = Sample { x: row.x, y: row.y, status: row.status, source: Source::Tracked, quality };
+                let sample =
+                    Sample { x: row.x, y: row.y, status: row.status, source: Source::Tracked, quality };
                 rows.push((TrackId(row.id), sample));
             }
             self.answered.insert(frame, rows);

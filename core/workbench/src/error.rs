@@ -83,7 +83,7 @@ pub enum WorkbenchError {
         n_frames: u32,
     },
     /// The mask is not as large as the clip.
-    #[error("the mask is {came:?} pixels, the clip {wanted:?}: {}", path.display())]
+    #[error("the mask is {}x{} pixels, the clip {}x{}: {}", came.0, came.1, wanted.0, wanted.1, path.display())]
     MaskSize {
         /// Width and height of the clip.
         wanted: (u32, u32),
@@ -91,6 +91,17 @@ pub enum WorkbenchError {
         came: (u32, u32),
         /// The mask.
         path: PathBuf,
+    },
+    /// No pixel is left to detect in.
+    #[error("no pixel of the clip lies in the region or the mask: features cannot be detected there")]
+    EmptyArea,
+    /// A hierarchy cannot be cut into that many groups.
+    #[error("{n_tracks} tracks make 1 to {n_tracks} groups, not {groups}")]
+    Groups {
+        /// Groups asked for.
+        groups: u32,
+        /// Tracks that can be grouped.
+        n_tracks: usize,
     },
     /// There are no tracks.
     #[error("the project has no tracks yet: run `honami track` first")]

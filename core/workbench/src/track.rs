@@ -118,6 +118,9 @@ pub fn prepare(session: &mut Session, request: &TrackRequest) -> Result<TrackJob
     let registry = Arc::clone(&session.registry);
     let plugin = registry.find(Kind::Tracker, &request.plugin)?;
     let mask = mask(&request.area, clip)?;
+    if mask.as_ref().is_some_and(|pixels| pixels.iter().all(|&pixel| pixel == 0)) {
+        return Err(WorkbenchError::EmptyArea);
+    }
     let (seeds, detect) = match &request.points {
         PointSource::Existing => (existing(session, &request.frames)?, None),
         PointSource::Given(seeds) => (given(session, seeds)?, None),

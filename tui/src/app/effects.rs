@@ -46,7 +46,8 @@ impl World {
         }
         state.plugins = self.session.registry.plugins().iter().filter_map(plugin).collect();
         state.n_ready = self.session.media.n_ready();
-        let notes = self.session.media.notes();
+        let mut notes = self.session.media.notes().to_vec();
+        notes.extend(state.read_only.iter().map(|holder| format!("read only: {holder} holds this project")));
         if !notes.is_empty() {
             state.notice = Some(Notice { text: notes.join(" · "), is_error: false });
         }

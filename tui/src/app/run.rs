@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use anyhow::Context as _;
-use honami_workbench::session::{Session, SessionOptions};
+use honami_workbench::session::Session;
 
 use super::effects::World;
 use super::layout::{Layout, Lens};
@@ -25,10 +25,7 @@ const LINK_TICK: Duration = Duration::from_secs(1);
 ///
 /// # Errors
 /// When there is no terminal, or the project cannot be read.
-pub fn run(session: Option<Session>, _options: &SessionOptions) -> anyhow::Result<()> {
-    let Some(session) = session else {
-        anyhow::bail!("a project or a clip is wanted: `honami CLIP` opens a clip, `honami demo` makes one");
-    };
+pub fn run(session: Session) -> anyhow::Result<()> {
     let mut screen = Screen::open(&log_path()).context("the terminal UI cannot start")?;
     let mut world = World::new(session, screen.waker());
     let mut app = App {

@@ -121,10 +121,10 @@ pub(super) struct Track {
     #[command(flatten)]
     pub(super) plugin: WithPlugin,
     /// Let this tracker choose the features (default: the project's own, where it has any).
-    #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = "", conflicts_with = "points")]
+    #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = "")]
     pub(super) detect: Option<String>,
     /// Features from a table `id,x,y[,frame]`.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["detect", "mask", "region", "every"])]
     pub(super) points: Option<PathBuf>,
     /// Image whose black pixels get no features.
     #[arg(long, value_name = "FILE", conflicts_with = "region")]
@@ -228,6 +228,7 @@ pub(super) struct Synth {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[expect(clippy::enum_variant_names, reason = "wind is the word for its middle level, too")]
 pub(super) enum Wind {
     /// 1.5 px per frame.
     Calm,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use honami_workbench::compare::{self, Contestant, Row};
 use honami_workbench::drive::Seed;
 use honami_workbench::media::{self, Media, OpenOptions};
-use honami_workbench::plugins::{Kind, Registry, Values};
+use honami_workbench::plugins::{Kind, Param, Registry, Values};
 use serde_json::json;
 
 use super::args::{Common, Compare};
@@ -26,6 +26,9 @@ pub(super) fn compare(args: &Compare, common: &Common) -> anyhow::Result<Answer>
     );
     let none = args.with.is_empty() && args.tracks.is_empty();
     let names = if none { vec![track::DEFAULT.to_owned()] } else { args.with.clone() };
+    if let (Some(first), Some(stray)) = (names.first(), stray(&registry, &names, &args.set)?) {
+        track::values(&registry, Kind::Tracker, first, &[stray])?;
+    }
     let trackers = names.into_iter().map(|name| {
         let values = values(&registry, &name, &args.set)?;
         Ok(Contestant::Tracker(name, values))
@@ -53,13 +56,23 @@ fn open(args: &Compare, common: &Common) -> anyhow::Result<(Arc<Media>, Vec<Seed
     Ok((media, Vec::new(), Arc::new(Registry::scan(&common.plugins))))
 }
 
-/// `--set` for the trackers that have such a parameter; one that none has is an error of the first.
+/// `--set` for a tracker: those of its parameters that are set.
 fn values(registry: &Registry, name: &str, set: &[String]) -> anyhow::Result<Values> {
     let params = &registry.find(Kind::Tracker, name)?.params;
-    let known =
-        |text: &&String| params.iter().any(|p| text.split_once('=').is_some_and(|(id, _)| id.trim() == p.id));
-    let set: Vec<String> = set.iter().filter(known).cloned().collect();
+    let set: Vec<String> = set.iter().filter(|text| has(params, text)).cloned().collect();
     track::values(registry, Kind::Tracker, name, &set)
+}
+
+/// A `--set` that no tracker has.
+fn stray(registry: &Registry, names: &[String], set: &[String]) -> anyhow::Result<Option<String>> {
+    let plugins = names.iter().map(|name| registry.find(Kind::Tracker, name));
+    let plugins = plugins.collect::<Result<Vec<_>, _>>()?;
+    Ok(set.iter().find(|text| !plugins.iter().any(|plugin| has(&plugin.params, text))).cloned())
+}
+
+fn has(params: &[Param], text: &str) -> bool {
+    let id = text.split('=').next().unwrap_or_default().trim();
+    params.iter().any(|param| param.id == id)
 }
 
 fn describe(rows: &[Row], n_points: usize) -> Answer {

@@ -67,7 +67,12 @@ fn transaction(project: &mut Project, words: &[&str]) -> anyhow::Result<Transact
         }
         ["delete", ref tracks @ ..] if !tracks.is_empty() => Transaction::delete_tracks(set(tracks)?),
         ["restore", ref tracks @ ..] if !tracks.is_empty() => Transaction::restore_tracks(set(tracks)?),
-        ["cut", k] => Transaction::set_cut(whole("number of groups", k)?),
+        ["cut", k] => {
+            let k = whole("number of groups", k)?;
+            let n_tracks = project.grouping()?.map_or(u32::MAX as usize, |grouping| grouping.group_of.len());
+            ensure!(k as usize <= n_tracks, "{n_tracks} tracks make 1 to {n_tracks} groups, not {k}");
+            Transaction::set_cut(k)
+        }
         _ => bail!("this is no edit\n{EDITS}"),
     })
 }

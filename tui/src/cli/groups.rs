@@ -13,7 +13,6 @@ const DEFAULT: &str = "movement";
 
 /// Clusters, and shows the groups.
 pub(super) fn cluster(args: &Cluster, common: &Common) -> anyhow::Result<Answer> {
-    anyhow::ensure!(args.groups != Some(0), "a hierarchy is cut into at least 1 group, not into 0");
     let mut session = session(&args.project, common)?;
     let plugin = args.plugin.with.as_deref().unwrap_or(DEFAULT).to_owned();
     let params = track::values(&session.registry, Kind::Clusterer, &plugin, &args.plugin.set)?;

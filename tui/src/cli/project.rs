@@ -11,6 +11,11 @@ use super::{Answer, look, options};
 
 /// Makes a project of a clip and says what the clip is.
 pub(super) fn new(args: &New, common: &Common) -> anyhow::Result<Answer> {
+    anyhow::ensure!(
+        args.project.extension().is_some_and(|e| e == "honami"),
+        "a project is a .honami file: {}",
+        args.project.display()
+    );
     let session = make(&args.project, &args.clip, args.fps, common)?;
     Ok(describe(&session))
 }

@@ -91,6 +91,6 @@ pub(super) fn demo(args: &Demo, common: &Common) -> anyhow::Result<Option<Answer
             json!({ "project": file, "clip": clip, "truth": truth, "tracks": n_tracks, "groups": n_groups });
         return Ok(Some(Answer { json, text }));
     }
-    crate::app::run(Some(session), &options(common))?;
+    crate::app::run(session)?;
     Ok(None)
 }

@@ -66,9 +66,11 @@ fn points(args: &Track, session: &Session) -> anyhow::Result<PointSource> {
     if let Some(path) = &args.points {
         return Ok(PointSource::Given(read_points(path)?));
     }
-    // A project without a track has nothing else to offer than detection.
+    // Whoever says where or how often to detect wants detection; a project without a track has nothing else.
+    let detect =
+        args.detect.is_some() || args.mask.is_some() || args.region.is_some() || args.every.is_some();
     let none_yet = session.project.document().tracks().next().is_none();
-    if args.detect.is_some() || none_yet { Ok(PointSource::Detect) } else { Ok(PointSource::Existing) }
+    if detect || none_yet { Ok(PointSource::Detect) } else { Ok(PointSource::Existing) }
 }
 
 fn area(args: &Track) -> Area {

@@ -123,8 +123,8 @@ impl<'a> Grower<'a> {
     fn fork(&mut self, carrier: usize, tip: Point) -> f64 {
         let local = self.frames[carrier].into_local(tip);
         let length_px = self.branches[carrier].length_px;
-        let setback_px = (0.9 * local.y.abs()).max(0.2 * self.height_px);
-        ((local.x - setback_px) / length_px + self.vary(0.04)).clamp(0.22, 0.96)
+        let setback_px = (0.9 * local.y.abs()).max(0.24 * self.height_px);
+        ((local.x - setback_px) / length_px + self.vary(0.04)).clamp(0.15, 0.96)
     }
 
     /// A new branch from a share of its parent's length to `tip`; the stem stands on `foot`.
@@ -192,7 +192,7 @@ impl<'a> Grower<'a> {
         let half_length_px =
             self.half_length_px * self.rng.random_range(0.78..1.18) * (1.0 - 0.28 * ahead.abs());
         let half_width_px = half_length_px * self.rng.random_range(0.46..0.6);
-        let petiole_px = half_length_px * self.rng.random_range(0.3..1.7) * (1.0 - 0.5 * share);
+        let petiole_px = half_length_px * self.rng.random_range(0.4..2.4) * (1.0 - 0.6 * share);
         let centre =
             frame.out(base) + Point::unit(frame.angle_rad + turn_rad) * (petiole_px + half_length_px);
         let nearness = self.nearness[branch] + 0.22 * ahead + self.vary(0.05);

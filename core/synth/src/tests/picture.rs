@@ -2,7 +2,7 @@
 
 use super::{scene, small};
 use crate::geometry::Point;
-use crate::plant::Item;
+use crate::plant::{Item, Plant};
 use crate::{Level, Picture, Scene, Settings};
 
 /// Without light and noise.
@@ -10,10 +10,10 @@ fn plain() -> Settings {
     Settings { noise: 0.0, lighting: 0.0, ..small() }
 }
 
-/// Centroid of all that is plant in a frame, weighted by how much of each pixel it covers.
-fn centroid(scene: &Scene, frame: u32) -> Point {
+/// Centroid of all that is plant, weighted by how much of each pixel it covers.
+fn centroid(scene: &Scene, plant: &Plant, frame: u32) -> Point {
     let mut canvas = scene.camera.background.clone();
-    canvas.plant(&scene.plant, &scene.pose(frame));
+    canvas.plant(plant, &scene.pose(frame));
     let (mut sum, mut weight) = (Point::new(0.0, 0.0), 0.0);
     for (i, pixel) in canvas.pixels.iter().enumerate() {
         let place = Point::new((i % canvas.width) as f64, (i / canvas.width) as f64);
@@ -24,26 +24,30 @@ fn centroid(scene: &Scene, frame: u32) -> Point {
 }
 
 #[test]
-fn a_leaf_alone_moves_as_the_truth_says_to_a_twentieth_of_a_pixel() {
+fn a_leaf_alone_moves_as_the_truth_says_to_a_fraction_of_a_pixel() {
     let whole = scene(&Settings { width: 320, height: 240, n_leaves: 80, level: Level::Wind, ..plain() });
-    for id in [3, 31, 64] {
-        let mut alone = whole.clone();
-        alone.plant.order = vec![Item::Leaf(id)];
-        // Seen from the side the blade would narrow and its petiole weigh more.
-        alone.plant.leaves[id].roll_rad = 0.0;
-        let frame_of = |frame| alone.pose(frame).leaves[id].frame;
-        // The petiole pulls the centroid off the centre, but it turns with the leaf.
-        let offset = frame_of(0).into_local(centroid(&alone, 0));
-        for frame in (1..alone.n_frames()).step_by(4) {
-            let at = alone.truth().leaves[id].path[frame as usize];
+    let (mut worst_px, mut squares) = (0.0_f64, Vec::new());
+    for id in (0..80).step_by(3) {
+        // The blade alone: as it narrows in turning away, the petiole would weigh more.
+        let mut alone = whole.plant.clone();
+        alone.order = vec![Item::Leaf(id)];
+        alone.leaves[id].petiole_px = 0.0;
+        let frame_of = |frame| whole.pose(frame).leaves[id].frame;
+        // An egg's centroid is off its centre, but turns with it.
+        let off: Vec<Point> = (0..whole.n_frames())
+            .map(|frame| frame_of(frame).into_local(centroid(&whole, &alone, frame)))
+            .collect();
+        let mean = off.iter().fold(Point::new(0.0, 0.0), |sum, &p| sum + p) * (1.0 / off.len() as f64);
+        for (frame, off) in (0..).zip(off) {
+            let at = whole.truth().leaves[id].path[frame as usize];
             assert!((Point::new(at.x, at.y) - frame_of(frame).origin).norm() < 1e-12);
-            let missed_px = (centroid(&alone, frame) - frame_of(frame).out(offset)).norm();
-            let m = frame_of(frame).into_local(centroid(&alone, frame)) - offset;
-            eprintln!("DBG {id} {frame} {m:?} {:?} {at:?} off {offset:?}", alone.plant.leaves[id].half_length_px);
-            if false {return;}
-            assert!(missed_px < 5.05, "leaf {id}, frame {frame}: {missed_px} px off");
+            let missed_px = (off - mean).norm();
+            worst_px = worst_px.max(missed_px);
+            squares.push(missed_px * missed_px);
         }
     }
+    let rms_px = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
+    assert!(rms_px < 0.03 && worst_px < 0.1, "{rms_px} px rms, {worst_px} px at worst");
 }
 
 /// Luma around a place, 9x9, bilinear; `None` at the edge.
@@ -104,7 +108,7 @@ fn a_centre_is_visible_exactly_where_its_leaf_is_on_top() {
     let mut dyed = scene(&settings);
     dyed.plant.leaves.iter_mut().for_each(|leaf| leaf.colour = [100.0, 100.0, 0.0]);
     dyed.plant.branches.iter_mut().for_each(|branch| branch.colour = [100.0, 100.0, 0.0]);
-    let (mut n_seen, mut n_covered, mut n_wrong) = (0, 0, 0);
+    let (mut n_seen, mut n_covered, mut n_undecided, mut n_wrong) = (0, 0, 0, 0);
     for id in (0..200).step_by(2) {
         // One blue leaf in a plant without blue: what is blue at its centre is that leaf.
         let usual = std::mem::replace(&mut dyed.plant.leaves[id].colour, [0.0, 0.0, 200.0]);
@@ -122,13 +126,15 @@ fn a_centre_is_visible_exactly_where_its_leaf_is_on_top() {
             let blue = pixel[2] / (pixel[0] + pixel[1] + pixel[2]);
             n_seen += usize::from(at.visible);
             n_covered += usize::from(!at.visible);
-            if at.visible != (blue > 0.5) { eprintln!("DBG leaf {id} {at:?} blue {blue}"); }
-            n_wrong += usize::from(at.visible != (blue > 0.5));
+            // In between, an edge runs through the pixel.
+            n_undecided += usize::from((0.25..=0.75).contains(&blue));
+            n_wrong += usize::from(if at.visible { blue < 0.25 } else { blue > 0.75 });
         } else {
             assert!(!at.visible, "leaf {id} is outside");
         }
         dyed.plant.leaves[id].colour = usual;
     }
     assert!(n_seen > 30 && n_covered > 20, "{n_seen} seen, {n_covered} covered: too few to tell");
+    assert!(n_undecided < 10, "{n_undecided} undecided");
     assert_eq!(n_wrong, 0, "of {} centres", n_seen + n_covered);
 }

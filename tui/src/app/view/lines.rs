@@ -148,7 +148,9 @@ pub(super) fn time(state: &State, area: Rect, frame: &mut Frame) {
     for key in row.iter().flat_map(|row| &row.keys) {
         frame.cells.set_string(column_of(bar, n, *key), area.y, "◆", style::KEY);
     }
-    frame.cells.set_string(column_of(bar, n, state.frame), area.y, "┃", style::ACCENT.patch(style::BOLD));
+    let on_key = row.is_some_and(|row| row.keys.binary_search(&state.frame).is_ok());
+    let now = if on_key { "◆" } else { "┃" };
+    frame.cells.set_string(column_of(bar, n, state.frame), area.y, now, style::ACCENT.patch(style::BOLD));
 }
 
 pub(super) fn hints(state: &State, area: Rect, frame: &mut Frame) {
@@ -218,7 +220,8 @@ fn is_useful(state: &State, action: Action) -> bool {
         return true;
     }
     match action {
-        Action::NextTrack | Action::MoveSample => !state.tracks.is_empty(),
+        Action::NextTrack => !state.tracks.is_empty(),
+        Action::MoveSample => !state.tracks.is_empty() && state.read_only.is_none(),
         Action::WorstFrame => state.selected_row().is_some_and(|row| row.worst.is_some()),
         Action::RunTracker => state.job.is_none() && state.read_only.is_none(),
         Action::RunClusterer => state.tracks.len() > 1 && state.job.is_none() && state.read_only.is_none(),
@@ -232,7 +235,8 @@ pub(super) fn notices(state: &State, area: Rect, frame: &mut Frame) {
     let mut lines = Vec::new();
     if let Some(notice) = &state.notice {
         let style = if notice.is_error { style::ERROR } else { style::ACCENT };
-        lines.push(Line::styled(notice.text.clone(), style));
+        let rows = wrapped(&notice.text, usize::from(area.width.saturating_sub(2)));
+        lines.extend(rows.into_iter().map(|row| Line::styled(row, style)));
     }
     lines.extend(state.job.as_ref().map(|job| job_line(job, state, area.width)));
     let n = (lines.len() as u16).min(area.height);
@@ -242,6 +246,22 @@ pub(super) fn notices(state: &State, area: Rect, frame: &mut Frame) {
     for (row, line) in (0..).zip(lines) {
         put(frame, inside, row, &line);
     }
+}
+
+/// A text in rows, broken between words.
+fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let mut rows = vec![String::new()];
+    for word in text.split_whitespace() {
+        let used = rows.last().map_or(0, |row| Line::raw(row.as_str()).width());
+        if used > 0 && used + 1 + Line::raw(word).width() > width {
+            rows.push(String::new());
+        }
+        if let Some(row) = rows.last_mut() {
+            row.push_str(if row.is_empty() { "" } else { " " });
+            row.push_str(word);
+        }
+    }
+    rows
 }
 
 fn job_line(job: &Job, state: &State, width: u16) -> Line<'static> {

@@ -30,7 +30,7 @@ const MARK: u8 = 8;
 const PATH_FRAMES: u32 = 12;
 
 const WHITE: [u8; 3] = [255, 255, 255];
-/// Every other pixel of rings and crosses: they must be seen on petals and on sky.
+/// Round rings and in crosses: they must be seen on petals and on sky.
 const DARK: [u8; 3] = [20, 20, 20];
 const KEY: [u8; 3] = [255, 215, 95];
 const PATH: [u8; 3] = [255, 235, 160];
@@ -52,8 +52,29 @@ const RING: [(i64, i64); 12] = [
     (-2, 0),
     (-2, -1),
 ];
-/// Pixels of a cross whose middle stays open.
-const CROSS: [(i64, i64); 8] = [(-2, 0), (-3, 0), (2, 0), (3, 0), (0, -2), (0, -3), (0, 2), (0, 3)];
+/// Pixels round that ring.
+const HALO: [(i64, i64); 16] = [
+    (-1, -3),
+    (0, -3),
+    (1, -3),
+    (2, -2),
+    (3, -1),
+    (3, 0),
+    (3, 1),
+    (2, 2),
+    (1, 3),
+    (0, 3),
+    (-1, 3),
+    (-2, 2),
+    (-3, 1),
+    (-3, 0),
+    (-3, -1),
+    (-2, -2),
+];
+/// Inner pixels of a cross whose middle stays open.
+const CROSS: [(i64, i64); 4] = [(-2, 0), (2, 0), (0, -2), (0, 2)];
+/// Its outer pixels.
+const CROSS_ENDS: [(i64, i64); 4] = [(-3, 0), (3, 0), (0, -3), (0, 3)];
 
 /// Pixels to be drawn on.
 struct Canvas<'a> {
@@ -107,8 +128,8 @@ impl Canvas<'_> {
             && let Some(at) = row.at(frame)
         {
             let ring = if row.keys.binary_search(&frame).is_ok() { KEY } else { WHITE };
-            self.mark(at, &RING, ring, ' ');
-            self.mark(at, &[], ring, '@');
+            self.mark(at, &HALO, DARK, ' ');
+            self.mark(at, &RING, ring, '@');
         }
     }
 
@@ -123,13 +144,18 @@ impl Canvas<'_> {
 
     fn cursor(&mut self, state: &State) {
         match state.mode {
-            Mode::Place(at) => self.mark(at, &CROSS, CURSOR, '+'),
+            Mode::Place(at) => self.cross(at),
             Mode::Move { from, to } => {
                 self.mark(from, &[(0, 0)], UNSEEN, 'o');
-                self.mark(to, &CROSS, CURSOR, '+');
+                self.cross(to);
             }
             _ => {}
         }
+    }
+
+    fn cross(&mut self, at: [f32; 2]) {
+        self.mark(at, &CROSS_ENDS, DARK, ' ');
+        self.mark(at, &CROSS, CURSOR, '+');
     }
 
     /// Colours one pixel, letting the picture through a little: marks by the hundred must not hide it.
@@ -145,7 +171,7 @@ impl Canvas<'_> {
         }
     }
 
-    /// Draws pixels about an image point, every other one dark; in letters, one letter at it.
+    /// Draws pixels about an image point; in letters, one letter at it.
     fn mark(&mut self, at: [f32; 2], shape: &[(i64, i64)], colour: [u8; 3], letter: char) {
         let Some((x, y)) = self.lens.pixel_of(at) else { return };
         let (columns, rows) = self.lens.size();
@@ -155,11 +181,11 @@ impl Canvas<'_> {
             }
             return;
         }
-        for (n, &(dx, dy)) in shape.iter().enumerate() {
+        for &(dx, dy) in shape {
             let (x, y) = (i64::from(x) + dx, i64::from(y) + dy);
             if (0..i64::from(columns)).contains(&x) && (0..i64::from(rows)).contains(&y) {
                 let i = (y * i64::from(columns) + x) as usize;
-                self.pixels[i] = if n % 2 == 0 { colour } else { DARK };
+                self.pixels[i] = colour;
                 self.weights[i] = MARK;
             }
         }

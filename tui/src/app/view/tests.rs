@@ -110,6 +110,9 @@ fn screens() {
         state.notice =
             Some(Notice { text: "radius: wanted 2 to 50 (px), got 99".to_owned(), is_error: true });
     });
+    check("locked_80x24", small, "d", |state| {
+        state.read_only = Some("ada@lab2 (pid 4711) since 2026-11-22T02:27:01Z".to_owned());
+    });
     check("zoomed_80x24", small, "z z f", |_| {});
     check("unmarked_80x24", small, "M", |_| {});
     check("tiny_40x12", (40, 12), "", |_| {});
