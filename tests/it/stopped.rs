@@ -96,3 +96,14 @@ fn a_run_that_is_killed_keeps_its_frames() {
     let before = edits(&before);
     assert_eq!(now[..before.len()], before, "nothing that was done before is hurt");
 }
+
+#[test]
+fn a_killed_run_is_kept_though_its_clip_is_missing_at_first() {
+    let (bench, mut child) = at_work();
+    child.kill().unwrap();
+    child.wait().unwrap();
+    std::fs::rename(bench.path("clip.y4m"), bench.path("away")).unwrap();
+    assert_eq!(bench.line("track p.honami").code, Some(1));
+    std::fs::rename(bench.path("away"), bench.path("clip.y4m")).unwrap();
+    assert!(bench.samples("p.honami").iter().any(|row| row["run"] == "2"));
+}

@@ -46,15 +46,16 @@ fn accuracy(args: &[&str]) -> anyhow::Result<()> {
     cargo(BUILD).args(SHIPPED).run()?;
     let seed = args.first().copied().unwrap_or("1");
     let folder = target_dir()?.join("bench").join(format!("accuracy-{seed}"));
+    if folder.exists() {
+        fs::remove_dir_all(&folder).with_context(|| format!("cannot remove {}", folder.display()))?;
+    }
     fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
     let honami = || built("release", "honami");
     for level in ["calm", "wind", "storm"] {
         let clip = folder.join(format!("{level}.y4m"));
         let (truth, points) = (clip.with_extension("truth.csv"), clip.with_extension("points.csv"));
-        if !clip.exists() {
-            let words = ["--wind", level, "--leaves", "2600", "--frames", "150", "--seed", seed];
-            honami()?.arg("synth").arg(&clip).args(words).run()?;
-        }
+        let words = ["--wind", level, "--leaves", "2600", "--frames", "150", "--seed", seed];
+        honami()?.arg("synth").arg(&clip).args(words).run()?;
         fs::write(&points, visible_at_first(&truth)?)?;
         let peer = clip.with_extension("opencv.csv");
         Step::new("python3")

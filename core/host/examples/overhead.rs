@@ -2,9 +2,7 @@
 //!
 //! The plugins do next to nothing: one in C (the fossil of ABI 1.0), one in Rust through the SDK (the zoo's drift).
 
-use honami_host::{
-    CallContext, FrameView, Host, Kind, Point, Registry, SearchPath, StreamInfo, Values,
-};
+use honami_host::{CallContext, FrameView, Host, Kind, Point, Registry, SearchPath, StreamInfo, Values};
 use honami_model::picture::Gray;
 use std::error::Error;
 use std::path::PathBuf;

@@ -170,9 +170,8 @@ impl Tracker {
         cx: &CallContext<'_>,
     ) -> Result<Vec<Feature>, HostError> {
         let gray = wanted.frame.gray;
-        let mask_fits = |mask: &Gray<'_>| {
-            mask.is_whole() && (mask.width, mask.height) == (gray.width, gray.height)
-        };
+        let mask_fits =
+            |mask: &Gray<'_>| mask.is_whole() && (mask.width, mask.height) == (gray.width, gray.height);
         if !gray.is_whole() || !wanted.mask.as_ref().is_none_or(mask_fits) {
             return Err(self.handle.usage("the frame is not whole, or the mask has another size"));
         }

@@ -2,8 +2,8 @@
 
 use crate::reply::Table;
 use crate::types::{PointRow, Points};
-use honami_model::track::Status;
 use honami_abi::{FB_NONE, NCC_NONE};
+use honami_model::track::Status;
 use std::collections::{BTreeSet, VecDeque};
 use std::ops::Range;
 
