@@ -85,12 +85,11 @@ fn the_cache_can_be_deleted_at_any_time() {
 }
 
 #[test]
-fn a_cache_that_cannot_be_written_is_named() {
+fn a_cache_that_cannot_be_written_costs_speed_only() {
     let bench = Bench::new();
     fs::write(bench.path("XDG_CACHE_HOME"), "a file where a folder should be").unwrap();
     bench.synth("clip", 10, "");
     assert!(bench.text("doctor").contains("cannot be made"));
     bench.json("new p.honami clip");
-    let ran = bench.line("track p.honami");
-    assert!(ran.code == Some(1) && ran.stderr.contains("XDG_CACHE_HOME/honami"), "{ran:?}");
+    assert!(bench.json("track p.honami")["tracks"].as_u64().unwrap() > 0);
 }

@@ -17,6 +17,7 @@ use std::process::ExitCode;
 
 use clap::Parser as _;
 use honami_workbench::session::{Session, SessionOptions};
+use honami_workbench::store::{Access, Project};
 
 use self::args::{Cli, Command, Common};
 
@@ -79,12 +80,12 @@ fn run(command: Command, common: &Common) -> anyhow::Result<Option<Answer>> {
         Command::Cluster(args) => groups::cluster(&args, common)?,
         Command::Edit(args) => return edit::edit(&args.project, common).map(|()| None),
         Command::Compare(args) => compare::compare(&args, common)?,
-        Command::Spectrum(args) => spectrum::spectrum(&args, common)?,
-        Command::Export(args) => project::export(&args, common)?,
+        Command::Spectrum(args) => spectrum::spectrum(&args)?,
+        Command::Export(args) => project::export(&args)?,
         Command::Synth(args) => synth::synth(&args)?,
         Command::Demo(args) => return synth::demo(&args, common),
         Command::Plugin(args) => help::plugin(&args, common)?,
-        Command::Log(args) => log::log(&args, common)?,
+        Command::Log(args) => log::log(&args)?,
         Command::Doctor => help::doctor(common),
         Command::Completions { shell } => help::completions(shell),
         Command::Man { folder } => help::manual(&folder)?,
@@ -113,12 +114,21 @@ fn options(common: &Common) -> SessionOptions {
 
 /// Opens a project for a command that writes to it.
 fn session(path: &Path, common: &Common) -> anyhow::Result<Session> {
+    there(path)?;
     let session = Session::open(path, &options(common))?;
     session.notes.iter().for_each(|note| report::say(note));
     Ok(session)
 }
 
-/// Opens a project for a command that only looks, also while another session writes.
-fn look(path: &Path, common: &Common) -> anyhow::Result<Session> {
-    Ok(Session::open(path, &SessionOptions { read_only: true, ..options(common) })?)
+/// Opens a project for a command that only looks, also while another session writes or the clip is away.
+fn look(path: &Path) -> anyhow::Result<Project> {
+    there(path)?;
+    Ok(Project::open(path, Access::Read)?)
+}
+
+/// Refuses a project that is not there, and says how to make one.
+fn there(path: &Path) -> anyhow::Result<()> {
+    let shown = path.display();
+    anyhow::ensure!(path.exists(), "there is no project {shown}: make it with `honami new {shown} CLIP`");
+    Ok(())
 }

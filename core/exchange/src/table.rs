@@ -273,7 +273,9 @@ impl<R: Row> Writer<R> {
         let mut builder = tempfile::Builder::new();
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666)); // less the umask
-        let file = builder.prefix(".honami-").suffix(".part").tempfile_in(folder).map_err(fail)?;
+        // Its error names the temporary file, which nobody asked for: what the system said is enough.
+        let plain = |e: std::io::Error| fail(e.kind().into());
+        let file = builder.prefix(".honami-").suffix(".part").tempfile_in(folder).map_err(plain)?;
         let mut writer = Self {
             path: path.into(),
             file: std::io::BufWriter::with_capacity(1 << 16, file),

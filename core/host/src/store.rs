@@ -32,17 +32,25 @@ pub(crate) fn sha256_of(path: &Path) -> Result<String, HostError> {
     read(path).map(|bytes| hex(&bytes))
 }
 
-/// Reads a library once and keeps that content in the store.
+/// Reads a library once and keeps that content in the store, or where that cannot be written (a full quota, a home
+/// that is read-only) in a folder for temporary files.
 ///
 /// # Errors
-/// When it cannot be read, or the store cannot be written.
+/// When it cannot be read, or neither folder can be written.
 pub(crate) fn keep(path: &Path, folder: &Path) -> Result<Stored, HostError> {
     let bytes = read(path)?;
     let sha256 = hex(&bytes);
-    let copy = folder.join(format!("{sha256}.so"));
-    keep_bytes(folder, &copy, &bytes).map_err(|e| HostError::File {
-        path: copy.clone(),
-        why: format!("cannot keep a copy of {} here: {e}", path.display()),
+    let keep_in = |folder: &Path| {
+        let copy = folder.join(format!("{sha256}.so"));
+        keep_bytes(folder, &copy, &bytes).map(|()| copy)
+    };
+    let kept = keep_in(folder).or_else(|first| keep_in(&temporary_folder()).map_err(|_second| first));
+    let copy = kept.map_err(|e| HostError::File {
+        path: path.to_owned(),
+        why: format!(
+            "cannot be copied to {}, from where it is loaded: {e}; set XDG_CACHE_HOME to a folder you may write",
+            folder.display()
+        ),
     })?;
     Ok(Stored { path: copy, sha256 })
 }
@@ -62,8 +70,12 @@ fn hex(bytes: &[u8]) -> String {
 pub(crate) fn folder_of_user() -> PathBuf {
     let absolute = |name| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
     let cache = absolute("XDG_CACHE_HOME").or_else(|| absolute("HOME").map(|home| home.join(".cache")));
-    let fallback = || std::env::temp_dir().join(format!("honami-{}", geteuid().as_raw()));
-    cache.unwrap_or_else(fallback).join("honami/store")
+    cache.map_or_else(temporary_folder, |cache| cache.join("honami/store"))
+}
+
+/// For those whose cache folder cannot be written; ours alone, like the store.
+fn temporary_folder() -> PathBuf {
+    std::env::temp_dir().join(format!("honami-{}", geteuid().as_raw()))
 }
 
 fn keep_bytes(folder: &Path, copy: &Path, bytes: &[u8]) -> io::Result<()> {

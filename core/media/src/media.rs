@@ -261,16 +261,13 @@ impl Shared {
     /// The decoding thread.
     fn fill(&self, source: &dyn Source, filling: Filling) {
         let result = self.fill_all(source, &filling);
-        let ended = match result {
-            Ok(true) => {
-                // The frames are mapped and stay so; without its final name the next opening decodes again.
-                filling.finish().unwrap_or_default();
-                None
-            }
-            Ok(false) => None,
-            Err(ended) => Some(ended),
-        };
-        *self.ended() = ended;
+        // Before anybody is told: whoever hears of the end finds the file complete, or gone.
+        match result {
+            // The frames are mapped and stay so; without its final name the next opening decodes again.
+            Ok(true) => filling.finish().unwrap_or_default(),
+            Ok(false) | Err(_) => drop(filling),
+        }
+        *self.ended() = result.err();
         self.progress.notify_all();
     }
 

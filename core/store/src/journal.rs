@@ -1,6 +1,8 @@
 //! The journal: every edit with its inverse, and where in the undo tree the document stands.
 
-use honami_model::document::Document;
+use std::collections::BTreeMap;
+
+use honami_model::document::{ClusteringId, Document, RunId};
 use honami_model::edit::{Edit, Transaction, apply};
 use honami_model::history::{Entry, EntryId, History, Step};
 use honami_model::track::TrackSet;
@@ -96,6 +98,35 @@ pub(crate) fn touched(conn: &Connection, step: Step) -> Result<[TrackSet; 2], St
     let both = [Step::Forward(id), Step::Back(id)].map(|step| transaction(conn, step));
     let [forward, back] = both.map(|transaction| transaction.map(|transaction| transaction.touched()));
     Ok([forward?, back?])
+}
+
+/// The first entry that shows each result, wherever it is in the undo tree.
+#[derive(Debug, Default)]
+pub(crate) struct FirstShown {
+    pub(crate) runs: BTreeMap<RunId, EntryId>,
+    pub(crate) clusterings: BTreeMap<ClusteringId, EntryId>,
+}
+
+/// Searches all entries, undone ones included, for those that show results.
+pub(crate) fn first_shown(conn: &Connection) -> Result<FirstShown, StoreError> {
+    // The names of the edits in JSON never change; a label or name with these words is only read in vain.
+    let mut statement =
+        conn.prepare("SELECT id, command FROM entry WHERE instr(command, '\"show-') > 0 ORDER BY id")?;
+    let mut rows = statement.query([])?;
+    let mut first = FirstShown::default();
+    while let Some(row) = rows.next()? {
+        let id = EntryId(row.get(0)?);
+        for edit in parse(id, row.get_ref(1)?.as_str().map_err(StoreError::corrupt)?)? {
+            match edit {
+                Edit::ShowRun { run, .. } => first.runs.entry(run).or_insert(id),
+                Edit::ShowClustering { clustering: Some(shown) } => {
+                    first.clusterings.entry(shown.id).or_insert(id)
+                }
+                _ => continue,
+            };
+        }
+    }
+    Ok(first)
 }
 
 /// Moves the head along a way that ends at `to`.

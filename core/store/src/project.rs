@@ -85,7 +85,7 @@ impl Project {
     fn load(path: PathBuf, lock: Option<Arc<Lock>>, other: Option<Holder>) -> Result<Self, StoreError> {
         let mut conn = schema::connect(&path, lock.is_some())?;
         schema::bring_up(&mut conn, lock.is_some(), &path)?;
-        let interrupted = if lock.is_some() { run::end_interrupted(&mut conn)? } else { Vec::new() };
+        let interrupted = if lock.is_some() { run::interrupted(&mut conn)? } else { Vec::new() };
         let clip = ClipRecord::load(&conn)?;
         let (history, document) = journal::load(&conn, clip.clip.n_frames())?;
         let holder = lock.as_ref().map(|lock| lock.holder.clone()).or(other);
@@ -130,7 +130,8 @@ impl Project {
         &self.history
     }
 
-    /// Runs that a killed session left behind and this one found when it opened; they are not shown yet.
+    /// Runs of killed sessions that no edit has ever shown, whichever session found them; a reader, which
+    /// cannot show them, has none.
     #[must_use]
     pub fn interrupted(&self) -> &[RunId] {
         &self.interrupted
@@ -167,6 +168,9 @@ impl Project {
         }
         self.shown.forget(&transaction.touched());
         self.shown.forget(&inverse.touched());
+        let shows =
+            |id| transaction.edits.iter().any(|edit| matches!(edit, Edit::ShowRun { run, .. } if *run == id));
+        self.interrupted.retain(|&run| !shows(run));
         Ok(self.history.push(transaction.label, self.author.clone(), time))
     }
 

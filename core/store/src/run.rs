@@ -13,7 +13,7 @@ use crate::codec;
 use crate::error::StoreError;
 use crate::lock::Lock;
 use crate::project::Project;
-use crate::schema;
+use crate::{journal, schema};
 
 mod compact;
 mod read;
@@ -68,9 +68,9 @@ pub struct RunInfo {
     pub state: RunState,
     /// What it was asked for.
     pub head: RunHead,
-    /// The tracks it has samples of, births included; empty while it runs.
+    /// The tracks it has samples of, births included; so far, while it runs.
     pub tracks: TrackSet,
-    /// The frames it has samples in, first to last; empty while it runs.
+    /// The frames it has samples in, first to last; so far, while it runs.
     pub found: Range<u32>,
 }
 
@@ -166,13 +166,24 @@ impl Project {
     }
 }
 
-/// Marks what dead sessions left running as interrupted and compacts it; the caller holds the lock.
-pub(crate) fn end_interrupted(conn: &mut Connection) -> Result<Vec<RunId>, StoreError> {
-    let mut statement = conn.prepare("SELECT id FROM run WHERE state = 'running' ORDER BY id")?;
-    let runs = statement.query_map([], |row| row.get(0))?.collect::<Result<Vec<u32>, _>>()?;
-    drop(statement);
-    let end = |run| compact::end(conn, run, &RunState::Interrupted).map(|()| run);
-    runs.into_iter().map(RunId).map(end).collect()
+/// Marks what dead sessions left running as interrupted and compacts it; the caller holds the lock. Returns
+/// the interrupted runs that were never shown: also those of a session that died before it could show them.
+pub(crate) fn interrupted(conn: &mut Connection) -> Result<Vec<RunId>, StoreError> {
+    for run in in_state(conn, "running")? {
+        compact::end(conn, run, &RunState::Interrupted)?;
+    }
+    let mut runs = in_state(conn, "interrupted")?;
+    if !runs.is_empty() {
+        let shown = journal::first_shown(conn)?.runs;
+        runs.retain(|run| !shown.contains_key(run));
+    }
+    Ok(runs)
+}
+
+fn in_state(conn: &Connection, state: &str) -> Result<Vec<RunId>, StoreError> {
+    let mut statement = conn.prepare("SELECT id FROM run WHERE state = ?1 ORDER BY id")?;
+    let runs = statement.query_map([state], |row| row.get(0).map(RunId))?;
+    Ok(runs.collect::<Result<_, _>>()?)
 }
 
 /// Consecutive frames as records of consecutive samples of a track.

@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use honami_exchange::{TrackRow, Writer};
+use honami_store::Project;
 
 use crate::error::WorkbenchError;
-use crate::session::Session;
 
 /// What was written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,16 +20,16 @@ pub struct Exported {
 ///
 /// # Errors
 /// [`WorkbenchError::NoTracks`], and what the project or the disk met.
-pub fn tracks(session: &Session, out: &Path) -> Result<Exported, WorkbenchError> {
-    let shown = session.project.shown_all()?;
+pub fn tracks(project: &Project, out: &Path) -> Result<Exported, WorkbenchError> {
+    let shown = project.shown_all()?;
     if shown.is_empty() {
         return Err(WorkbenchError::NoTracks);
     }
-    let times = &session.project.clip().clip.times;
+    let times = &project.clip().clip.times;
     let mut table = Writer::create(out)?;
     let mut n_rows = 0;
     for (track, span) in &shown {
-        let runs = session.project.sample_runs(*track)?;
+        let runs = project.sample_runs(*track)?;
         for ((frame, &sample), run) in span.frames().zip(&span.samples).zip(runs) {
             let run = run.map(|run| u64::from(run.0));
             table.write(&TrackRow { track: *track, frame, time_s: times.get(frame), sample, run })?;

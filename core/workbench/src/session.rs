@@ -40,7 +40,7 @@ impl Session {
         let access = if options.read_only { Access::Read } else { Access::Write };
         let mut project = Project::open(path, access)?;
         // Before the clip, which may be missing: only the session that finds such a run can show it.
-        let notes = show_interrupted(&mut project)?;
+        let notes = if options.read_only { Vec::new() } else { show_interrupted(&mut project)? };
         let media = Arc::new(open_clip_of(&project)?);
         Ok(Self { project, media, registry: Arc::new(Registry::scan(&options.plugin_paths)), notes })
     }

@@ -9,10 +9,11 @@ use honami_model::clip::FrameTimes;
 use honami_model::track::{Span, TrackId};
 use honami_motion::spectrum::{Analyser, Spectrum};
 
+use honami_store::Project;
+
 pub use honami_motion::spectrum::Peak;
 
 use crate::error::WorkbenchError;
-use crate::session::Session;
 
 /// How many times the noise around it the power of a peak of one track must be: foliage has broad peaks.
 const OVER_FLOOR: f64 = 3.0;
@@ -60,10 +61,10 @@ pub struct Spectra {
 ///
 /// # Errors
 /// [`WorkbenchError::NoTracks`], and for a clip too short for a spectrum.
-pub fn of_project(session: &Session, n_peaks: usize) -> Result<Spectra, WorkbenchError> {
-    let tracks = session.project.shown_all()?;
-    let group_of = session.project.grouping()?.map(|grouping| grouping.group_of).unwrap_or_default();
-    of(&session.project.clip().clip.times, &tracks, &group_of, n_peaks)
+pub fn of_project(project: &Project, n_peaks: usize) -> Result<Spectra, WorkbenchError> {
+    let tracks = project.shown_all()?;
+    let group_of = project.grouping()?.map(|grouping| grouping.group_of).unwrap_or_default();
+    of(&project.clip().clip.times, &tracks, &group_of, n_peaks)
 }
 
 /// Spectra of a table of tracks; its own times count, so every frame of the table needs one.

@@ -6,10 +6,11 @@ use honami_workbench::compare::{self, Contestant, Row};
 use honami_workbench::drive::Seed;
 use honami_workbench::media::{self, Media, OpenOptions};
 use honami_workbench::plugins::{Kind, Param, Registry, Values};
+use honami_workbench::session::{Session, SessionOptions};
 use serde_json::json;
 
 use super::args::{Common, Compare};
-use super::{Answer, look, report, track};
+use super::{Answer, options, report, track};
 
 /// Runs every tracker on the same points and prints one row for each.
 pub(super) fn compare(args: &Compare, common: &Common) -> anyhow::Result<Answer> {
@@ -43,7 +44,7 @@ pub(super) fn compare(args: &Compare, common: &Common) -> anyhow::Result<Answer>
 /// The clip; the points and plugins that come with it.
 fn open(args: &Compare, common: &Common) -> anyhow::Result<(Arc<Media>, Vec<Seed>, Arc<Registry>)> {
     if args.clip.extension().is_some_and(|e| e == "honami") {
-        let session = look(&args.clip, common)?;
+        let session = Session::open(&args.clip, &SessionOptions { read_only: true, ..options(common) })?;
         let mut seeds = Vec::new();
         for (id, span) in session.project.shown_all()? {
             let seen = span.frames().zip(&span.samples).find(|(_, sample)| sample.status.is_seen());

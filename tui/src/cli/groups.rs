@@ -27,8 +27,9 @@ pub(super) fn request() -> ClusterRequest {
 
 /// Prepares, runs and finishes, with a progress bar.
 pub(super) fn run(session: &mut Session, request: &ClusterRequest) -> anyhow::Result<ClusterOutcome> {
+    let bar = report::Bar::new();
     let job = cluster::prepare(session, request)?;
-    let done = job.run(&report::Bar::new())?;
+    let done = job.run(&bar)?;
     Ok(cluster::finish(session, done)?)
 }
 

@@ -3,17 +3,16 @@
 use honami_workbench::store::{LogItem, LogLine};
 use serde_json::json;
 
-use super::args::{Common, Project};
+use super::args::Project;
 use super::{Answer, look};
 
 /// Prints the log, oldest first.
-pub(super) fn log(args: &Project, common: &Common) -> anyhow::Result<Answer> {
-    let session = look(&args.project, common)?;
-    let lines = session.project.log()?;
+pub(super) fn log(args: &Project) -> anyhow::Result<Answer> {
+    let project = look(&args.project)?;
+    let lines = project.log()?;
     let text = lines.iter().map(line).collect::<Vec<_>>().join("\n");
     let text = if text.is_empty() { "nothing was done to this project yet".to_owned() } else { text };
-    let json =
-        json!({ "revision": session.project.revision(), "log": lines.iter().map(entry).collect::<Vec<_>>() });
+    let json = json!({ "revision": project.revision(), "log": lines.iter().map(entry).collect::<Vec<_>>() });
     Ok(Answer { json, text })
 }
 

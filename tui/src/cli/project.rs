@@ -71,15 +71,14 @@ fn describe(session: &Session) -> Answer {
 }
 
 /// Writes what was asked for.
-pub(super) fn export(args: &Export, common: &Common) -> anyhow::Result<Answer> {
-    let session = look(&args.project, common)?;
+pub(super) fn export(args: &Export) -> anyhow::Result<Answer> {
     let ExportWhat::Tracks = args.what;
     anyhow::ensure!(
         args.out.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv")),
         "tracks are written as .csv, not as {}",
         args.out.display()
     );
-    let written = export::tracks(&session, &args.out)?;
+    let written = export::tracks(&look(&args.project)?, &args.out)?;
     let text = format!("{}: {} tracks, {} samples", args.out.display(), written.n_tracks, written.n_rows);
     let json = json!({ "file": args.out, "tracks": written.n_tracks, "samples": written.n_rows });
     Ok(Answer { json, text })

@@ -3,19 +3,19 @@
 use honami_workbench::spectra::{self, Line, Peak, Spectra, Subject};
 use serde_json::json;
 
-use super::args::{Common, Spectrum};
+use super::args::Spectrum;
 use super::{Answer, look, report};
 
 /// Tracks that are listed when none was asked for; all of them are in `--json`.
 const LISTED: usize = 12;
 
 /// Prints the peaks of everything, of the groups, and of tracks.
-pub(super) fn spectrum(args: &Spectrum, common: &Common) -> anyhow::Result<Answer> {
+pub(super) fn spectrum(args: &Spectrum) -> anyhow::Result<Answer> {
     let is_table = args.project.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
     let mut spectra = if is_table {
         spectra::of_table(&args.project, args.peaks)?
     } else {
-        spectra::of_project(&look(&args.project, common)?, args.peaks)?
+        spectra::of_project(&look(&args.project)?, args.peaks)?
     };
     if let Some(track) = args.track {
         spectra.lines.retain(|line| matches!(line.subject, Subject::Track(id) if id.0 == track));

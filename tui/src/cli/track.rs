@@ -53,8 +53,10 @@ pub(super) fn request(session: &Session, points: PointSource) -> TrackRequest {
 
 /// Prepares, runs and finishes, with a progress bar.
 pub(super) fn run(session: &mut Session, request: &TrackRequest) -> anyhow::Result<TrackOutcome> {
+    // Before the run begins: from here on Ctrl-C stops it and keeps what it has.
+    let bar = report::Bar::new();
     let job = track::prepare(session, request)?;
-    let done = job.run(&report::Bar::new())?;
+    let done = job.run(&bar)?;
     let outcome = track::finish(session, done)?;
     match outcome.error {
         Some(_) => anyhow::bail!("{}", outcome.line),

@@ -4,6 +4,7 @@ use honami_model::document::ClusteringId;
 use honami_model::edit::Transaction;
 use honami_model::hierarchy::{Dendrogram, Merge};
 use honami_model::history::EntryId;
+use honami_model::provenance::Provenance;
 use honami_model::track::{Source, TrackId};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg32;
@@ -11,7 +12,7 @@ use rusqlite::Connection;
 
 use super::{Access, Project};
 use crate::testing::{Bench, N_FRAMES, head, provenance, rows, tracked, tracks};
-use crate::{Clustering, LogItem, StoreError};
+use crate::{Clustering, LogItem, RunHead, StoreError};
 
 #[test]
 fn a_new_project_is_one_file_and_is_never_made_over_another() {
@@ -290,13 +291,61 @@ fn the_log_tells_everything_with_its_provenance() {
     assert_eq!(
         lines,
         [
-            "run 1 complete org.honami.klt",
-            "clustering 1 of 3",
             "0 project made",
+            "run 1 complete org.honami.klt",
             "1 run 1 shown: 3 tracks",
+            "clustering 1 of 3",
             "2 track 1 named bud"
         ]
     );
-    assert!(log.is_sorted_by_key(|line| line.date.clone()));
     assert!(matches!(&log[4].item, LogItem::Edit(entry) if entry.author == "grace"));
+}
+
+/// Edits 0 project made, 1 track added, 2 run 1 shown, 3 clustering 1 shown, 4 track named; run 2 and
+/// clustering 2 were made from 2 and never shown.
+#[test]
+fn the_log_tells_causes_before_effects() {
+    // Second of each edit; of runs 1 and 2; of clusterings 1 and 2.
+    let cases = [
+        ("all in one second", [5; 5], [5; 2], [5; 2], "e0 e1 r1 e2 r2 c1 c2 e3 e4"),
+        ("one after the other", [0, 1, 3, 6, 8], [2, 5], [4, 7], "e0 e1 r1 e2 c1 r2 e3 c2 e4"),
+        ("results as they ended", [1, 1, 1, 2, 2], [1, 2], [2, 3], "e0 e1 r1 e2 r2 c1 e3 e4 c2"),
+        ("results by a slow clock", [5, 6, 7, 8, 9], [0, 0], [0, 1], "e0 e1 r1 e2 r2 c1 c2 e3 e4"),
+        ("results by a fast clock", [1, 2, 3, 4, 5], [9, 9], [9, 8], "e0 e1 r1 e2 c1 e3 e4 c2 r2"),
+        ("a clock set back", [9, 9, 1, 2, 3], [1, 1], [2, 2], "e0 e1 r1 e2 r2 c1 c2 e3 e4"),
+    ];
+    for (name, edits, runs, clusterings, want) in cases {
+        let bench = Bench::new();
+        let mut project = bench.create();
+        let date = |second: u32| format!("2026-01-02T03:04:{second:02}Z");
+        let dated = |second, revision| Provenance { date: date(second), ..provenance("made", revision) };
+        let run = |project: &mut Project, revision, second| {
+            let head = RunHead { provenance: dated(second, revision), ..head(0..3) };
+            let mut writer = project.begin_run(&head).unwrap();
+            writer.append(0, &rows(0..3, 0..1)).unwrap();
+            writer.finish().unwrap()
+        };
+        project.commit(Transaction::add_track(TrackId(9), 0, 1.0, 1.0)).unwrap();
+        let shown = run(&mut project, 1, runs[0]);
+        project.commit(Transaction::show_run(shown, tracks(0..3))).unwrap();
+        run(&mut project, 2, runs[1]);
+        let saved = clusterings.map(|second| {
+            let made = Clustering { provenance: dated(second, 2), ..three_tracks(2) };
+            project.save_clustering(&made).unwrap()
+        });
+        project.commit(Transaction::show_clustering(saved[0], 2)).unwrap();
+        project.commit(Transaction::name_track(TrackId(1), Some("bud".to_owned()))).unwrap();
+        for (id, second) in edits.into_iter().enumerate() {
+            let values = rusqlite::params![date(second), id];
+            project.conn.execute("UPDATE entry SET time = ?1 WHERE id = ?2", values).unwrap();
+        }
+        drop(project);
+        let log = Project::open(&bench.path(), Access::Read).unwrap().log().unwrap();
+        let words = log.iter().map(|line| match &line.item {
+            LogItem::Edit(entry) => format!("e{}", entry.id),
+            LogItem::Run(run) => format!("r{}", run.id),
+            LogItem::Clustering(made) => format!("c{}", made.id),
+        });
+        assert_eq!(words.collect::<Vec<_>>().join(" "), want, "{name}");
+    }
 }

@@ -78,7 +78,8 @@ pub(super) fn gather(
     Ok(())
 }
 
-fn each_record(
+/// Gives every record of a run's chunks in the order they were written, undecoded.
+pub(super) fn each_record(
     conn: &Connection,
     run: RunId,
     mut each: impl FnMut(Record<'_>) -> Result<(), StoreError>,

@@ -132,12 +132,17 @@ impl Project {
         };
         let sql = "SELECT track, first_frame, n_frames FROM span WHERE run = ?1";
         let mut statement = self.conn.prepare_cached(sql)?;
-        let spans = statement
+        let mut spans = statement
             .query_map([id.0], |row| Ok((row.get(0)?, row.get(1)?, row.get(2)?)))?
             .collect::<Result<Vec<(u32, u32, u32)>, _>>()?;
+        // Chunks while it is not ended, spans afterwards: never both.
+        compact::each_record(&self.conn, id, |record| {
+            spans.push((record.track.0, record.first_frame, codec::len_u32(record.n_samples())));
+            Ok(())
+        })?;
         let tracks = spans.iter().map(|&(track, ..)| TrackId(track)).collect();
         let start = spans.iter().map(|&(_, first, _)| first).min().unwrap_or(0);
-        let end = spans.iter().map(|&(_, first, n)| first + n).max().unwrap_or(0);
+        let end = spans.iter().map(|&(_, first, n)| first.saturating_add(n)).max().unwrap_or(0);
         Ok(RunInfo { id, state, head, tracks, found: start..end })
     }
 }

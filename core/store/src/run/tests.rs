@@ -1,9 +1,11 @@
 //! Runs: what was appended is what is read, whoever died in between.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use honami_model::edit::Transaction;
-use honami_model::track::{Sample, TrackId};
+use honami_model::history::EntryId;
+use honami_model::track::{Sample, TrackId, TrackSet};
 use proptest::prelude::*;
 
 use super::{RunInfo, RunState};
@@ -22,6 +24,20 @@ fn samples_of(project: &Project, run: &RunInfo) -> BTreeMap<(u32, u32), Sample> 
     all.iter()
         .flat_map(|(track, span)| span.frames().map(|frame| (track.0, frame)).zip(span.samples.clone()))
         .collect()
+}
+
+type Extent = (TrackSet, Range<u32>);
+
+/// What a run says it has.
+fn extent(run: &RunInfo) -> Extent {
+    (run.tracks.clone(), run.found.clone())
+}
+
+/// What a run with these samples must say.
+fn extent_of(samples: &BTreeMap<(u32, u32), Sample>) -> Extent {
+    let frames = || samples.keys().map(|key| key.1);
+    let found = frames().min().unwrap_or(0)..frames().max().map_or(0, |last| last + 1);
+    (samples.keys().map(|key| TrackId(key.0)).collect(), found)
 }
 
 proptest! {
@@ -52,6 +68,7 @@ proptest! {
         let working = project.run(id).unwrap();
         prop_assert_eq!(&working.state, &RunState::Running);
         prop_assert_eq!(&samples_of(&project, &working), &want);
+        prop_assert_eq!(extent(&working), extent_of(&want), "told while it works");
         let state = match end {
             0 => { writer.finish().unwrap(); RunState::Complete }
             1 => { writer.abandon("by hand").unwrap(); RunState::Stopped { reason: "by hand".to_owned() } }
@@ -63,14 +80,7 @@ proptest! {
             let ended = project.run(id).unwrap();
             prop_assert_eq!((&ended.state, &ended.head), (&state, &head(0..20)));
             prop_assert_eq!(&samples_of(&project, &ended), &want);
-            if access == Access::Write {
-                let used: Vec<u32> = ended.tracks.iter().map(|track| track.0).collect();
-                let mut want_used: Vec<u32> = want.keys().map(|key| key.0).collect();
-                want_used.dedup();
-                prop_assert_eq!(used, want_used);
-                let last = want.keys().map(|key| key.1 + 1).max().unwrap_or(0);
-                prop_assert_eq!(ended.found.end, last);
-            }
+            prop_assert_eq!(extent(&ended), extent_of(&want));
         }
     }
 }
@@ -142,4 +152,51 @@ fn only_what_exists_and_has_ended_is_shown() {
     project.commit(show(0..2)).unwrap();
     assert_eq!(project.sample_runs(TrackId(1)).unwrap(), [Some(run); 9]);
     assert_eq!([3, 9].map(|frame| project.run_at(TrackId(1), frame).unwrap()), [Some(run), None]);
+}
+
+#[test]
+fn an_interrupted_run_waits_until_it_was_shown() {
+    let bench = Bench::new();
+    let mut project = bench.create();
+    let mut runs = Vec::new();
+    for numbers in [0..2, 2..5] {
+        let mut writer = project.begin_run(&head(numbers.clone())).unwrap();
+        writer.append(0, &rows(numbers, 0..9)).unwrap();
+        runs.push(writer.run());
+    }
+    // Stopped and ended runs are no business of the next session.
+    project.begin_run(&head(5..6)).unwrap().abandon("by hand").unwrap();
+    project.begin_run(&head(5..6)).unwrap().finish().unwrap();
+    drop(project);
+    let [first, second] = runs[..] else { panic!("two runs") };
+    let show = |run, numbers| Some(Transaction::show_run(run, tracks(numbers)));
+    // What a session does before it dies, and the runs left to show then and when the next one opens.
+    let sessions = [
+        (None, vec![first, second]),
+        (None, vec![first, second]),
+        (Some(Transaction::add_track(TrackId(7), 0, 1.0, 1.0)), vec![first, second]),
+        (show(second, 2..5), vec![first]),
+        (None, vec![first]),
+        (show(first, 0..2), vec![]),
+        (None, vec![]),
+    ];
+    for (step, (edit, left)) in sessions.into_iter().enumerate() {
+        let mut project = Project::open(&bench.path(), Access::Write).unwrap();
+        if let Some(edit) = edit {
+            project.commit(edit).unwrap();
+        }
+        assert_eq!(project.interrupted(), left, "step {step}");
+        drop(project);
+        for (access, left) in [(Access::Read, vec![]), (Access::Write, left)] {
+            let project = Project::open(&bench.path(), access).unwrap();
+            assert_eq!(project.interrupted(), left, "after step {step}");
+        }
+    }
+    // What was undone is not forced on anybody again, also where another edit was made instead.
+    let mut project = Project::open(&bench.path(), Access::Write).unwrap();
+    project.jump(EntryId::ROOT).unwrap();
+    project.commit(Transaction::add_track(TrackId(8), 0, 1.0, 1.0)).unwrap();
+    drop(project);
+    let project = Project::open(&bench.path(), Access::Write).unwrap();
+    assert_eq!((project.interrupted(), project.document().runs().len()), (&[][..], 0));
 }
