@@ -1,12 +1,13 @@
 //! Clustering: a clusterer plugin finds what moves together, and the hierarchy is kept.
 
-use honami_host::{CallContext, Clusterer, Flow, Kind, Level, Tracks, Values};
+use honami_host::{CallContext, Clusterer, Flow, HostError, Kind, Tracks, Values};
 use honami_model::document::ClusteringId;
 use honami_model::edit::Transaction;
 use honami_model::provenance::Provenance;
 use honami_model::track::{Span, TrackId};
 use honami_store::Clustering;
 
+use crate::ear::Ear;
 use crate::error::WorkbenchError;
 use crate::progress::Progress;
 use crate::session::Session;
@@ -15,6 +16,9 @@ use crate::track::threads;
 
 /// More groups than a person looks at when none were asked for.
 const MAX_GUESS: u32 = 12;
+
+/// What the work is called while it goes on.
+const WHAT: &str = "comparing movements";
 
 /// What to cluster with.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,6 +60,8 @@ pub struct ClusterOutcome {
     pub outlier_frames: Vec<u32>,
     /// Time it took.
     pub seconds: f64,
+    /// What the clusterer warned of.
+    pub warnings: Vec<String>,
     /// All of that in one line.
     pub line: String,
 }
@@ -98,15 +104,14 @@ impl ClusterJob {
     /// What the plugin says, [`WorkbenchError::Stopped`].
     pub fn run(mut self, progress: &dyn Progress) -> Result<ClusterDone, WorkbenchError> {
         let begun = std::time::Instant::now();
-        let watch = |share: f64, _: &str| {
-            let done = (share.clamp(0.0, 1.0) * 1000.0) as u64;
-            progress.report(done, 1000, "comparing movements")
-        };
-        let call = CallContext { progress: &watch, log: &|_: Level, _: &str| {} };
-        if progress.report(0, 1000, "comparing movements") == Flow::Stop {
+        if progress.report(0, 1000, WHAT) == Flow::Stop {
             return Err(WorkbenchError::Stopped);
         }
-        let found = self.clusterer.run(&self.tracks, &call)?;
+        let ear = Ear::new(progress);
+        let found = match ear.whole(WHAT, |call| self.clusterer.run(&self.tracks, call)) {
+            Err(HostError::Cancelled { .. }) => return Err(WorkbenchError::Stopped),
+            other => other?,
+        };
         let dendrogram = found.dendrogram;
         let outliers = found.frames.iter().filter(|note| note.outlier);
         let clustering = Clustering {
@@ -115,7 +120,7 @@ impl ClusterJob {
             cut: self.groups.unwrap_or_else(|| dendrogram.clearest_cut(MAX_GUESS)),
             dendrogram,
             outlier_frames: outliers.filter_map(|note| u32::try_from(note.frame).ok()).collect(),
-            notes: Vec::new(),
+            notes: ear.warnings(),
         };
         Ok(ClusterDone { clustering, plugin: self.plugin, seconds: begun.elapsed().as_secs_f64() })
     }
@@ -144,6 +149,7 @@ pub fn finish(session: &mut Session, done: ClusterDone) -> Result<ClusterOutcome
         n_tracks,
         group_sizes,
         outlier_frames: clustering.outlier_frames,
+        warnings: clustering.notes,
         seconds,
         line,
     })

@@ -34,26 +34,34 @@ pub struct Row {
     pub ms_per_frame: Option<f64>,
 }
 
-/// Reads a table of true positions; every frame of a point's path must be there.
+/// Reads a table of true positions of a clip of `n_frames` frames, its rows in any order.
+///
+/// A frame between a point's first and last that has no row is one in which it is hidden, where it was before.
+/// Of two rows for the same point and frame the later one counts.
 ///
 /// # Errors
-/// What the table says of its lines.
-pub fn read_truth(path: &Path) -> Result<Truth, WorkbenchError> {
-    let mut truth = Truth::new();
+/// [`WorkbenchError::TruthFrame`] for a row beyond the clip; what the table says of its lines.
+pub fn read_truth(path: &Path, n_frames: u32) -> Result<Truth, WorkbenchError> {
+    let mut rows = BTreeMap::<TrackId, BTreeMap<u32, (f64, f64, bool)>>::new();
     for row in honami_exchange::read::<TruthRow>(path)? {
-        let row = row?;
-        let true_path = truth.entry(TrackId(row.track)).or_default();
-        if true_path.positions.is_empty() {
-            true_path.first_frame = row.frame;
+        let TruthRow { track, frame, x, y, visible, .. } = row?;
+        if frame >= n_frames {
+            return Err(WorkbenchError::TruthFrame { track, frame, n_frames });
         }
-        let position = (f64::from(row.x), f64::from(row.y), row.visible);
-        // A table may skip hidden frames: there the point is where it was, unseen.
-        let index = row.frame.saturating_sub(true_path.first_frame) as usize;
-        let (x, y, _) = true_path.positions.last().copied().unwrap_or(position);
-        true_path.positions.resize(index.max(true_path.positions.len()), (x, y, false));
-        true_path.positions.push(position);
+        rows.entry(TrackId(track)).or_default().insert(frame, (f64::from(x), f64::from(y), visible));
     }
-    Ok(truth)
+    Ok(rows.into_iter().filter_map(|(track, rows)| Some((track, path_of(&rows)?))).collect())
+}
+
+fn path_of(rows: &BTreeMap<u32, (f64, f64, bool)>) -> Option<TruePath> {
+    let (&first_frame, &first) = rows.first_key_value()?;
+    let (&last_frame, _) = rows.last_key_value()?;
+    let mut at = first;
+    let positions = (first_frame..=last_frame).map(|frame| {
+        at = rows.get(&frame).copied().unwrap_or((at.0, at.1, false));
+        at
+    });
+    Some(TruePath { first_frame, positions: positions.collect() })
 }
 
 /// Points to track from a table.
@@ -112,10 +120,10 @@ pub fn compare(
                 (name, honami_exchange::spans(honami_exchange::read(path)?, n_frames)?, None)
             }
         };
-        rows.push(judge(name.clone(), points, &spans, truth, ms_per_frame)?);
+        rows.push(judge(name.clone(), points, n_frames, (&spans, truth), ms_per_frame)?);
     }
     let still = points.iter().map(|seed| (seed.track, standing(seed, n_frames))).collect();
-    rows.push(judge(STATIC.to_owned(), points, &still, truth, None)?);
+    rows.push(judge(STATIC.to_owned(), points, n_frames, (&still, truth), None)?);
     Ok(rows)
 }
 
@@ -145,10 +153,14 @@ fn follow(
     Ok((spans, driven.tracker_secs))
 }
 
-/// Appends a frame's rows to the spans of their tracks.
+/// Appends a frame's rows to the spans of their tracks; a frame that a tracker left out is lost.
 fn gather(spans: &mut BTreeMap<TrackId, Span>, frame: u32, rows: &Rows) {
     for &(track, sample) in rows {
         let span = spans.entry(track).or_insert_with(|| Span { first_frame: frame, samples: Vec::new() });
+        if let Some(&last) = span.samples.last() {
+            let lost = Sample { status: Status::Lost, quality: Quality::default(), ..last };
+            span.samples.resize((frame - span.first_frame) as usize, lost);
+        }
         span.samples.push(sample);
     }
 }
@@ -168,15 +180,15 @@ fn standing(seed: &Seed, n_frames: u32) -> Span {
 fn judge(
     tracker: String,
     points: &[Seed],
-    spans: &BTreeMap<TrackId, Span>,
-    truth: Option<&Truth>,
+    n_frames: u32,
+    (spans, truth): (&BTreeMap<TrackId, Span>, Option<&Truth>),
     ms_per_frame: Option<f64>,
 ) -> Result<Row, WorkbenchError> {
     let nothing = Span::default();
     let span = |track| spans.get(&track).unwrap_or(&nothing);
     let kept = |seed: &&Seed| {
-        let samples = &span(seed.track).samples;
-        !samples.is_empty() && samples.iter().all(|sample| sample.status.is_seen())
+        let span = span(seed.track);
+        (seed.frame..n_frames).all(|frame| span.get(frame).is_some_and(|sample| sample.status.is_seen()))
     };
     let accuracy = match truth {
         None => None,

@@ -46,7 +46,7 @@ fn ffmpeg() -> Finding {
     }
 }
 
-/// Decoded frames are kept in a file under the cache folder: it must be writable and have room.
+/// Decoded frames are kept in a file under the cache folder: it must be there, or be made.
 fn cache() -> Finding {
     let folder = honami_media::cache_folder();
     let made = folder.as_ref().is_some_and(|folder| std::fs::create_dir_all(folder).is_ok());

@@ -5,14 +5,13 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
 
-use honami_host::{
-    CallContext, DetectRequest, FrameView, HostError, Level, Point, Points, StreamInfo, Tracker,
-};
+use honami_host::{CallContext, DetectRequest, FrameView, HostError, Point, Points, StreamInfo, Tracker};
 use honami_media::Media;
 use honami_model::clip::Clip;
 use honami_model::picture::Gray;
 use honami_model::track::{Quality, Sample, Source, Span, Status, TrackId};
 
+use crate::ear::Ear;
 use crate::error::WorkbenchError;
 use crate::progress::{Flow, Progress};
 use crate::stamp::SEED;
@@ -67,12 +66,14 @@ pub type Rows = Vec<(TrackId, Sample)>;
 pub type Sink<'a> = &'a mut dyn FnMut(u32, &Rows) -> Result<(), WorkbenchError>;
 
 /// How far it came.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Driven {
     /// The first frame that was not tracked.
     pub end: u32,
     /// Time spent in the tracker, decoding and keeping aside.
     pub tracker_secs: f64,
+    /// What the tracker warned of.
+    pub warnings: Vec<String>,
 }
 
 /// Refuses points that are not in the clip.
@@ -108,31 +109,31 @@ pub fn drive(
 ) -> Result<Driven, WorkbenchError> {
     plan.seeds.sort_by_key(|seed| (seed.frame, seed.track));
     let (first, total) = (plan.frames.start, u64::from(plan.frames.end - plan.frames.start));
-    let mut ride = Ride { media, tracker, plan: &plan, board: Board::default(), tracker_secs: 0.0 };
-    ride.begin()?;
-    let mut end = plan.frames.end;
+    let ear = Ear::new(progress);
+    let mut ride = Ride { media, tracker, plan: &plan, board: Board::new(first), tracker_secs: 0.0 };
+    let mut stopped = ear.call(0, total, |call| ride.begin(call));
     for frame in plan.frames.clone() {
         let done = u64::from(frame - first);
-        let watch = |_: f64, _: &str| progress.report(done, total, "frame");
-        let call = CallContext { progress: &watch, log: &|_: Level, _: &str| {} };
-        let stepped = match progress.report(done, total, "frame") {
-            Flow::Stop => Err(WorkbenchError::Stopped),
-            Flow::Continue => ride.step(frame, numbers, &call),
-        };
-        match stepped {
-            Ok(()) => ride.board.flush(sink)?,
-            Err(WorkbenchError::Stopped | WorkbenchError::Plugin(HostError::Cancelled { .. })) => {
-                end = frame;
-                break;
-            }
-            Err(error) => return Err(error),
+        if stopped.is_ok() && progress.report(done, total, "frame") == Flow::Stop {
+            stopped = Err(WorkbenchError::Stopped);
         }
+        if stopped.is_err() {
+            break;
+        }
+        stopped = ear.call(done, total, |call| ride.step(frame, numbers, call));
+        ride.board.flush(sink)?;
     }
-    if end == plan.frames.end {
-        ride.end(sink)?;
+    if stopped.is_ok() {
+        stopped = ear.call(total, total, |call| ride.end(call));
+        ride.board.flush(sink)?;
         progress.report(total, total, "frame");
     }
-    Ok(Driven { end, tracker_secs: ride.tracker_secs })
+    match stopped {
+        // What was tracked is kept; that it was stopped shows in how far it came.
+        Ok(()) | Err(WorkbenchError::Stopped | WorkbenchError::Plugin(HostError::Cancelled { .. })) => {}
+        Err(error) => return Err(error),
+    }
+    Ok(Driven { end: ride.board.end, tracker_secs: ride.tracker_secs, warnings: ear.warnings() })
 }
 
 /// A tracker on its way through the clip.
@@ -145,7 +146,7 @@ struct Ride<'a> {
 }
 
 impl Ride<'_> {
-    fn begin(&mut self) -> Result<(), WorkbenchError> {
+    fn begin(&mut self, call: &CallContext<'_>) -> Result<(), WorkbenchError> {
         let clip = self.media.clip();
         let info = StreamInfo {
             width: clip.width,
@@ -157,7 +158,7 @@ impl Ride<'_> {
             seed: SEED,
             births: 0..0,
         };
-        Ok(self.tracker.begin(info, &CallContext::silent())?)
+        Ok(self.tracker.begin(info, call)?)
     }
 
     /// Pushes one frame and seeds what is due in it.
@@ -229,10 +230,11 @@ impl Ride<'_> {
         Ok(ids.zip(features).map(|(id, feature)| Point { id, x: feature.x, y: feature.y }).collect())
     }
 
-    fn end(&mut self, sink: Sink<'_>) -> Result<(), WorkbenchError> {
-        let rest = self.tracker.end(&CallContext::silent())?;
-        self.board.take(rest);
-        self.board.flush(sink)
+    fn end(&mut self, call: &CallContext<'_>) -> Result<(), WorkbenchError> {
+        let begun = Instant::now();
+        self.board.take(self.tracker.end(call)?);
+        self.tracker_secs += begun.elapsed().as_secs_f64();
+        Ok(())
     }
 }
 
@@ -248,8 +250,9 @@ fn due(seeds: &[Seed], frame: u32) -> impl Iterator<Item = Point> {
 }
 
 /// Rows on their way to the sink: those the tracker gave, and the seeds of frames it has not answered yet.
-#[derive(Default)]
 struct Board {
+    /// One past the last frame that was handed over.
+    end: u32,
     answered: BTreeMap<u32, Rows>,
     placed: BTreeMap<u32, Vec<Point>>,
     /// Where the live points were seen last.
@@ -257,6 +260,10 @@ struct Board {
 }
 
 impl Board {
+    fn new(first: u32) -> Self {
+        Self { end: first, answered: BTreeMap::new(), placed: BTreeMap::new(), last: BTreeMap::new() }
+    }
+
     fn take(&mut self, answers: Vec<Points>) {
         for answer in answers {
             let frame = u32::try_from(answer.frame).unwrap_or(u32::MAX);
@@ -296,6 +303,7 @@ impl Board {
                 rows.push((TrackId(point.id), Sample { x: point.x, y: point.y, status, source, quality }));
             }
             sink(frame, &rows)?;
+            self.end = frame + 1;
         }
         Ok(())
     }

@@ -53,7 +53,9 @@ pub enum WorkbenchError {
         plugin: String,
     },
     /// Frames outside the clip were asked for.
-    #[error("frames {start}..{end} were asked for, but the clip has frames 0..{n_frames}")]
+    #[error(
+        "frames {start}..{end} were asked for, but the clip has frames 0..{n_frames}: choose among these"
+    )]
     Frames {
         /// First frame asked for.
         start: u32,
@@ -104,8 +106,31 @@ pub enum WorkbenchError {
         n_tracks: usize,
     },
     /// There are no tracks.
-    #[error("the project has no tracks yet: run `honami track` first")]
+    #[error("there are no tracks yet: track features first")]
     NoTracks,
+    /// No track is seen long enough for a spectrum.
+    #[error("no track is seen in enough frames for a spectrum: track longer")]
+    TooBrief,
+    /// A point has a number that no track may have.
+    #[error("point {id}: numbers of points go up to {max}; number them anew")]
+    Number {
+        /// The number.
+        id: u32,
+        /// The largest there may be.
+        max: u32,
+    },
+    /// A true position lies beyond the clip.
+    #[error(
+        "the truth has frame {frame} of point {track}, but the clip has frames 0..{n_frames}: is it another clip's?"
+    )]
+    TruthFrame {
+        /// The point.
+        track: u32,
+        /// The frame.
+        frame: u32,
+        /// Frames of the clip.
+        n_frames: u32,
+    },
     /// The truth names no point that was tracked.
     #[error("the truth shows none of the tracked points after their first frame")]
     NoTruth,

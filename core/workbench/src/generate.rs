@@ -54,9 +54,12 @@ pub fn generate(
         }
         movie.push(&scene.render(frame).planes())?;
     }
-    // The truth first: a clip without its truth would look finished.
+    // The truth first: a clip without its truth would look finished; and no truth without its clip.
     table.finish()?;
-    movie.finish()?;
+    if let Err(error) = movie.finish() {
+        std::fs::remove_file(&truth).unwrap_or_default();
+        return Err(error.into());
+    }
     Ok(Generated {
         clip: clip.to_owned(),
         truth,

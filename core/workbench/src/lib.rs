@@ -7,6 +7,7 @@ pub mod cluster;
 pub mod compare;
 pub mod doctor;
 pub mod drive;
+mod ear;
 mod error;
 pub mod export;
 pub mod generate;

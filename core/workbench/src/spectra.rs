@@ -60,7 +60,7 @@ pub struct Spectra {
 /// Spectra of a project's shown tracks, its groups and all together.
 ///
 /// # Errors
-/// [`WorkbenchError::NoTracks`], and for a clip too short for a spectrum.
+/// [`WorkbenchError::NoTracks`], [`WorkbenchError::TooBrief`], and for a clip too short for a spectrum.
 pub fn of_project(project: &Project, n_peaks: usize) -> Result<Spectra, WorkbenchError> {
     let tracks = project.shown_all()?;
     let group_of = project.grouping()?.map(|grouping| grouping.group_of).unwrap_or_default();
@@ -82,7 +82,7 @@ pub fn of_table(path: &Path, n_peaks: usize) -> Result<Spectra, WorkbenchError> 
     let (Some(&first), Some(&last)) = (times.keys().next(), times.keys().last()) else {
         return Err(WorkbenchError::NoTracks);
     };
-    if times.len() != (last - first + 1) as usize {
+    if times.len() != (last - first) as usize + 1 {
         return Err(WorkbenchError::NoTimes { path: path.to_owned() });
     }
     let times = FrameTimes::new(times.into_values().collect())
@@ -100,6 +100,9 @@ fn of(
     group_of: &BTreeMap<TrackId, u32>,
     n_peaks: usize,
 ) -> Result<Spectra, WorkbenchError> {
+    if tracks.is_empty() {
+        return Err(WorkbenchError::NoTracks);
+    }
     let analyser = Analyser::new(times)?;
     let spectra: Vec<(TrackId, Spectrum)> = tracks
         .iter()
@@ -110,7 +113,7 @@ fn of(
         Some(Line { subject, n_tracks: median.n_tracks, peaks: median.peaks(n_peaks, OVER_FLOOR_OF_MANY) })
     };
     let all: Vec<Spectrum> = spectra.iter().map(|(_, spectrum)| spectrum.clone()).collect();
-    let first = all.first().cloned().ok_or(WorkbenchError::NoTracks)?;
+    let first = all.first().cloned().ok_or(WorkbenchError::TooBrief)?;
     let mut groups = BTreeMap::<u32, Vec<Spectrum>>::new();
     for (id, spectrum) in &spectra {
         if let Some(&group) = group_of.get(id) {

@@ -11,7 +11,7 @@ use honami_media::{Media, OpenOptions};
 use honami_model::clip::Clip;
 use honami_model::document::RunId;
 use honami_model::edit::Transaction;
-use honami_model::track::{TrackId, TrackSet};
+use honami_model::track::{Span, TrackId, TrackSet};
 use honami_store::{RunHead, RunWriter};
 
 use crate::drive::{self, Detect, Driven, Plan, Rows, Seed};
@@ -22,6 +22,9 @@ use crate::stamp::stamp;
 
 /// Frames that are written at a time.
 const CHUNK: usize = 64;
+
+/// Numbers that a table of points may use: above them there must be room for those of features to come.
+const MAX_NUMBER: u32 = i32::MAX.unsigned_abs();
 
 /// Which features are followed.
 #[derive(Clone, Debug, PartialEq)]
@@ -101,6 +104,8 @@ pub struct TrackOutcome {
     pub tracker_secs: f64,
     /// Why it ended early, when nobody stopped it; the frames before are kept.
     pub error: Option<WorkbenchError>,
+    /// What the tracker warned of.
+    pub warnings: Vec<String>,
     /// All of that in one line.
     pub line: String,
 }
@@ -178,7 +183,7 @@ impl TrackJob {
         let reached = kept.first_frame;
         let (driven, error) = match driven {
             Ok(driven) => (driven, None),
-            Err(error) => (Driven { end: reached, tracker_secs: 0.0 }, Some(error)),
+            Err(error) => (Driven { end: reached, tracker_secs: 0.0, warnings: Vec::new() }, Some(error)),
         };
         match &error {
             Some(error) => kept.writer.abandon(&error.to_string())?,
@@ -237,10 +242,9 @@ pub fn finish(session: &mut Session, done: TrackDone) -> Result<TrackOutcome, Wo
     let reached = frames.start..driven.end;
     let last = reached.end.saturating_sub(1);
     let spans = session.project.run_tracks(run)?;
-    let is_seen = |track: TrackId| {
-        spans.iter().any(|(id, span)| *id == track && span.get(last).is_some_and(|s| s.status.is_seen()))
-    };
-    let n_lost = found.iter().filter(|&track| !is_seen(track)).count();
+    let is_seen = |span: &Span| span.get(last).is_some_and(|sample| sample.status.is_seen());
+    let seen: BTreeSet<TrackId> = spans.iter().filter(|(_, span)| is_seen(span)).map(|(id, _)| *id).collect();
+    let n_lost = n_tracks - seen.len();
     if n_tracks > 0 {
         session.project.commit(Transaction::show_run(run, found))?;
     }
@@ -255,8 +259,9 @@ pub fn finish(session: &mut Session, done: TrackDone) -> Result<TrackOutcome, Wo
     if let Some(error) = &error {
         line = format!("{plugin} failed at frame {}, what came before is kept: {error}", driven.end);
     }
-    let tracker_secs = driven.tracker_secs;
-    Ok(TrackOutcome { run, n_tracks, n_lost, frames: reached, stopped, seconds, tracker_secs, error, line })
+    let Driven { tracker_secs, warnings, .. } = driven;
+    let frames = reached;
+    Ok(TrackOutcome { run, n_tracks, n_lost, frames, stopped, seconds, tracker_secs, error, warnings, line })
 }
 
 /// Seeds of the project's own tracks: where each is first seen, and each of its key-frames.
@@ -280,6 +285,9 @@ fn existing(session: &Session, frames: &Range<u32>) -> Result<Vec<Seed>, Workben
 /// A user's points; numbers that no track has yet are set aside for them.
 fn given(session: &mut Session, seeds: &[Seed]) -> Result<Vec<Seed>, WorkbenchError> {
     drive::check_seeds(seeds, session.media.clip())?;
+    if let Some(seed) = seeds.iter().find(|seed| seed.track.0 > MAX_NUMBER) {
+        return Err(WorkbenchError::Number { id: seed.track.0, max: MAX_NUMBER });
+    }
     let document = session.project.document();
     let new: TrackSet =
         seeds.iter().map(|seed| seed.track).filter(|&track| document.track(track).is_none()).collect();

@@ -15,7 +15,8 @@ use super::{Answer, options, report, track};
 /// Runs every tracker on the same points and prints one row for each.
 pub(super) fn compare(args: &Compare, common: &Common) -> anyhow::Result<Answer> {
     let (media, own, registry) = open(args, common)?;
-    let truth = args.truth.as_deref().map(compare::read_truth).transpose()?;
+    let truth =
+        args.truth.as_deref().map(|path| compare::read_truth(path, media.clip().n_frames())).transpose()?;
     let points = match (&args.points, &truth) {
         (Some(path), _) => compare::read_points(path)?,
         (None, Some(truth)) => compare::points_of(truth),

@@ -40,6 +40,7 @@ fn describe(outcome: &ClusterOutcome) -> Answer {
         "groups": outcome.group_sizes,
         "outlier_frames": outcome.outlier_frames,
         "seconds": outcome.seconds,
+        "warnings": outcome.warnings,
     });
-    Answer { json, text: outcome.line.clone() }
+    Answer { json, text: report::with_warnings(&outcome.line, &outcome.warnings) }
 }

@@ -87,3 +87,9 @@ pub(super) fn table(rows: &[Vec<String>]) -> String {
     };
     rows.iter().map(line).collect::<Vec<_>>().join("\n")
 }
+
+/// A line, and below it what a plugin warned of.
+pub(super) fn with_warnings(line: &str, warnings: &[String]) -> String {
+    let warnings = warnings.iter().map(|warning| format!("\nwarning: {warning}"));
+    std::iter::once(line.to_owned()).chain(warnings).collect()
+}

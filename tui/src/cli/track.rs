@@ -107,6 +107,7 @@ fn describe(outcome: &TrackOutcome) -> Answer {
         "stopped": outcome.stopped,
         "seconds": outcome.seconds,
         "tracker_seconds": outcome.tracker_secs,
+        "warnings": outcome.warnings,
     });
-    Answer { json, text: outcome.line.clone() }
+    Answer { json, text: report::with_warnings(&outcome.line, &outcome.warnings) }
 }

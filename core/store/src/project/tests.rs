@@ -335,7 +335,7 @@ fn the_log_tells_causes_before_effects() {
         });
         project.commit(Transaction::show_clustering(saved[0], 2)).unwrap();
         project.commit(Transaction::name_track(TrackId(1), Some("bud".to_owned()))).unwrap();
-        for (id, second) in edits.into_iter().enumerate() {
+        for (id, second) in (0_u32..).zip(edits) {
             let values = rusqlite::params![date(second), id];
             project.conn.execute("UPDATE entry SET time = ?1 WHERE id = ?2", values).unwrap();
         }

@@ -1,0 +1,48 @@
+//! Listening to a plugin at work: its progress goes on to whoever watches, its warnings are kept.
+
+use std::sync::{Mutex, PoisonError};
+
+use honami_host::{CallContext, Level};
+
+use crate::progress::Progress;
+
+/// More different warnings than a person reads.
+const MAX_WARNINGS: usize = 20;
+
+/// Listens to the calls of one job.
+pub(crate) struct Ear<'a> {
+    progress: &'a dyn Progress,
+    warnings: Mutex<Vec<String>>,
+}
+
+impl<'a> Ear<'a> {
+    pub(crate) fn new(progress: &'a dyn Progress) -> Self {
+        Self { progress, warnings: Mutex::default() }
+    }
+
+    /// Makes one call while `done` of `total` steps are done.
+    pub(crate) fn call<R>(&self, done: u64, total: u64, work: impl FnOnce(&CallContext<'_>) -> R) -> R {
+        let watch = |_: f64, _: &str| self.progress.report(done, total, "frame");
+        work(&CallContext { progress: &watch, log: &|level, text| self.hear(level, text) })
+    }
+
+    /// Makes the only call of a job; its progress is the plugin's own.
+    pub(crate) fn whole<R>(&self, what: &str, work: impl FnOnce(&CallContext<'_>) -> R) -> R {
+        let watch =
+            |share: f64, _: &str| self.progress.report((share.clamp(0.0, 1.0) * 1000.0) as u64, 1000, what);
+        work(&CallContext { progress: &watch, log: &|level, text| self.hear(level, text) })
+    }
+
+    fn hear(&self, level: Level, text: &str) {
+        let mut warnings = self.warnings.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_new = !warnings.iter().any(|known| known == text);
+        if level >= Level::Warning && is_new && warnings.len() < MAX_WARNINGS {
+            warnings.push(text.to_owned());
+        }
+    }
+
+    /// What the plugin warned of, each once, in the order it came.
+    pub(crate) fn warnings(self) -> Vec<String> {
+        self.warnings.into_inner().unwrap_or_else(PoisonError::into_inner)
+    }
+}
