@@ -1,9 +1,9 @@
 //! Hierarchies of groups: a dendrogram where they came from merging, and its cuts.
 
-use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
 
 /// One merge of a dendrogram: two clusters become one at a height.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Merge {
     /// First cluster: leaf k is k, the result of merge r is n + r.
     pub a: u32,
@@ -16,7 +16,7 @@ pub struct Merge {
 }
 
 /// A binary merge tree over n leaves in SciPy's linkage convention.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Dendrogram {
     n_leaves: u32,
     merges: Vec<Merge>,
@@ -74,12 +74,14 @@ impl Dendrogram {
         &self.merges
     }
 
-    /// The group of every leaf when the last `k - 1` merges are undone: k groups, fewer only if n < k.
+    /// The group of every leaf in a cut into `k` groups, fewer only if n < k.
     ///
-    /// Groups are numbered from 0 in the order in which their first leaf appears.
+    /// A cut undoes `k - 1` merges from the root down, each time the highest of those at the top, the later row
+    /// of equal ones. So cuts are nested and have exactly `k` groups, also where a merge lies below one that it
+    /// contains (an inversion). Groups are numbered from 0 in the order in which their first leaf appears.
     #[must_use]
     pub fn cut(&self, k: u32) -> Vec<u32> {
-        let mut number_of = std::collections::BTreeMap::new();
+        let mut number_of = BTreeMap::new();
         self.roots(k)
             .into_iter()
             .map(|root| {
@@ -93,44 +95,49 @@ impl Dendrogram {
     /// number it stays the same when the cut moves.
     #[must_use]
     pub fn nodes(&self, k: u32) -> Vec<u32> {
-        let mut seen = std::collections::BTreeSet::new();
+        let mut seen = BTreeSet::new();
         self.roots(k).into_iter().filter(|&root| seen.insert(root)).collect()
     }
 
-    /// The cluster of every leaf when the last `k - 1` merges are undone.
+    /// The cluster of every leaf in a cut into `k` groups.
     fn roots(&self, k: u32) -> Vec<u32> {
         let n = self.n_leaves as usize;
-        let keep = n.saturating_sub(k.max(1) as usize);
-        let mut parent: Vec<u32> = (0..).take(n + self.merges.len()).collect();
-        // By height, not by row: a dendrogram with inversions is cut where its merges are highest.
-        let mut order: Vec<usize> = (0..self.merges.len()).collect();
-        order.sort_by(|&i, &j| self.merges[i].height.total_cmp(&self.merges[j].height).then(i.cmp(&j)));
-        for &row in order.iter().take(keep) {
-            let merge = self.merges[row];
-            let made = self.n_leaves + u32::try_from(row).unwrap_or(u32::MAX);
-            parent[merge.a as usize] = made;
-            parent[merge.b as usize] = made;
+        let mut is_undone = vec![false; self.merges.len()];
+        self.from_the_root().take(k.saturating_sub(1) as usize).for_each(|row| is_undone[row] = true);
+        let mut roots: Vec<u32> = (0..).take(n + self.merges.len()).collect();
+        // A cluster comes after its parts: downwards, its own root is known first.
+        for (row, merge) in self.merges.iter().enumerate().rev().filter(|&(row, _)| !is_undone[row]) {
+            roots[merge.a as usize] = roots[n + row];
+            roots[merge.b as usize] = roots[n + row];
         }
-        (0..self.n_leaves)
-            .map(|mut root| {
-                while parent[root as usize] != root {
-                    root = parent[root as usize];
-                }
-                root
-            })
-            .collect()
+        roots.truncate(n);
+        roots
     }
 
-    /// The number of groups, 2 to `k_max`, at which a cut is clearest: where the heights of the merges it undoes
-    /// and of those it keeps differ by the largest factor. 1 where there is nothing to cut.
+    /// The rows in the order in which cuts undo them.
+    fn from_the_root(&self) -> impl Iterator<Item = usize> {
+        // The bits of numbers that are 0 or more sort as the numbers do; `abs` is for -0.
+        let entry = |row: usize| (self.merges[row].height.abs().to_bits(), row);
+        let mut top: BinaryHeap<_> = self.merges.len().checked_sub(1).map(entry).into_iter().collect();
+        std::iter::from_fn(move || {
+            let (_, row) = top.pop()?;
+            let Merge { a, b, .. } = self.merges[row];
+            top.extend(
+                [a, b].iter().filter_map(|&part| part.checked_sub(self.n_leaves)).map(|r| entry(r as usize)),
+            );
+            Some(row)
+        })
+    }
+
+    /// The number of groups, 2 to `k_max`, at which a cut is clearest: where the last merge that
+    /// [`cut`](Self::cut) undoes is higher than the next one by the largest factor. 1 where there is nothing to
+    /// cut.
     ///
     /// The smallest such number where several are equally clear.
     #[must_use]
     pub fn clearest_cut(&self, k_max: u32) -> u32 {
-        let mut heights: Vec<f64> = self.merges.iter().map(|merge| merge.height).collect();
-        heights.sort_by(|a, b| b.total_cmp(a));
+        let heights: Vec<f64> = self.from_the_root().map(|row| self.merges[row].height).collect();
         let mut clearest = (1, 0.0);
-        // A cut into k groups undoes the k - 1 highest merges.
         for (k, pair) in (2..=k_max).zip(heights.windows(2)) {
             let factor = pair[0] / pair[1].max(f64::MIN_POSITIVE);
             if factor > clearest.1 {

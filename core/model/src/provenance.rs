@@ -64,7 +64,7 @@ pub struct Provenance {
     pub honami_version: String,
 }
 
-/// `org.honami.klt 0.1.0 (3f2a…) levels=4 radius=10`: what made it, in one line.
+/// `org.honami.klt 0.1.0 (3f2a…), on revision 7 levels=4 radius=10`: what made it, in one line.
 impl std::fmt::Display for Provenance {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let hash = self.plugin_sha256.get(..8).unwrap_or_default();

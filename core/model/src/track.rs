@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-pub use set::TrackSet;
+pub use set::{TrackSet, TrackSetError};
 
 mod set;
 
@@ -126,6 +126,7 @@ impl Span {
     /// The frames it covers.
     #[must_use]
     pub fn frames(&self) -> std::ops::Range<u32> {
-        self.first_frame..self.first_frame + u32::try_from(self.samples.len()).unwrap_or(u32::MAX)
+        let n_frames = u32::try_from(self.samples.len()).unwrap_or(u32::MAX);
+        self.first_frame..self.first_frame.saturating_add(n_frames)
     }
 }

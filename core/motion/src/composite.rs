@@ -24,9 +24,10 @@
 
 mod headings;
 mod pairs;
+mod steps;
 
 use crate::{MotionError, Positions};
-use pairs::{Movement, Place, Step, Steps};
+use steps::{Movement, Place, Step, Steps};
 
 /// Weights of the two distances, and how unusual a frame may be.
 #[derive(Clone, Copy, Debug, PartialEq)]

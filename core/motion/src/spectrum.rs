@@ -23,12 +23,33 @@ const FEWEST: usize = 8;
 /// Grid points for each resolution cell 1 / duration.
 const PADDING: usize = 4;
 
+/// An unevenly timed clip may always last this many frames, whatever its own number: 2^22 grid points.
+const LONGEST: usize = (1 << 22) / PADDING;
+
 /// Why there is no spectrum.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("a spectrum needs at least {FEWEST} frames in which the track is seen, came {came}")]
-pub struct SpectrumError {
-    /// Number of frames there were.
-    pub came: usize,
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SpectrumError {
+    /// The clip or the track is too short.
+    #[error("a spectrum needs at least {FEWEST} frames in which the track is seen, came {came}")]
+    TooFew {
+        /// Number of frames there were.
+        came: usize,
+    },
+    /// Frames lie so far apart that the grid of frequencies would not fit in memory.
+    #[error(
+        "{gap_s} s between frames {frame} and {} are too many for a spectrum of frames usually {step_s} s \
+         apart; split the clip there, or give it a frame rate if its times are wrong",
+        frame + 1
+    )]
+    Gap {
+        /// Frame before the largest gap.
+        frame: usize,
+        /// Length of the largest gap, seconds.
+        gap_s: f64,
+        /// Median distance of two frames, seconds.
+        step_s: f64,
+    },
 }
 
 /// Power over frequency of one track or the median of several.
@@ -71,17 +92,21 @@ impl Analyser {
     /// Prepares for the tracks of a clip with these frame times.
     ///
     /// # Errors
-    /// [`SpectrumError`] for a clip of fewer than 8 frames.
+    /// [`SpectrumError`] for a clip of fewer than 8 frames, and for gaps that make it last more than 2^20 of its
+    /// usual steps and more than two for each frame.
     pub fn new(times: &FrameTimes) -> Result<Self, SpectrumError> {
         let times_s = times.as_slice().to_vec();
         let n = times_s.len();
         let (true, Some(nominal)) = (n >= FEWEST, times.nominal_fps()) else {
-            return Err(SpectrumError { came: n });
+            return Err(SpectrumError::TooFew { came: n });
         };
         let is_even = !times.is_variable();
         // Containers round times: the mean rate is right where the median step may be off by a percent.
         let fps = if is_even { (n - 1) as f64 / (times_s[n - 1] - times_s[0]) } else { nominal };
         let span_frames = (times_s[n - 1] - times_s[0]) * fps;
+        if span_frames > LONGEST.max(2 * n) as f64 {
+            return Err(largest_gap(&times_s, 1.0 / fps));
+        }
         let len = (PADDING * n.max(span_frames.ceil() as usize)).next_power_of_two();
         Ok(Self { times_s, fps, is_even, fft: RealFftPlanner::new().plan_fft_forward(len) })
     }
@@ -95,7 +120,7 @@ impl Analyser {
             .filter(|&frame| positions[frame].is_some_and(|p| p.iter().all(|c| c.is_finite())))
             .collect();
         if seen.len() < FEWEST {
-            return Err(SpectrumError { came: seen.len() });
+            return Err(SpectrumError::TooFew { came: seen.len() });
         }
         let times: Vec<f64> = seen.iter().map(|&frame| self.times_s[frame]).collect();
         let duration_s = times[times.len() - 1] - times[0];
@@ -174,6 +199,12 @@ impl Spectrum {
     pub fn peaks(&self, n_max: usize, over_floor: f64) -> Vec<Peak> {
         peaks::find(self, n_max, over_floor)
     }
+}
+
+fn largest_gap(times_s: &[f64], step_s: f64) -> SpectrumError {
+    let gaps = times_s.windows(2).map(|pair| pair[1] - pair[0]).enumerate();
+    let (frame, gap_s) = gaps.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or_default();
+    SpectrumError::Gap { frame, gap_s, step_s }
 }
 
 /// Hann window over irregular times, 0 half a mean step before the first and after the last.

@@ -75,6 +75,9 @@ impl Settings {
 }
 
 /// How hard the wind blows.
+///
+/// The steps named here hold at 720 rows and 25 frames a second and scale with height and rate:
+/// [`Level::step_px`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Level {
     /// Leaves move 1.5 px a frame.

@@ -103,10 +103,21 @@ mod tests {
     }
 
     #[test]
-    fn two_by_two_by_hand() {
-        // Windows of radius 0 have one pixel: no variance, no correlation.
-        let picture = Gray::packed(&[0, 255, 255, 0], 2, 2);
-        assert_eq!(Ncc::new(0).compare(&picture, [0.0, 0.0], &picture, [1.0, 0.0]), None);
+    fn three_by_three_by_hand() {
+        let ramp = [1, 2, 3, 4, 5, 6, 7, 8, 9]; // less its mean 5: -4..=4, squares 60
+        let dot = [9, 0, 0, 0, 0, 0, 0, 0, 0]; // less its mean 1: 8 and eight times -1, squares 72
+        for (p, q, want) in [
+            (ramp, [1, 4, 7, 2, 5, 8, 3, 6, 9], 0.6), // 16+3-4+3+0+3-4+3+16 = 36, of 60
+            (ramp, [7, 8, 9, 4, 5, 6, 1, 2, 3], -0.8), // -8-9-8+1+0+1-8-9-8 = -48, of 60
+            (ramp, [30, 28, 26, 24, 22, 20, 18, 16, 14], -1.0),
+            (dot, [0, 0, 0, 0, 9, 0, 0, 0, 0], -0.125), // -8-8+7 = -9, of 72
+            (dot, ramp, -0.547_723),                    // 8*-4 - 4 = -36, of √(72*60)
+            ([1, 2, 3, 1, 2, 3, 1, 2, 3], [1, 1, 1, 2, 2, 2, 3, 3, 3], 0.0),
+        ] {
+            let (a, b) = (Gray::packed(&p, 3, 3), Gray::packed(&q, 3, 3));
+            let got = Ncc::new(1).compare(&a, [1.0, 1.0], &b, [1.0, 1.0]);
+            assert!(got.is_some_and(|ncc| (ncc - want).abs() < 1e-6), "{p:?} {q:?}: {got:?} not {want}");
+        }
     }
 
     #[test]
@@ -116,6 +127,9 @@ mod tests {
         for (a, b) in [(&flat, &textured), (&textured, &flat), (&flat, &flat)] {
             assert_eq!(Ncc::new(5).compare(a, [30.0, 30.0], b, [30.0, 30.0]), None);
         }
+        // Windows of radius 0 have one pixel: no variance, no correlation.
+        let corners = Gray::packed(&[0, 255, 255, 0], 2, 2);
+        assert_eq!(Ncc::new(0).compare(&corners, [0.0, 0.0], &corners, [1.0, 0.0]), None);
         let dot = Gray::packed(&[7], 1, 1);
         assert_eq!(Ncc::new(3).compare(&dot, [0.0, 0.0], &dot, [0.0, 0.0]), None);
     }

@@ -115,7 +115,7 @@ impl Transaction {
     /// The tracks whose samples this transaction may change.
     #[must_use]
     pub fn touched(&self) -> TrackSet {
-        self.edits.iter().flat_map(|edit| Vec::<(u32, u32)>::from(edit.touched())).collect::<Vec<_>>().into()
+        self.edits.iter().map(Edit::touched).collect()
     }
 }
 

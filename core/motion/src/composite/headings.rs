@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use super::Moments;
-use super::pairs::Steps;
+use super::steps::Steps;
 
 /// Number, sum and sum of squares of the angles between all pairs of velocities, for every step.
 pub(super) fn moments(steps: &Steps) -> Vec<Moments> {

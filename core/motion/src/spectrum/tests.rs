@@ -141,15 +141,29 @@ fn noise_has_hardly_a_peak_and_a_group_shows_a_sway_that_no_track_does() {
 }
 
 #[test]
+fn a_gap_costs_no_more_memory_than_there_is() {
+    let gap_after_49 = |gap_s: f64| {
+        let times = (0..100).map(|k| f64::from(k) * 0.04 + if k < 50 { 0.0 } else { gap_s });
+        Analyser::new(&FrameTimes::new(times.collect()).expect("times"))
+    };
+    assert!(gap_after_49(40_000.0).is_ok(), "a million frames");
+    for gap_s in [43_200.0, 1e9, 1e300] {
+        let error = gap_after_49(gap_s).unwrap_err();
+        assert!(matches!(error, SpectrumError::Gap { frame: 49, .. }), "{error:?}");
+        assert!(error.to_string().contains("between frames 49 and 50"), "{error}");
+    }
+}
+
+#[test]
 fn what_cannot_be_analysed_says_so_and_stillness_is_zero() {
     assert_eq!(
         Analyser::new(&FrameTimes::constant(7, 25.0).unwrap()).unwrap_err(),
-        SpectrumError { came: 7 }
+        SpectrumError::TooFew { came: 7 }
     );
     let clip = Clip::even(100, 25.0);
     let mut track = vec![None; 100];
     track[..7].fill(Some([1.0, 2.0]));
-    assert_eq!(clip.analyser().track(&track).unwrap_err(), SpectrumError { came: 7 });
+    assert_eq!(clip.analyser().track(&track).unwrap_err(), SpectrumError::TooFew { came: 7 });
     for still in [vec![Some([1.0, 2.0]); 100], track.iter().map(|_| Some([f32::MAX, 0.0])).collect()] {
         let spectrum = clip.analyser().track(&still).unwrap();
         assert!(spectrum.power_px2.iter().all(|p| p.is_finite()));
