@@ -40,12 +40,8 @@ const MAY_USE: &[(&str, &[&str])] = &[
 ];
 
 /// Libraries that one package alone may use.
-const ONLY_USER: &[(&str, &str)] = &[
-    ("libloading", "honami-host"),
-    ("rusqlite", "honami-store"),
-    ("ratatui", "honami"),
-    ("crossterm", "honami"),
-];
+const ONLY_USER: &[(&str, &str)] =
+    &[("libloading", "honami-host"), ("rusqlite", "honami-store"), ("ratatui", "honami")];
 
 /// Folders in which `unsafe` is allowed by name.
 const UNSAFE_IN: &[&str] = &["core/abi", "core/plugin", "core/host", "core/media", "core/vision"];

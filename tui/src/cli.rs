@@ -15,9 +15,12 @@ mod track;
 use std::path::Path;
 use std::process::ExitCode;
 
-use clap::Parser as _;
+use clap::error::ErrorKind;
+use clap::{CommandFactory as _, Parser as _};
+use honami_workbench::WorkbenchError;
+use honami_workbench::plugins::{HostError, ValueError};
 use honami_workbench::session::{Session, SessionOptions};
-use honami_workbench::store::{Access, Project};
+use honami_workbench::store::{Access, Project, StoreError};
 
 use self::args::{Cli, Command, Common};
 
@@ -27,6 +30,25 @@ struct Answer {
     json: serde_json::Value,
     /// For people; without a final line break.
     text: String,
+    /// Whether all was done that was asked for.
+    done: bool,
+}
+
+/// The command line was wrong in a way that its grammar does not catch.
+#[derive(Debug)]
+struct Usage(String);
+
+impl std::fmt::Display for Usage {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Usage {}
+
+/// Fails as wrong usage unless the condition holds.
+fn want(condition: bool, otherwise: impl FnOnce() -> String) -> Result<(), Usage> {
+    if condition { Ok(()) } else { Err(Usage(otherwise())) }
 }
 
 /// Runs the command line of this process.
@@ -34,20 +56,59 @@ struct Answer {
 pub fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
-        Err(error) => error.exit(),
+        Err(error) => unknown_command(&error).unwrap_or(error).exit(),
     };
-    let result = match cli.command {
-        Some(command) => run(command, &cli.common),
-        None => open(cli.project.as_deref(), &cli.common).map(|()| None),
+    let result = match (cli.command, cli.project) {
+        (Some(_), Some(project)) => {
+            Err(Usage(format!("{} stands before a command", project.display())).into())
+        }
+        (Some(command), None) => run(command, &cli.common),
+        (None, project) => open(project.as_deref(), &cli.common).map(|()| None),
     };
-    match result.and_then(|answer| answer.map_or(Ok(()), |answer| answer.print(cli.common.json))) {
-        Ok(()) => ExitCode::SUCCESS,
+    let printed = result.and_then(|answer| match answer {
+        Some(answer) => answer.print(cli.common.json).map(|()| answer.done),
+        None => Ok(true),
+    });
+    match printed {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
         Err(error) if broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
             report::complain(&error);
-            ExitCode::FAILURE
+            if is_usage(&error) { ExitCode::from(2) } else { ExitCode::FAILURE }
         }
     }
+}
+
+/// What to say of a first word that is neither a command nor a file: clap takes it for a project.
+fn unknown_command(error: &clap::Error) -> Option<clap::Error> {
+    let word = std::env::args().skip(1).find(|word| !word.starts_with('-'))?;
+    let mut command = Cli::command();
+    let is_command = command.get_subcommands().any(|known| known.get_name() == word);
+    if error.kind() != ErrorKind::UnknownArgument || is_command || Path::new(&word).exists() {
+        return None;
+    }
+    let alike = command.get_subcommands().map(clap::Command::get_name);
+    let alike: Vec<&str> =
+        alike.filter(|name| word.len() > 1 && name.starts_with(&word[..word.len().min(2)])).collect();
+    let hint =
+        if alike.is_empty() { String::new() } else { format!("; did you mean {}?", alike.join(" or ")) };
+    let text = format!("there is no command and no file {word:?}{hint}");
+    Some(command.error(ErrorKind::InvalidSubcommand, text))
+}
+
+/// Whether whoever typed the command asked for what there is not, rather than the work having failed.
+fn is_usage(error: &anyhow::Error) -> bool {
+    let by_plugin = |error: &HostError| {
+        matches!(error, HostError::NotFound { .. } | HostError::Ambiguous { .. } | HostError::Value(_))
+    };
+    error.chain().any(|cause| {
+        let wrapped = cause.downcast_ref::<WorkbenchError>();
+        cause.is::<Usage>()
+            || cause.is::<ValueError>()
+            || cause.downcast_ref::<HostError>().is_some_and(by_plugin)
+            || wrapped.is_some_and(|error| matches!(error, WorkbenchError::Plugin(error) if by_plugin(error)))
+    })
 }
 
 impl Answer {
@@ -56,8 +117,7 @@ impl Answer {
         use std::io::Write as _;
         let mut out = std::io::stdout().lock();
         if json {
-            serde_json::to_writer_pretty(&mut out, &self.json)?;
-            writeln!(out)?;
+            writeln!(out, "{}", serde_json::to_string_pretty(&self.json)?)?;
         } else if !self.text.is_empty() {
             writeln!(out, "{}", self.text)?;
         }
@@ -76,6 +136,7 @@ fn broken_pipe(error: &anyhow::Error) -> bool {
 fn run(command: Command, common: &Common) -> anyhow::Result<Option<Answer>> {
     let answer = match command {
         Command::New(args) => project::new(&args, common)?,
+        Command::Relink(args) => project::relink(&args)?,
         Command::Track(args) => track::track(&args, common)?,
         Command::Cluster(args) => groups::cluster(&args, common)?,
         Command::Edit(args) => return edit::edit(&args.project, common).map(|()| None),
@@ -96,16 +157,44 @@ fn run(command: Command, common: &Common) -> anyhow::Result<Option<Answer>> {
 /// Opens the terminal UI on a project, or on a new project made from a clip.
 fn open(path: Option<&Path>, common: &Common) -> anyhow::Result<()> {
     let Some(path) = path else {
-        anyhow::bail!("a project or a clip is wanted: `honami CLIP` opens a clip, `honami demo` makes one");
+        let wanted = "a project or a clip is wanted: `honami CLIP` opens a clip, `honami demo` makes one";
+        return Err(Usage(wanted.to_owned()).into());
     };
+    want(path.exists() || path.to_string_lossy().contains(['%', '*', '?']), || {
+        format!(
+            "there is no file {}: a project, a clip or a command is wanted; see honami --help",
+            path.display()
+        )
+    })?;
     let is_project = path.extension().is_some_and(|e| e == "honami");
     let project = if is_project { path.to_owned() } else { project::name_for(path) };
     let session = if is_project || project.exists() {
-        Session::open_or_look(&project, &options(common))?
+        let opened = Session::open_or_look(&project, &options(common));
+        opened.map_err(|error| where_is_the_clip(error, &project))?
     } else {
         project::make(&project, path, None, common)?
     };
+    if !is_project && session.media.source().canonicalize().ok() != path.canonicalize().ok() {
+        let (project, clip) = (project.display(), path.display());
+        anyhow::bail!(
+            "{project} belongs to another clip: `honami new NAME.honami {clip}` makes one of its own"
+        );
+    }
     crate::app::run(session)
+}
+
+/// Adds how to say where a clip is that is no longer found.
+fn where_is_the_clip(error: WorkbenchError, project: &Path) -> anyhow::Error {
+    let lost = matches!(
+        error,
+        WorkbenchError::Store(StoreError::MediaMissing { .. } | StoreError::MediaDiffers { .. })
+    );
+    let error = anyhow::Error::from(error);
+    if lost {
+        error.context(format!("`honami relink {} CLIP` says where it is", project.display()))
+    } else {
+        error
+    }
 }
 
 fn options(common: &Common) -> SessionOptions {
@@ -115,7 +204,7 @@ fn options(common: &Common) -> SessionOptions {
 /// Opens a project for a command that writes to it.
 fn session(path: &Path, common: &Common) -> anyhow::Result<Session> {
     there(path)?;
-    let session = Session::open(path, &options(common))?;
+    let session = Session::open(path, &options(common)).map_err(|error| where_is_the_clip(error, path))?;
     session.notes.iter().for_each(|note| report::say(note));
     Ok(session)
 }

@@ -21,6 +21,6 @@ pub mod rows;
 pub mod spans;
 pub mod table;
 
-pub use rows::{PointRow, TrackRow, TruthRow, trust};
+pub use rows::{GroupRow, PointRow, TrackRow, TruthRow, trust};
 pub use spans::spans;
 pub use table::{Reader, Row, TableError, Writer, read};

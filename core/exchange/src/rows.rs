@@ -177,3 +177,34 @@ impl Row for TruthRow {
         line.put(self.branch);
     }
 }
+
+/// The group of a track: `track,group,name`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GroupRow {
+    /// The track.
+    pub track: TrackId,
+    /// Its group, numbered from 1 as on the screen.
+    pub group: u32,
+    /// What a person calls the group; empty where nobody has named it.
+    pub name: String,
+}
+
+impl Row for GroupRow {
+    const COLUMNS: &'static [&'static str] = &["track", "group", "name"];
+    const NEEDED: &'static [&'static str] = &["track", "group"];
+
+    fn parse(fields: &Fields<'_>) -> Result<Self, TableError> {
+        Ok(Self {
+            track: TrackId(fields.required("track", ID, whole)?),
+            group: fields
+                .required("group", "a whole number of 1 or more", |text| whole(text).filter(|&g| g > 0))?,
+            name: fields.text("name").unwrap_or_default().to_owned(),
+        })
+    }
+
+    fn put(&self, line: &mut Line) {
+        line.put(self.track);
+        line.put(self.group);
+        line.put(&self.name);
+    }
+}

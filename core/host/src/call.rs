@@ -170,6 +170,10 @@ unsafe extern "C" fn reserve(
     let (Some(desk), id) = (unsafe { (desk(call), text(schema)) }) else { return code::ARGUMENT };
     let mut open = desk.open();
     let Some(schema) = open.expected("reserve", &id) else { return code::ARGUMENT };
+    if open.reply.table(schema).is_some() {
+        open.reply.faults.push(format!("reserved {id} after committing it"));
+        return code::ARGUMENT;
+    }
     if cols.is_null() || ncols == 0 {
         open.reply.faults.push(format!("reserved {id} with no columns"));
         return code::ARGUMENT;

@@ -2,6 +2,7 @@
 #![allow(unsafe_code, reason = "this is where Rust calls into C")]
 
 mod input;
+mod known;
 mod library;
 
 pub(crate) use library::{Loaded, load};
@@ -16,6 +17,7 @@ use crate::reply::Reply;
 use crate::values::Value;
 use honami_abi::{self as abi, code, draft, interface, kind};
 use input::{InputTable, frame};
+use known::known;
 use std::ffi::{CStr, CString, c_char, c_void};
 use std::ptr::{NonNull, null};
 use std::sync::{Arc, MutexGuard, PoisonError};
@@ -23,6 +25,8 @@ use std::sync::{Arc, MutexGuard, PoisonError};
 /// An instance of a plugin of a loaded library.
 pub(crate) struct InProcess {
     instance: NonNull<abi::Instance>,
+    /// What the plugin knew of it.
+    known: abi::Instance,
     interfaces: Interfaces,
     desk: Box<CallDesk>,
     library: Arc<Loaded>,
@@ -33,15 +37,15 @@ pub(crate) struct InProcess {
 // SAFETY: the ABI allows every call from any thread, one at a time: `&mut self` and `Drop` see to that.
 unsafe impl Send for InProcess {}
 
-/// The tables of functions that the plugin has; they live as long as the library, which is for ever.
+/// What the plugin knew of the tables of functions that it has.
 #[derive(Default)]
 struct Interfaces {
-    tracker: Option<&'static abi::TrackerV1>,
-    detect: Option<&'static abi::DetectV1>,
-    field: Option<&'static abi::FieldV1>,
-    clusterer: Option<&'static abi::ClustererV1>,
-    structure: Option<&'static draft::StructureV1>,
-    simulator: Option<&'static draft::SimulatorV1>,
+    tracker: Option<abi::TrackerV1>,
+    detect: Option<abi::DetectV1>,
+    field: Option<abi::FieldV1>,
+    clusterer: Option<abi::ClustererV1>,
+    structure: Option<draft::StructureV1>,
+    simulator: Option<draft::SimulatorV1>,
 }
 
 /// Makes an instance of a plugin.
@@ -69,19 +73,16 @@ pub(crate) fn create(
         return Err(HostError::Failed { plugin: info.id.clone(), function: "create", code, text });
     };
     let parallel = info.caps.parallel_instances;
-    let mut made = InProcess { instance, interfaces: Interfaces::default(), desk, library, parallel };
-    // SAFETY: the plugin has just handed it out.
-    let raw = unsafe { instance.as_ref() };
-    let complete = abi::has!(raw, abi::Instance, get_interface)
-        && raw.destroy.is_some()
-        && raw.set_params.is_some()
-        && raw.get_interface.is_some();
+    // SAFETY: the plugin has just handed it out, with its size.
+    let known = unsafe { known(instance.as_ptr()) };
+    let complete = known.destroy.is_some() && known.set_params.is_some() && known.get_interface.is_some();
+    let mut made = InProcess { instance, known, interfaces: Interfaces::default(), desk, library, parallel };
     if !complete {
         return Err(misbehaved("create", "the instance lacks functions".into()));
     }
     made.interfaces = made.interfaces(info).map_err(|what| misbehaved("get_interface", what))?;
     if let Some(latency) =
-        made.interfaces.tracker.map(|table| table.latency).filter(|l| *l != info.caps.latency)
+        made.interfaces.tracker.as_ref().map(|table| table.latency).filter(|l| *l != info.caps.latency)
     {
         let what = format!("its manifest has latency {}, its table {latency}", info.caps.latency);
         return Err(misbehaved("get_interface", what));
@@ -91,14 +92,13 @@ pub(crate) fn create(
 
 /// A table of functions, if the plugin announces it; it must then be whole.
 macro_rules! interface {
-    ($self:ident, $info:ident, $id:expr, $table:ty, $last:ident, [$($function:ident),*]) => {
+    ($self:ident, $info:ident, $id:expr, $table:ty, [$($function:ident),*]) => {
         match $self.interface($info, $id)? {
             None => None,
             Some(pointer) => {
-                // SAFETY: the plugin hands out the table of this id, which lives as long as its library: for ever.
-                let table: &'static $table = unsafe { &*pointer.cast::<$table>() };
-                let whole = abi::has!(table, $table, $last) $(&& table.$function.is_some())*;
-                if !whole {
+                // SAFETY: the plugin hands out the table of this id, with its size; it lives for ever.
+                let table = unsafe { known(pointer.cast::<$table>()) };
+                if !($(table.$function.is_some())&&*) {
                     return Err(format!("the table of {} lacks functions", $id.to_string_lossy()));
                 }
                 Some(table)
@@ -124,21 +124,13 @@ impl InProcess {
                 info,
                 interface::TRACKER,
                 abi::TrackerV1,
-                end,
                 [begin, seed, retire, push, end]
             ),
-            detect: interface!(self, info, interface::DETECT, abi::DetectV1, detect, [detect]),
-            field: interface!(self, info, interface::FIELD, abi::FieldV1, field, [field]),
-            clusterer: interface!(self, info, interface::CLUSTERER, abi::ClustererV1, run, [run]),
-            structure: interface!(self, info, draft::STRUCTURE, draft::StructureV1, run, [run]),
-            simulator: interface!(
-                self,
-                info,
-                draft::SIMULATOR,
-                draft::SimulatorV1,
-                step,
-                [prepare, reset, step]
-            ),
+            detect: interface!(self, info, interface::DETECT, abi::DetectV1, [detect]),
+            field: interface!(self, info, interface::FIELD, abi::FieldV1, [field]),
+            clusterer: interface!(self, info, interface::CLUSTERER, abi::ClustererV1, [run]),
+            structure: interface!(self, info, draft::STRUCTURE, draft::StructureV1, [run]),
+            simulator: interface!(self, info, draft::SIMULATOR, draft::SimulatorV1, [prepare, reset, step]),
         })
     }
 
@@ -147,22 +139,23 @@ impl InProcess {
         if !info.offers(&name) {
             return Ok(None);
         }
-        // SAFETY: the instance is alive and has the function: `create` has looked.
-        let table = unsafe { self.instance.as_ref() }
-            .get_interface
-            .map_or(null(), |get| unsafe { get(self.instance.as_ptr(), id.as_ptr()) });
-        let whole = !table.is_null() && table.cast::<u64>().is_aligned();
-        if whole { Ok(Some(table)) } else { Err(format!("its manifest has {name}, the instance has none")) }
+        let table = self.known.get_interface.map_or(null(), |get| {
+            // SAFETY: the instance is alive, the id a constant.
+            unsafe { get(self.instance.as_ptr(), id.as_ptr()) }
+        });
+        if table.is_null() {
+            return Err(format!("its manifest has {name}, the instance has none"));
+        }
+        Ok(Some(table))
     }
 }
 
 impl Instance for InProcess {
     fn invoke(&mut self, request: &Request<'_>, cx: &CallContext<'_>, reply: &mut Reply) {
         let _turn = turn(&self.library, self.parallel);
-        let (raw, interfaces) = (self.instance.as_ptr(), &self.interfaces);
         self.desk.call(cx, request.schemas(), reply, |call| {
-            // SAFETY: instance, tables and context are alive, and what `call_plugin` passes lives until it returns.
-            unsafe { call_plugin(raw, interfaces, request, call) }.unwrap_or(code::UNSUPPORTED)
+            // SAFETY: the context is alive, and what `call_plugin` passes lives until it returns.
+            unsafe { call_plugin(self, request, call) }.unwrap_or(code::UNSUPPORTED)
         });
     }
 }
@@ -170,11 +163,10 @@ impl Instance for InProcess {
 impl Drop for InProcess {
     fn drop(&mut self) {
         let _turn = turn(&self.library, self.parallel);
-        // SAFETY: alive until here, and nothing of it runs.
-        unsafe {
-            if let Some(destroy) = self.instance.as_ref().destroy {
-                destroy(self.instance.as_ptr());
-            }
+        // An instance without it stays: there is no other way to free it.
+        if let Some(destroy) = self.known.destroy {
+            // SAFETY: alive until here, and nothing of it runs.
+            unsafe { destroy(self.instance.as_ptr()) };
         }
     }
 }
@@ -187,40 +179,40 @@ fn turn(library: &Loaded, parallel: bool) -> Option<MutexGuard<'_, ()>> {
 /// Passes a request to the function of its table; `None` when the plugin has no such table.
 ///
 /// # Safety
-/// `raw`, the tables and `call` are alive.
-unsafe fn call_plugin(
-    raw: *mut abi::Instance,
-    has: &Interfaces,
-    request: &Request<'_>,
-    call: *const abi::Call,
-) -> Option<i32> {
-    // SAFETY: the caller's promise; every table below is built here and outlives the call it is passed to.
+/// `call` is alive.
+unsafe fn call_plugin(plugin: &InProcess, request: &Request<'_>, call: *const abi::Call) -> Option<i32> {
+    let (raw, has) = (plugin.instance.as_ptr(), &plugin.interfaces);
+    // SAFETY: the caller's promise; the instance is alive as long as `plugin`; every table below is built here and outlives the call it is passed to.
     unsafe {
         Some(match *request {
-            Request::SetParams(values) => set_params(raw, call, values)?,
-            Request::Begin(info) => (has.tracker?.begin?)(raw, call, &input::stream(info)),
-            Request::Seed(points) => (has.tracker?.seed?)(raw, call, InputTable::points(points).raw()),
-            Request::Retire(ids) => (has.tracker?.retire?)(raw, call, ids.as_ptr(), ids.len() as u64),
-            Request::Push(view) => (has.tracker?.push?)(raw, call, &frame(view)),
-            Request::End => (has.tracker?.end?)(raw, call),
+            Request::SetParams(values) => set_params(plugin, call, values)?,
+            Request::Begin(info) => (has.tracker.as_ref()?.begin?)(raw, call, &input::stream(info)),
+            Request::Seed(points) => {
+                (has.tracker.as_ref()?.seed?)(raw, call, InputTable::points(points).raw())
+            }
+            Request::Retire(ids) => {
+                (has.tracker.as_ref()?.retire?)(raw, call, ids.as_ptr(), ids.len() as u64)
+            }
+            Request::Push(view) => (has.tracker.as_ref()?.push?)(raw, call, &frame(view)),
+            Request::End => (has.tracker.as_ref()?.end?)(raw, call),
             Request::Detect(wanted) => {
                 let (picture, points) = (frame(&wanted.frame), InputTable::points(wanted.points));
-                (has.detect?.detect?)(raw, call, &input::detect(wanted, &picture, points.raw()))
+                (has.detect.as_ref()?.detect?)(raw, call, &input::detect(wanted, &picture, points.raw()))
             }
             Request::Field { from, to, max_threads } => {
                 let (from, to) = (frame(from), frame(to));
                 let struct_size = size_of::<abi::FieldInput>() as u32;
                 let input =
                     abi::FieldInput { struct_size, max_threads, from: &raw const from, to: &raw const to };
-                (has.field?.field?)(raw, call, &input)
+                (has.field.as_ref()?.field?)(raw, call, &input)
             }
             Request::Cluster(tracks) => {
                 let (rows, times) = (InputTable::tracks(tracks), InputTable::times(tracks));
-                (has.clusterer?.run?)(raw, call, &input::clusterer(tracks, rows.raw(), times.raw()))
+                (has.clusterer.as_ref()?.run?)(raw, call, &input::clusterer(tracks, rows.raw(), times.raw()))
             }
             Request::Grow(tracks) => {
                 let (rows, times) = (InputTable::tracks(tracks), InputTable::times(tracks));
-                (has.structure?.run?)(raw, call, &input::structure(tracks, rows.raw(), times.raw()))
+                (has.structure.as_ref()?.run?)(raw, call, &input::structure(tracks, rows.raw(), times.raw()))
             }
             Request::Prepare { nodes, n_instances, max_threads, seed } => {
                 let skeleton = InputTable::skeleton(nodes);
@@ -232,22 +224,22 @@ unsafe fn call_plugin(
                     n_instances,
                     reserved: 0,
                 };
-                (has.simulator?.prepare?)(raw, call, &input)
+                (has.simulator.as_ref()?.prepare?)(raw, call, &input)
             }
-            Request::Reset => (has.simulator?.reset?)(raw, call),
+            Request::Reset => (has.simulator.as_ref()?.reset?)(raw, call),
             Request::Step { dt, n_steps, wind } => {
                 let gusts = InputTable::wind(wind);
                 let gusts = if wind.is_empty() { null() } else { gusts.raw() };
-                (has.simulator?.step?)(raw, call, dt, n_steps, gusts)
+                (has.simulator.as_ref()?.step?)(raw, call, dt, n_steps, gusts)
             }
         })
     }
 }
 
 /// # Safety
-/// `raw` and `call` are alive.
+/// `call` is alive.
 unsafe fn set_params(
-    raw: *mut abi::Instance,
+    plugin: &InProcess,
     call: *const abi::Call,
     values: &[(&str, &Value, u32)],
 ) -> Option<i32> {
@@ -264,8 +256,10 @@ unsafe fn set_params(
         .zip(&strings)
         .map(|((_, value, kind), (id, text))| raw_value(value, *kind, id.as_ptr(), text.as_ptr()))
         .collect();
-    // SAFETY: the caller's promise; values and strings outlive the call.
-    Some(unsafe { ((*raw).set_params?)(raw, call, values.as_ptr(), values.len() as u32) })
+    // SAFETY: the caller's promise; the instance is alive; values and strings outlive the call.
+    Some(unsafe {
+        (plugin.known.set_params?)(plugin.instance.as_ptr(), call, values.as_ptr(), values.len() as u32)
+    })
 }
 
 fn raw_value(value: &Value, value_kind: u32, id: *const c_char, text: *const c_char) -> abi::Value {

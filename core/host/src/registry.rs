@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Where plugins are looked for; the first of two with the same id wins.
 #[derive(Clone, Debug, Default)]
@@ -86,6 +87,8 @@ pub struct PluginInfo {
     pub params: Vec<Param>,
     /// New ids of renamed parameters.
     pub renamed: BTreeMap<String, String>,
+    /// What all of this was read from, to tell whether the library is still the same when it is loaded.
+    pub(crate) manifest: Arc<[u8]>,
 }
 
 impl PluginInfo {
@@ -206,7 +209,7 @@ impl Registry {
     /// Adds the plugins of a library. One that carries no manifest is no plugin, which is a problem if it was named.
     fn add_file(&mut self, file: &Path, trust: Trust, named: bool) {
         match note::read(file) {
-            Ok(Some((manifest, _))) => self.add_manifest(file, &trust, manifest),
+            Ok(Some((manifest, json))) => self.add_manifest(file, &trust, manifest, &json.into()),
             Ok(None) if named => self.problems.push(HostError::File {
                 path: file.to_owned(),
                 why: "is no honami plugin: it carries no manifest (.note.honami)".into(),
@@ -216,7 +219,7 @@ impl Registry {
         }
     }
 
-    fn add_manifest(&mut self, file: &Path, trust: &Trust, manifest: Manifest) {
+    fn add_manifest(&mut self, file: &Path, trust: &Trust, manifest: Manifest, json: &Arc<[u8]>) {
         for plugin in manifest.plugins {
             let kind = serde_json::from_value(plugin.kind.clone().into());
             let (Ok(kind), Ok((params, renamed))) = (kind, plugin.params()) else {
@@ -241,6 +244,7 @@ impl Registry {
                 caps: plugin.caps,
                 params,
                 renamed,
+                manifest: Arc::clone(json),
             };
             let hidden = self.plugins.iter().any(|other| other.id == info.id);
             if hidden { self.shadowed.push(info) } else { self.plugins.push(info) }

@@ -41,23 +41,20 @@ impl OnDemand {
         if let Some(frame) = self.recent(n) {
             return Ok(Some(frame));
         }
-        if self.running.is_none() || n < self.next || (self.source.is_raw() && n != self.next) {
-            let (start, running) = self.source.decode(n)?;
-            (self.next, self.running) = (start, Some(running));
-        }
-        while let Some(running) = &mut self.running {
-            let mut frame = vec![0; self.frame_len];
-            // After an error the decoder is of no use; the next request starts it again.
-            match running.next(&mut frame) {
-                Ok(true) => {}
-                Ok(false) => self.running = None,
-                Err(error) => {
-                    self.running = None;
-                    return Err(error);
-                }
+        // Kept again only once it has given this frame: after the end, an error or a panic it is of no use.
+        let mut running = match self.running.take() {
+            Some(running) if n == self.next || (n > self.next && !self.source.is_raw()) => running,
+            stale => {
+                drop(stale);
+                let (start, running) = self.source.decode(n)?;
+                self.next = start;
+                running
             }
-            if self.running.is_none() {
-                break;
+        };
+        loop {
+            let mut frame = vec![0; self.frame_len];
+            if !running.next(&mut frame)? {
+                return Ok(None);
             }
             let frame: Arc<[u8]> = frame.into();
             if self.recent.len() == self.capacity {
@@ -66,9 +63,9 @@ impl OnDemand {
             self.recent.push_back((self.next, Arc::clone(&frame)));
             self.next += 1;
             if self.next > n {
+                self.running = Some(running);
                 return Ok(Some(frame));
             }
         }
-        Ok(None)
     }
 }

@@ -10,7 +10,7 @@ use honami_model::clip::{Clip, FrameTimes};
 use crate::cache::{Folder, Wanted};
 use crate::error::MediaError;
 use crate::media::{Head, Media};
-use crate::source::{Probed, Source, ffmpeg, mp4, sequence, y4m};
+use crate::source::{Probed, Source, contained, ffmpeg, mp4, sequence, y4m};
 use crate::{hash, programs};
 
 /// How to open a clip. The default serves everybody but tests and containers that lie.
@@ -90,11 +90,11 @@ pub fn open_with(
     let miscounted = folder.as_ref().map(|folder| folder.mark_of(&sha256));
     on_step(Step::Indexing);
     let count_frames = miscounted.as_ref().is_some_and(|mark| mark.exists());
-    let probed = match (kind, images) {
-        (Kind::Y4m, _) => y4m::probe(path)?,
-        (_, Some((files, notes))) => sequence::probe(path, files, notes)?,
-        (kind, None) => probe_video(path, kind, options.decoder, count_frames)?,
-    };
+    let probed = contained(path, || match (kind, images) {
+        (Kind::Y4m, _) => y4m::probe(path),
+        (_, Some((files, notes))) => sequence::probe(path, files, notes),
+        (kind, None) => probe_video(path, kind, options.decoder, count_frames),
+    })??;
     let Probed { shape, times_s, mut notes, source } = probed;
     let times = frame_times(path, times_s, options.fps, &mut notes)?;
     let clip = Clip { width: shape.width, height: shape.height, times };

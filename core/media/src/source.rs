@@ -1,5 +1,7 @@
 //! Where frames come from: each kind of clip decodes in display order, behind one small trait.
 
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 use honami_model::picture::{Gray, Planes, Range};
@@ -94,4 +96,18 @@ pub(crate) fn check_size(path: &Path, width: u64, height: u64) -> Result<(u32, u
         return Ok((width as u32, height as u32));
     }
     Err(MediaError::damaged(path, format!("its frames are said to be {width}x{height}")))
+}
+
+/// Runs a decoder: its panic becomes an error. What `work` was changing must not be used afterwards.
+pub(crate) fn contained<T>(path: &Path, work: impl FnOnce() -> T) -> Result<T, MediaError> {
+    catch_unwind(AssertUnwindSafe(work)).map_err(|panic| {
+        let said = first_line(&*panic);
+        let why = format!("the decoder breaks down on it: {said}; copy it anew or convert it with ffmpeg");
+        MediaError::damaged(path, why)
+    })
+}
+
+fn first_line(panic: &(dyn Any + Send)) -> &str {
+    let text = panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref().copied());
+    text.and_then(|text| text.lines().next()).unwrap_or("it does not say why")
 }

@@ -3,11 +3,15 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use honami_model::clip::{Clip, FrameTimes};
 use image::{DynamicImage, GrayImage, ImageBuffer, RgbImage};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use tempfile::TempDir;
 
+use crate::cache::{Filling, Folder, Wanted};
+use crate::media::Head;
+use crate::source::Shape;
 use crate::{Decoder, Media, OpenOptions, ffmpeg_version, open};
 
 mod bad;
@@ -53,6 +57,27 @@ impl Place {
     /// Names of the cache's files, without the key.
     fn cached(&self) -> Vec<String> {
         self.names("cache").iter().map(|name| name.rsplit('.').next().unwrap().to_owned()).collect()
+    }
+
+    /// A cache file to be filled with `n` frames.
+    fn filling(&self, shape: Shape, n: u32) -> Filling {
+        let wanted = Wanted { key: "key".to_owned(), shape, n_frames: n };
+        Folder::find(Some(&self.cache()), None).unwrap().begin(&wanted).unwrap()
+    }
+
+    /// What opening would know of a clip of `n` frames.
+    fn head(&self, shape: Shape, n: u32) -> Head {
+        let clip =
+            Clip { width: shape.width, height: shape.height, times: FrameTimes::constant(n, 25.0).unwrap() };
+        Head {
+            clip,
+            notes: Vec::new(),
+            sha256: String::new(),
+            path: self.path("clip"),
+            shape,
+            recent_frames: Some(2),
+            miscounted: None,
+        }
     }
 
     /// `n` moving gray pictures as PNG, in a folder.

@@ -103,7 +103,7 @@ impl Dendrogram {
     fn roots(&self, k: u32) -> Vec<u32> {
         let n = self.n_leaves as usize;
         let mut is_undone = vec![false; self.merges.len()];
-        self.from_the_root().take(k.saturating_sub(1) as usize).for_each(|row| is_undone[row] = true);
+        self.undoing_order().take(k.saturating_sub(1) as usize).for_each(|row| is_undone[row] = true);
         let mut roots: Vec<u32> = (0..).take(n + self.merges.len()).collect();
         // A cluster comes after its parts: downwards, its own root is known first.
         for (row, merge) in self.merges.iter().enumerate().rev().filter(|&(row, _)| !is_undone[row]) {
@@ -115,7 +115,7 @@ impl Dendrogram {
     }
 
     /// The rows in the order in which cuts undo them.
-    fn from_the_root(&self) -> impl Iterator<Item = usize> {
+    fn undoing_order(&self) -> impl Iterator<Item = usize> {
         // The bits of numbers that are 0 or more sort as the numbers do; `abs` is for -0.
         let entry = |row: usize| (self.merges[row].height.abs().to_bits(), row);
         let mut top: BinaryHeap<_> = self.merges.len().checked_sub(1).map(entry).into_iter().collect();
@@ -136,7 +136,7 @@ impl Dendrogram {
     /// The smallest such number where several are equally clear.
     #[must_use]
     pub fn clearest_cut(&self, k_max: u32) -> u32 {
-        let heights: Vec<f64> = self.from_the_root().map(|row| self.merges[row].height).collect();
+        let heights: Vec<f64> = self.undoing_order().map(|row| self.merges[row].height).collect();
         let mut clearest = (1, 0.0);
         for (k, pair) in (2..=k_max).zip(heights.windows(2)) {
             let factor = pair[0] / pair[1].max(f64::MIN_POSITIVE);

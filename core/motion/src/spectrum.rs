@@ -38,7 +38,7 @@ pub enum SpectrumError {
     },
     /// Frames lie so far apart that the grid of frequencies would not fit in memory.
     #[error(
-        "{gap_s} s between frames {frame} and {} are too many for a spectrum of frames usually {step_s} s \
+        "{gap_s:.1} s between frames {frame} and {} are too long for a spectrum of frames usually {step_s:.4} s \
          apart; split the clip there, or give it a frame rate if its times are wrong",
         frame + 1
     )]

@@ -3,21 +3,24 @@
 
 pub(crate) mod clusterer;
 pub(crate) mod draft;
+mod panics;
+mod stateless;
 pub(crate) mod table;
 pub(crate) mod tracker;
 
 pub use crate::manifest::{Note, manifest_len};
 pub use clusterer::clusterer;
 pub use draft::{simulator, structure};
+pub use panics::quiet_panics;
 pub use tracker::tracker;
 
 use crate::params::{Param, Params, Value};
 use crate::{Error, Info, Listener, Result};
 use honami_abi::{self as abi, Call, Code, code};
 use std::ffi::{CStr, CString, c_char};
+use std::marker::PhantomData;
 use std::mem::ManuallyDrop;
 use std::panic::AssertUnwindSafe;
-use std::sync::{Mutex, Once, PoisonError};
 
 /// What the border knows of a plugin; made by [`tracker`] and its like.
 #[derive(Clone, Copy, Debug)]
@@ -124,24 +127,30 @@ pub unsafe fn create(
 }
 
 /// The host's side of one call.
-pub(crate) struct HostCall<'a>(pub(crate) &'a Call);
+pub(crate) struct HostCall<'a> {
+    pub(crate) raw: *const Call,
+    /// What the host knew of it.
+    pub(crate) known: Call,
+    lives: PhantomData<&'a Call>,
+}
 
 // SAFETY: progress and log may be called from any thread while the call lasts; `Cx` reaches nothing else.
 unsafe impl Sync for HostCall<'_> {}
 
 impl HostCall<'_> {
     /// # Safety
-    /// `call` is null or lives for `'a`.
-    unsafe fn new(call: *const Call) -> Option<Self> {
+    /// `raw` is null or lives for the lifetime of what is made.
+    unsafe fn new(raw: *const Call) -> Option<Self> {
         // SAFETY: the caller's promise.
-        unsafe { call.as_ref() }.map(Self)
+        let known = unsafe { table::given(raw) }.ok()?;
+        Some(Self { raw, known, lives: PhantomData })
     }
 
     fn fail(&self, code: Code, why: &str) -> Code {
-        if let Some(fail) = self.0.fail {
+        if let Some(fail) = self.known.fail {
             let why = c_text(why);
             // SAFETY: the host's function, its own context, a string that outlives the call.
-            unsafe { fail(self.0, code, why.as_ptr()) };
+            unsafe { fail(self.raw, code, why.as_ptr()) };
         }
         code
     }
@@ -151,14 +160,16 @@ impl Listener for HostCall<'_> {
     fn progress(&self, fraction: f64, text: &str) -> bool {
         let text = c_text(text);
         // SAFETY: as in `fail`.
-        self.0.progress.is_some_and(|progress| unsafe { progress(self.0, fraction, text.as_ptr()) } != 0)
+        self.known
+            .progress
+            .is_some_and(|progress| unsafe { progress(self.raw, fraction, text.as_ptr()) } != 0)
     }
 
     fn log(&self, level: i32, text: &str) {
-        if let Some(log) = self.0.log {
+        if let Some(log) = self.known.log {
             let text = c_text(text);
             // SAFETY: as in `fail`.
-            unsafe { log(self.0, level, text.as_ptr()) };
+            unsafe { log(self.raw, level, text.as_ptr()) };
         }
     }
 }
@@ -232,31 +243,18 @@ pub(crate) unsafe fn door<S: State>(
 
 /// Runs a function; a failure or panic becomes a code and a text for the host.
 fn guard(call: &HostCall<'_>, f: impl FnOnce() -> Result<Code>) -> Code {
+    panics::forget();
     match std::panic::catch_unwind(AssertUnwindSafe(f)) {
         Ok(Ok(answer)) => answer,
         Ok(Err(error)) => call.fail(error.code(), &error.to_string()),
         Err(payload) => {
-            let said = LAST_PANIC.lock().unwrap_or_else(PoisonError::into_inner).take();
-            let text = said.unwrap_or_else(|| "panicked".into());
+            let text = panics::report(&*payload);
             call.log(abi::log::ERROR, &text);
             // Never dropped: the payload is the plugin's, and its drop may panic again.
             let _payload = ManuallyDrop::new(payload);
             call.fail(code::INTERNAL, &text)
         }
     }
-}
-
-/// What the latest panic said, until the door takes it; set by any thread of the plugin's.
-static LAST_PANIC: Mutex<Option<String>> = Mutex::new(None);
-
-/// Keeps panics off the terminal: their message is kept for the door, which gives it to the host.
-pub fn quiet_panics() {
-    static ONCE: Once = Once::new();
-    ONCE.call_once(|| {
-        std::panic::set_hook(Box::new(|panic| {
-            *LAST_PANIC.lock().unwrap_or_else(PoisonError::into_inner) = Some(panic.to_string());
-        }));
-    });
 }
 
 unsafe extern "C" fn destroy<S: State>(instance: *mut abi::Instance) {

@@ -44,10 +44,12 @@ pub enum WorkbenchError {
         path: PathBuf,
     },
     /// There is nothing to track.
-    #[error("there are no features to track: place some, give --points, or let a tracker --detect them")]
+    #[error(
+        "there are no features to track: place some, give a table of points, or let the tracker find them"
+    )]
     NoFeatures,
     /// The tracker does not choose features.
-    #[error("{plugin} does not choose features itself: give --points, or --detect with another tracker")]
+    #[error("{plugin} does not find features itself: give a table of points, or take a tracker that does")]
     CannotDetect {
         /// Its name.
         plugin: String,
@@ -108,6 +110,9 @@ pub enum WorkbenchError {
     /// There are no tracks.
     #[error("there are no tracks yet: track features first")]
     NoTracks,
+    /// No clustering is shown.
+    #[error("there are no groups yet: cluster the tracks first")]
+    NoGroups,
     /// No track is seen long enough for a spectrum.
     #[error("no track is seen in enough frames for a spectrum: track longer")]
     TooBrief,

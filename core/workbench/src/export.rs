@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use honami_exchange::{TrackRow, Writer};
+use honami_exchange::{GroupRow, TrackRow, Writer};
 use honami_store::Project;
 
 use crate::error::WorkbenchError;
@@ -38,4 +38,20 @@ pub fn tracks(project: &Project, out: &Path) -> Result<Exported, WorkbenchError>
     }
     table.finish()?;
     Ok(Exported { n_tracks: shown.len(), n_rows })
+}
+
+/// Writes the group of every track of the shown clustering; returns their number.
+///
+/// # Errors
+/// [`WorkbenchError::NoGroups`], and what the project or the disk met.
+pub fn groups(project: &Project, out: &Path) -> Result<usize, WorkbenchError> {
+    let grouping = project.grouping()?.ok_or(WorkbenchError::NoGroups)?;
+    let mut table = Writer::create(out)?;
+    for (&track, &group) in &grouping.group_of {
+        let node = grouping.nodes.get(group as usize);
+        let name = node.and_then(|&node| project.document().group_name(grouping.clustering, node));
+        table.write(&GroupRow { track, group: group + 1, name: name.unwrap_or_default().to_owned() })?;
+    }
+    table.finish()?;
+    Ok(grouping.group_of.len())
 }

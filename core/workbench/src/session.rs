@@ -39,7 +39,7 @@ impl Session {
     pub fn open(path: &Path, options: &SessionOptions) -> Result<Self, WorkbenchError> {
         let access = if options.read_only { Access::Read } else { Access::Write };
         let mut project = Project::open(path, access)?;
-        // Before the clip, which may be missing: only the session that finds such a run can show it.
+        // Before the clip, which may be missing.
         let notes = if options.read_only { Vec::new() } else { show_interrupted(&mut project)? };
         let media = Arc::new(open_clip_of(&project)?);
         Ok(Self { project, media, registry: Arc::new(Registry::scan(&options.plugin_paths)), notes })
@@ -89,14 +89,13 @@ fn show_interrupted(project: &mut Project) -> Result<Vec<String>, WorkbenchError
     let mut notes = Vec::new();
     for run in project.interrupted().to_vec() {
         let info = project.run(run)?;
-        if info.tracks.is_empty() {
+        // As with a run that was stopped: half of one is not laid over tracks that reach further.
+        if info.tracks.is_empty() || info.tracks.iter().any(|track| project.document().shows(track)) {
             continue;
         }
         let (tracks, last) = (info.tracks.to_string(), info.found.end.saturating_sub(1));
         project.commit(Transaction::show_run(run, info.tracks))?;
-        notes.push(format!(
-            "run {run} was interrupted at frame {last}: its {tracks} are kept and shown (u undoes)"
-        ));
+        notes.push(format!("run {run} was interrupted at frame {last}: its {tracks} are kept and shown"));
     }
     Ok(notes)
 }
@@ -107,11 +106,16 @@ fn open_clip_of(project: &Project) -> Result<Media, WorkbenchError> {
     let options = OpenOptions { fps: record.fps_override, ..OpenOptions::default() };
     let open = |path: &Path| honami_media::open(path, &options);
     // The usual case first: it is where it was, and opening it gives its hash.
-    if let Ok(media) = open(&project.media_path())
-        && media.sha256() == record.sha256
-    {
-        return Ok(media);
-    }
-    let found = project.find_media(|path| open(path).ok().map(|media| media.sha256()))?;
+    let expected = project.media_path();
+    let tried = match open(&expected) {
+        Ok(media) if media.sha256() == record.sha256 => return Ok(media),
+        tried => tried.map(drop),
+    };
+    let found = project.find_media(|path| open(path).ok().map(|media| media.sha256()));
+    let found = match (found, tried) {
+        // It is there and cannot be read: that is what to say, not that it is missing.
+        (Err(StoreError::MediaMissing { .. }), Err(error)) if expected.exists() => return Err(error.into()),
+        (found, _) => found?,
+    };
     Ok(open(&found)?)
 }

@@ -31,6 +31,8 @@ const MAX_NUMBER: u32 = i32::MAX.unsigned_abs();
 pub enum PointSource {
     /// The project's tracks, each from its first seen sample on and again from each of its key-frames.
     Existing,
+    /// These of the project's tracks, likewise.
+    Tracks(TrackSet),
     /// Those that the tracker finds.
     Detect,
     /// These; a number that the project knows is that track.
@@ -127,7 +129,8 @@ pub fn prepare(session: &mut Session, request: &TrackRequest) -> Result<TrackJob
         return Err(WorkbenchError::EmptyArea);
     }
     let (seeds, detect) = match &request.points {
-        PointSource::Existing => (existing(session, &request.frames)?, None),
+        PointSource::Existing => (existing(session, &request.frames, None)?, None),
+        PointSource::Tracks(tracks) => (existing(session, &request.frames, Some(tracks))?, None),
         PointSource::Given(seeds) => (given(session, seeds)?, None),
         PointSource::Detect if plugin.offers("honami.detect/1") => {
             let present = session.project.shown_all()?;
@@ -245,29 +248,42 @@ pub fn finish(session: &mut Session, done: TrackDone) -> Result<TrackOutcome, Wo
     let is_seen = |span: &Span| span.get(last).is_some_and(|sample| sample.status.is_seen());
     let seen: BTreeSet<TrackId> = spans.iter().filter(|(_, span)| is_seen(span)).map(|(id, _)| *id).collect();
     let n_lost = n_tracks - seen.len();
-    if n_tracks > 0 {
+    let stopped = driven.end < frames.end;
+    // Half a run laid over tracks that reach further would leave a seam in each: it is kept, and not shown.
+    let shown =
+        n_tracks > 0 && !(stopped && found.iter().any(|track| session.project.document().shows(track)));
+    if shown {
         session.project.commit(Transaction::show_run(run, found))?;
     }
-    let stopped = driven.end < frames.end;
     let mut line = format!(
         "{plugin}: {n_tracks} tracks, frames {}-{last}, {n_lost} lost, {seconds:.1} s",
         reached.start
     );
+    let kept = match (shown, n_tracks) {
+        (true, _) => format!("{n_tracks} tracks up to there are kept"),
+        (false, 0) => "nothing was tracked".to_owned(),
+        (false, _) => format!("the tracks stay as they were, run {run} is kept beside them"),
+    };
     if stopped {
-        line = format!("{plugin}: stopped at frame {}; {n_tracks} tracks up to there are kept", driven.end);
+        line = format!("{plugin}: stopped at frame {}; {kept}", driven.end);
     }
     if let Some(error) = &error {
-        line = format!("{plugin} failed at frame {}, what came before is kept: {error}", driven.end);
+        line = format!("{plugin} failed at frame {}, {kept}: {error}", driven.end);
     }
     let Driven { tracker_secs, warnings, .. } = driven;
     let frames = reached;
     Ok(TrackOutcome { run, n_tracks, n_lost, frames, stopped, seconds, tracker_secs, error, warnings, line })
 }
 
-/// Seeds of the project's own tracks: where each is first seen, and each of its key-frames.
-fn existing(session: &Session, frames: &Range<u32>) -> Result<Vec<Seed>, WorkbenchError> {
+/// Seeds of the project's own tracks, or of some: where each is first seen, and each of its key-frames.
+fn existing(
+    session: &Session,
+    frames: &Range<u32>,
+    only: Option<&TrackSet>,
+) -> Result<Vec<Seed>, WorkbenchError> {
     let mut seeds = Vec::new();
-    for (track, span) in session.project.shown_all()? {
+    let wanted = |track: &TrackId| only.is_none_or(|only| only.contains(*track));
+    for (track, span) in session.project.shown_all()?.into_iter().filter(|(track, _)| wanted(track)) {
         let keys = session.project.document().track(track).map(|known| &known.keys);
         let keyed: BTreeSet<u32> =
             keys.into_iter().flat_map(|keys| keys.range(frames.clone())).map(|k| *k.0).collect();

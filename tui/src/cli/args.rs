@@ -9,7 +9,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 /// Tracks features of a plant in video, lets you correct the tracks in the terminal, finds the branches
 /// behind the motion, and keeps everything with its provenance in one project file.
 #[derive(Debug, Parser)]
-#[command(name = "honami", version, args_conflicts_with_subcommands = true)]
+#[command(name = "honami", version)]
 pub(super) struct Cli {
     /// What to do; without a command, the terminal UI opens.
     #[command(subcommand)]
@@ -35,6 +35,8 @@ pub(super) struct Common {
 pub(super) enum Command {
     /// Make a project from a clip: a video, an image folder, or a pattern such as `frame_%04d.png`.
     New(New),
+    /// Say where a project's clip is now, when it was moved.
+    Relink(Relink),
     /// Follow features through the clip with a tracker plugin.
     Track(Track),
     /// Find the groups that move together with a clusterer plugin.
@@ -103,6 +105,14 @@ pub(super) struct New {
     pub(super) fps: Option<f64>,
 }
 
+#[derive(Args, Debug)]
+pub(super) struct Relink {
+    /// Project file (.honami).
+    pub(super) project: PathBuf,
+    /// The clip; its content must be what it was.
+    pub(super) clip: PathBuf,
+}
+
 /// Which plugin, with which parameters.
 #[derive(Args, Debug)]
 pub(super) struct WithPlugin {
@@ -151,11 +161,15 @@ pub(super) struct Cluster {
     pub(super) groups: Option<u32>,
 }
 
+/// Columns: δavg, share of visible samples within 1, 2, 4, 8, 16 px of the truth, averaged, a lost sample being a
+/// miss; <1 px, share within 1 px; median, of the errors, px; survival, share of frames before the first error above
+/// 16 px; ok, share of tracks within 8 px throughout; lost, share of visible samples; kept, share of points seen in
+/// every frame; ms/frame in the tracker, one thread. The row "static" tracks nothing.
 #[derive(Args, Debug)]
 pub(super) struct Compare {
     /// Clip, or project whose clip and tracks are used.
     pub(super) clip: PathBuf,
-    /// Tracker to run; give it once for each.
+    /// Tracker to run; give it once for each (default: klt).
     #[arg(long, value_name = "NAME")]
     pub(super) with: Vec<String>,
     /// True positions, a table `track,frame,x,y,visible,branch`.
@@ -199,8 +213,11 @@ pub(super) struct Export {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum ExportWhat {
-    /// The shown tracks: track,frame,time_s,x,y,status,source,quality,fb,ncc,run.
+    /// The shown tracks: track,frame,time_s,x,y,status,source,quality,fb,ncc,run. Status: lost 0, tracked 1,
+    /// occluded 2, outside 3, rejected 4, newborn 5.
     Tracks,
+    /// The group of every track, numbered as on the screen: track,group,name.
+    Groups,
 }
 
 #[derive(Args, Debug)]

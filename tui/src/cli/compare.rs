@@ -10,7 +10,7 @@ use honami_workbench::session::{Session, SessionOptions};
 use serde_json::json;
 
 use super::args::{Common, Compare};
-use super::{Answer, options, report, track};
+use super::{Answer, options, report, track, want};
 
 /// Runs every tracker on the same points and prints one row for each.
 pub(super) fn compare(args: &Compare, common: &Common) -> anyhow::Result<Answer> {
@@ -22,10 +22,9 @@ pub(super) fn compare(args: &Compare, common: &Common) -> anyhow::Result<Answer>
         (None, Some(truth)) => compare::points_of(truth),
         (None, None) => own,
     };
-    anyhow::ensure!(
-        !points.is_empty(),
-        "there are no points to compare on: give --truth or --points, or a project that has tracks"
-    );
+    want(!points.is_empty(), || {
+        "there are no points to compare on: give --truth or --points, or a project that has tracks".to_owned()
+    })?;
     let none = args.with.is_empty() && args.tracks.is_empty();
     let names = if none { vec![track::DEFAULT.to_owned()] } else { args.with.clone() };
     if let (Some(first), Some(stray)) = (names.first(), stray(&registry, &names, &args.set)?) {
@@ -100,6 +99,7 @@ fn describe(rows: &[Row], n_points: usize) -> Answer {
     Answer {
         json: json!({ "points": n_points, "trackers": rows.iter().map(entry).collect::<Vec<_>>() }),
         text,
+        done: true,
     }
 }
 

@@ -42,5 +42,5 @@ fn describe(outcome: &ClusterOutcome) -> Answer {
         "seconds": outcome.seconds,
         "warnings": outcome.warnings,
     });
-    Answer { json, text: report::with_warnings(&outcome.line, &outcome.warnings) }
+    Answer { json, text: report::with_warnings(&outcome.line, &outcome.warnings), done: true }
 }

@@ -17,7 +17,7 @@ pub(super) fn completions(shell: clap_complete::Shell) -> Answer {
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Cli::command(), "honami", &mut script);
     let script = String::from_utf8_lossy(&script).trim_end().to_owned();
-    Answer { json: json!({ "shell": shell.to_string(), "script": script }), text: script }
+    Answer { json: json!({ "shell": shell.to_string(), "script": script }), text: script, done: true }
 }
 
 /// One manual page a command.
@@ -26,7 +26,7 @@ pub(super) fn manual(folder: &Path) -> anyhow::Result<Answer> {
     clap_mangen::generate_to(Cli::command(), folder)
         .with_context(|| format!("cannot write the manual to {}", folder.display()))?;
     let text = format!("manual pages in {0}: man -l {0}/honami.1", folder.display());
-    Ok(Answer { json: json!({ "folder": folder }), text })
+    Ok(Answer { json: json!({ "folder": folder }), text, done: true })
 }
 
 /// What this machine has.
@@ -41,7 +41,7 @@ pub(super) fn doctor(common: &Common) -> Answer {
         };
         rows.push(vec![mark.to_owned(), finding.what.to_owned(), advice]);
     }
-    Answer { json: json!({ "findings": findings }), text: report::table(&rows) }
+    Answer { json: json!({ "findings": findings }), text: report::table(&rows), done: true }
 }
 
 /// Lists plugins, or describes one.
@@ -90,7 +90,7 @@ fn list(registry: &Registry) -> Answer {
         "plugins": registry.plugins().iter().map(describe).collect::<Vec<_>>(),
         "problems": registry.problems().iter().map(ToString::to_string).collect::<Vec<_>>(),
     });
-    Answer { json, text }
+    Answer { json, text, done: registry.problems().is_empty() }
 }
 
 fn trust(plugin: &PluginInfo) -> &'static str {
@@ -138,7 +138,7 @@ fn info(plugin: &PluginInfo) -> anyhow::Result<Answer> {
     let mut json = describe(plugin);
     json["sha256"] = sha256.into();
     json["doc"] = plugin.doc.clone().into();
-    Ok(Answer { json, text })
+    Ok(Answer { json, text, done: true })
 }
 
 fn first_line(text: &str) -> String {

@@ -13,7 +13,7 @@ pub(super) fn log(args: &Project) -> anyhow::Result<Answer> {
     let text = lines.iter().map(line).collect::<Vec<_>>().join("\n");
     let text = if text.is_empty() { "nothing was done to this project yet".to_owned() } else { text };
     let json = json!({ "revision": project.revision(), "log": lines.iter().map(entry).collect::<Vec<_>>() });
-    Ok(Answer { json, text })
+    Ok(Answer { json, text, done: true })
 }
 
 fn line(line: &LogLine) -> String {

@@ -6,11 +6,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use honami_workbench::progress::{Flow, Progress};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use signal_hook::consts::SIGINT;
+use signal_hook::{SigId, flag};
 
 /// A progress bar on standard error; Ctrl-C asks the job to stop and keep what it has.
 pub(super) struct Bar {
     bar: ProgressBar,
     stop: Arc<AtomicBool>,
+    handlers: Vec<SigId>,
 }
 
 impl Bar {
@@ -22,22 +25,22 @@ impl Bar {
         }
         let stop = Arc::new(AtomicBool::new(false));
         // The second Ctrl-C ends the program at once: whoever presses twice means it.
-        let second = signal_hook::flag::register_conditional_shutdown(
-            signal_hook::consts::SIGINT,
-            130,
-            Arc::clone(&stop),
-        );
-        let first = signal_hook::flag::register(signal_hook::consts::SIGINT, Arc::clone(&stop));
+        let second = flag::register_conditional_shutdown(SIGINT, 130, Arc::clone(&stop));
+        let first = flag::register(SIGINT, Arc::clone(&stop));
         if second.is_err() || first.is_err() {
             bar.suspend(|| say("Ctrl-C cannot be caught here: it ends the program at once"));
         }
-        Self { bar, stop }
+        Self { bar, stop, handlers: [second, first].into_iter().flatten().collect() }
     }
 }
 
 impl Drop for Bar {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
+        // Otherwise the next Ctrl-C would end the program instead of stopping the next job.
+        for handler in self.handlers.drain(..) {
+            signal_hook::low_level::unregister(handler);
+        }
     }
 }
 

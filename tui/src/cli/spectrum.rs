@@ -57,7 +57,7 @@ fn describe(spectra: &Spectra) -> Answer {
         "lines": lines,
         "too_brief": spectra.n_brief,
     });
-    Answer { json, text }
+    Answer { json, text, done: true }
 }
 
 fn name(subject: Subject) -> String {

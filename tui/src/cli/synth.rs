@@ -52,7 +52,7 @@ fn describe(made: &Generated) -> Answer {
         "branches": made.n_branches,
         "step_px": made.step_px,
     });
-    Answer { json, text }
+    Answer { json, text, done: true }
 }
 
 /// The whole job on a generated clip, with its truth beside it; then the terminal UI.
@@ -73,6 +73,8 @@ pub(super) fn demo(args: &Demo, common: &Common) -> anyhow::Result<Option<Answer
         let request = track::request(&session, PointSource::Detect);
         let outcome = track::run(&mut session, &request)?;
         report::say(&outcome.line);
+    }
+    if session.project.document().clustering().is_none() {
         report::say("clustering …");
         let outcome = groups::run(&mut session, &groups::request())?;
         report::say(&outcome.line);
@@ -84,12 +86,12 @@ pub(super) fn demo(args: &Demo, common: &Common) -> anyhow::Result<Option<Answer
         clip.display(),
         truth.display()
     );
-    if args.headless || !std::io::stdout().is_terminal() {
+    if args.headless || common.json || !std::io::stdout().is_terminal() {
         let n_tracks = session.project.document().tracks().count();
         let n_groups = session.project.grouping()?.map_or(0, |grouping| grouping.nodes.len());
         let json =
             json!({ "project": file, "clip": clip, "truth": truth, "tracks": n_tracks, "groups": n_groups });
-        return Ok(Some(Answer { json, text }));
+        return Ok(Some(Answer { json, text, done: true }));
     }
     crate::app::run(session)?;
     Ok(None)

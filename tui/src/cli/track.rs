@@ -7,7 +7,7 @@ use honami_workbench::track::{self, Area, PointSource, TrackOutcome, TrackReques
 use serde_json::json;
 
 use super::args::{Common, Region, Track};
-use super::{Answer, report, session};
+use super::{Answer, report, session, want};
 
 /// The tracker that is used unless one is named.
 pub(super) const DEFAULT: &str = "klt";
@@ -19,11 +19,12 @@ pub(super) fn track(args: &Track, common: &Common) -> anyhow::Result<Answer> {
     // `--detect NAME` alone means that this tracker tracks, too.
     let plugin = args.plugin.with.as_deref().or(detect).unwrap_or(DEFAULT).to_owned();
     if let Some(detect) = detect {
-        anyhow::ensure!(
-            session.registry.find(Kind::Tracker, detect)?.id
-                == session.registry.find(Kind::Tracker, &plugin)?.id,
-            "features are chosen by the tracker that follows them: --detect {detect} needs --with {detect}"
-        );
+        let id = |name| session.registry.find(Kind::Tracker, name).map(|plugin| &plugin.id);
+        want(id(detect)? == id(&plugin)?, || {
+            format!(
+                "features are chosen by the tracker that follows them: --detect {detect} needs --with {detect}"
+            )
+        })?;
     }
     let params = values(&session.registry, Kind::Tracker, &plugin, &args.plugin.set)?;
     let n_frames = session.media.clip().n_frames();
@@ -109,5 +110,5 @@ fn describe(outcome: &TrackOutcome) -> Answer {
         "tracker_seconds": outcome.tracker_secs,
         "warnings": outcome.warnings,
     });
-    Answer { json, text: report::with_warnings(&outcome.line, &outcome.warnings) }
+    Answer { json, text: report::with_warnings(&outcome.line, &outcome.warnings), done: !outcome.stopped }
 }

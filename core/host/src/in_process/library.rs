@@ -2,8 +2,8 @@
 //!
 //! There is no sound way to unload: thread-local destructors and threads of the library's may still be there.
 
+use super::known::known;
 use crate::error::HostError;
-use crate::manifest::Manifest;
 use crate::registry::{PluginInfo, Trust};
 use crate::{note, store};
 use honami_abi as abi;
@@ -16,6 +16,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// A loaded library.
 pub(crate) struct Loaded {
     create: CreateFn,
+    /// As it stands in the library's note.
+    manifest: Vec<u8>,
     /// Of the content that was loaded.
     pub(crate) sha256: String,
     /// Held while an instance works that must not work beside another.
@@ -50,7 +52,7 @@ pub(crate) fn host_info() -> *const abi::HostInfo {
     &raw const HOST.0
 }
 
-/// The library of a trusted plugin, as its file is now.
+/// The library of a trusted plugin, as its file is now; its manifest must still be the one that `info` was read from.
 pub(crate) fn load(info: &PluginInfo, folder: &Path) -> Result<Arc<Loaded>, HostError> {
     static LOADED: Mutex<BTreeMap<String, Arc<Loaded>>> = Mutex::new(BTreeMap::new());
     if let Trust::No(why) = &info.trust {
@@ -59,18 +61,28 @@ pub(crate) fn load(info: &PluginInfo, folder: &Path) -> Result<Arc<Loaded>, Host
     let stored = store::keep(&info.library, folder)?;
     let mut loaded = LOADED.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(library) = loaded.get(&stored.sha256) {
-        return Ok(Arc::clone(library));
+        return still(info, &library.manifest).map(|()| Arc::clone(library));
     }
+    let manifest = note::read(&stored.path)?.map(|(_, json)| json).unwrap_or_default();
+    still(info, &manifest)?;
     let create = open(&stored.path, info)?;
-    let library = Arc::new(Loaded { create, sha256: stored.sha256.clone(), turn: Mutex::new(()) });
+    let sha256 = stored.sha256.clone();
+    let library = Arc::new(Loaded { create, manifest, sha256, turn: Mutex::new(()) });
     loaded.insert(stored.sha256, Arc::clone(&library));
     Ok(library)
 }
 
+/// Whether a manifest is the one that was scanned: parameters and abilities of another build may be others.
+fn still(info: &PluginInfo, manifest: &[u8]) -> Result<(), HostError> {
+    if *info.manifest == *manifest {
+        return Ok(());
+    }
+    let why = "was rebuilt with another manifest since honami looked at it: start honami again".into();
+    Err(HostError::File { path: info.library.clone(), why })
+}
+
 fn open(copy: &Path, info: &PluginInfo) -> Result<CreateFn, HostError> {
     let file_error = |why: String| HostError::File { path: info.library.clone(), why };
-    let manifest: Option<(Manifest, Vec<u8>)> = note::read(copy)?;
-    let (_, json) = manifest.ok_or_else(|| file_error("carries no manifest any more".into()))?;
     // SAFETY: loading runs the library's constructors; it is trusted, and the copy is what was hashed.
     let library = unsafe { Library::open(Some(copy), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE) }
         .map_err(|e| file_error(format!("cannot be loaded: {e}")))?;
@@ -80,8 +92,12 @@ fn open(copy: &Path, info: &PluginInfo) -> Result<CreateFn, HostError> {
     // The handle is given up, not closed: the library stays for the life of the process.
     library.into_raw();
     // SAFETY: the library's function; the host's record is a constant.
-    let record = unsafe { entry(host_info()).as_ref() };
-    let record = record.ok_or_else(|| file_error("refuses this honami".into()))?;
+    let record = unsafe { entry(host_info()) };
+    if record.is_null() {
+        return Err(file_error("refuses this honami".into()));
+    }
+    // SAFETY: not null, so the library's record, with its size.
+    let record = unsafe { known(record) };
     if !abi::has!(record, abi::Library, create) {
         return Err(file_error(format!("its library record is too small, {} bytes", record.struct_size)));
     }
@@ -89,12 +105,10 @@ fn open(copy: &Path, info: &PluginInfo) -> Result<CreateFn, HostError> {
         return Err(file_error("its library record has no create".into()));
     };
     let len = usize::try_from(record.manifest_len).unwrap_or(usize::MAX);
-    if record.manifest.is_null() || len != json.len() {
-        return Err(file_error("its library record has another manifest than its note".into()));
-    }
+    let as_long = !record.manifest.is_null() && len == info.manifest.len();
     // SAFETY: not null, and as long as the note's.
-    let told = unsafe { std::slice::from_raw_parts(record.manifest.cast::<u8>(), len) };
-    if told != json {
+    if !as_long || unsafe { std::slice::from_raw_parts(record.manifest.cast::<u8>(), len) } != &*info.manifest
+    {
         return Err(file_error("its library record has another manifest than its note".into()));
     }
     Ok(create)

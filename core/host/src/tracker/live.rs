@@ -12,7 +12,8 @@ use std::ops::Range;
 pub(super) struct Live {
     births: Range<u32>,
     born: BTreeSet<u32>,
-    /// By id, ascending.
+    /// By id and beginning, ascending. Those of one id follow each other: what is retired and seeded again while rows
+    /// are still to come has several.
     lives: Vec<Life>,
     /// Pushed frames without rows so far, oldest first.
     pending: VecDeque<i64>,
@@ -20,7 +21,7 @@ pub(super) struct Live {
     n_read: u64,
 }
 
-/// A point that is or was followed. Frames are counted in the order of the stream.
+/// A time in which a point is followed. Frames are counted in the order of the stream.
 #[derive(Clone, Copy, Debug)]
 struct Life {
     id: u32,
@@ -47,31 +48,38 @@ impl Live {
         self.n_read + self.pending.len() as u64
     }
 
-    fn find(&self, id: u32) -> Result<usize, usize> {
-        self.lives.binary_search_by_key(&id, |life| life.id)
+    /// Where the lives of an id stand in the list, or would.
+    fn of(&self, id: u32) -> Range<usize> {
+        let start = self.lives.partition_point(|life| life.id < id);
+        start..start + self.lives[start..].iter().take_while(|life| life.id == id).count()
     }
 
     /// Whether the id has been seen in this stream.
     pub(super) fn is_known(&self, id: u32) -> bool {
-        self.born.contains(&id) || self.find(id).is_ok()
+        self.born.contains(&id) || !self.of(id).is_empty()
     }
 
     pub(super) fn seed(&mut self, ids: &[u32]) {
         let from = self.n_pushed();
         for &id in ids {
-            match self.find(id) {
-                Ok(k) if self.lives[k].until == u64::MAX => {}
-                Ok(k) => self.lives[k] = Life { id, from, until: u64::MAX, read: from },
-                Err(k) => self.lives.insert(k, Life { id, from, until: u64::MAX, read: from }),
+            let lives = self.of(id);
+            let k = lives.end;
+            match self.lives[lives].last_mut().filter(|life| life.until == u64::MAX) {
+                Some(_) if self.pending.is_empty() => continue,
+                // Rows that are still to come may end it; then this seed has brought it back.
+                Some(life) => life.until = from,
+                None => {}
             }
+            self.lives.insert(k, Life { id, from, until: u64::MAX, read: from });
         }
     }
 
     pub(super) fn retire(&mut self, ids: &[u32]) {
         let until = self.n_pushed();
         for &id in ids {
-            if let Ok(k) = self.find(id) {
-                self.lives[k].until = self.lives[k].until.min(until);
+            let lives = self.of(id);
+            for life in &mut self.lives[lives] {
+                life.until = life.until.min(until);
             }
         }
         self.forget();
@@ -144,18 +152,18 @@ impl Live {
         for row in &rows {
             // Trackers mostly keep the order: the next life is the right one.
             let found = match self.lives.get(guess) {
-                Some(life) if life.id == row.id => Ok(guess),
-                _ => self.find(row.id),
+                Some(life) if life.id == row.id && life.is_due(now) => Some(guess),
+                _ => self.of(row.id).find(|&k| self.lives[k].is_due(now)),
             };
             let k = match found {
-                Ok(k) if self.lives[k].is_due(now) => k,
-                _ => self.birth(row, now, frame)?,
+                Some(k) => k,
+                None => self.birth(row, now, frame)?,
             };
             let life = &mut self.lives[k];
             if life.read > now {
                 return Err(format!("committed point {} twice in frame {frame}", row.id));
             }
-            if row.status == Status::Newborn && life.from != now {
+            if row.status == Status::Newborn && found.is_some() {
                 return Err(format!(
                     "committed point {} as newborn in frame {frame}, it was there before",
                     row.id
@@ -187,7 +195,7 @@ impl Live {
         if !self.born.insert(id) {
             return Err(format!("gave birth to point {id} in frame {frame} a second time"));
         }
-        let k = self.find(id).unwrap_or_else(|k| k);
+        let k = self.of(id).end;
         self.lives.insert(k, Life { id, from: now, until: u64::MAX, read: now });
         Ok(k)
     }

@@ -1,15 +1,18 @@
 /* bad.c - a tracker with one fault, chosen by -DFAULT=NAME. Without a fault it leaves every point where it is. */
+#define _DEFAULT_SOURCE
 #include "honami.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 enum fault {
-  NONE, NULL_RECORD, SMALL_RECORD, NULL_CREATE, OTHER_MANIFEST, NO_INSTANCE, NULL_FUNCTION, SMALL_TABLE,
+  NONE, NULL_RECORD, SMALL_RECORD, NULL_CREATE, OTHER_MANIFEST, NO_INSTANCE, NULL_FUNCTION, SMALL_INSTANCE, SMALL_TABLE,
   NULL_TABLE, OTHER_LATENCY, NAN_POSITION, UNKNOWN_ID, TWICE, NO_ROWS, FEWER, NEGATIVE, SILENT, OVERCOMMIT, COMMIT_ONLY,
   COMMIT_TWICE, PAST_THE_END, BAD_STATUS, BAD_QUALITY, WRONG_TYPE, MISSING_COLUMN, OTHER_SCHEMA, TOO_MUCH, PRINTS,
-  UNASKED_CANCEL, AGAIN, SEED_RESULT, REFUSES_PARAMS
+  UNASKED_CANCEL, AGAIN, SEED_RESULT, REFUSES_PARAMS, COMMIT_RESERVE_COMMIT
 };
 
 #ifndef KNOWN
@@ -21,6 +24,14 @@ enum fault {
 #ifndef NO_NOTE
 HONAMI_MANIFEST(MANIFEST);
 #endif
+
+/* The first n bytes of a struct, before a page that nobody may touch. */
+static void *cut(const void *whole, size_t n) {
+  size_t page = (size_t)sysconf(_SC_PAGESIZE);
+  char *pages = mmap(NULL, 2 * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (pages == MAP_FAILED || mprotect(pages + page, page, PROT_NONE) != 0) abort();
+  return memcpy(pages + page - n, whole, n);
+}
 
 static uint32_t ids[64];
 static float xs[64], ys[64];
@@ -89,6 +100,10 @@ static honami_code push(honami_instance *instance, const honami_call *call, cons
   if (FAULT == BAD_STATUS) ((uint8_t *)c[3].data)[0] = 6;
   if (FAULT == BAD_QUALITY) ((float *)c[4].data)[0] = -3;
   if (FAULT == PAST_THE_END) ((float *)c[1].data)[16] = 0;
+  if (FAULT == COMMIT_RESERVE_COMMIT) {
+    call->commit(call, HONAMI_POINTS, n_points);
+    call->reserve(call, HONAMI_POINTS, n_points, 5, c);
+  }
   if (FAULT == COMMIT_TWICE) call->commit(call, HONAMI_POINTS, n_points);
   return call->commit(call, HONAMI_POINTS, FAULT == OVERCOMMIT ? n_points + 1 : FAULT == FEWER ? 1 : n_points);
 }
@@ -104,7 +119,8 @@ static const honami_tracker_v1 tracker = {FAULT == SMALL_TABLE ? 16 : HONAMI_SIZ
 
 static const void *get_interface(honami_instance *instance, const char *id) {
   (void)instance;
-  return FAULT != NULL_TABLE && strcmp(id, HONAMI_TRACKER) == 0 ? &tracker : NULL;
+  if (FAULT == NULL_TABLE || strcmp(id, HONAMI_TRACKER) != 0) return NULL;
+  return FAULT == SMALL_TABLE ? cut(&tracker, 16) : &tracker;
 }
 
 static honami_instance *create(const honami_host_info *host, const honami_call *call, const char *plugin_id) {
@@ -115,6 +131,10 @@ static honami_instance *create(const honami_host_info *host, const honami_call *
   self->destroy = destroy;
   self->set_params = set_params;
   self->get_interface = get_interface;
+  if (FAULT == SMALL_INSTANCE) {
+    self->struct_size = 16;
+    return cut(self, 16);
+  }
   return self;
 }
 
@@ -128,5 +148,6 @@ const honami_library *SYMBOL(const honami_host_info *host) {
                                          FAULT == OTHER_MANIFEST ? 2 : sizeof(MANIFEST) - 1,
                                          FAULT == NULL_CREATE ? NULL : create};
   (void)host;
+  if (FAULT == SMALL_RECORD) return cut(&library, 8);
   return FAULT == NULL_RECORD ? NULL : &library;
 }

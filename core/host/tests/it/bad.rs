@@ -33,6 +33,7 @@ fn a_fault_in_use_is_named() {
         ("OTHER_MANIFEST", "another manifest than its note"),
         ("NO_INSTANCE", "org.honami.bad: create: gives no instance and no reason"),
         ("NULL_FUNCTION", "misbehaves in get_interface: the table of honami.tracker/1 lacks functions"),
+        ("SMALL_INSTANCE", "misbehaves in create: the instance lacks functions"),
         ("SMALL_TABLE", "misbehaves in get_interface: the table of honami.tracker/1 lacks functions"),
         (
             "NULL_TABLE",
@@ -52,6 +53,7 @@ fn a_fault_in_use_is_named() {
         ("OVERCOMMIT", "misbehaves in push: committed 4 rows of honami.points/1 after reserving 3"),
         ("COMMIT_ONLY", "misbehaves in push: committed honami.points/1 without reserving it"),
         ("COMMIT_TWICE", "misbehaves in push: committed honami.points/1 twice"),
+        ("COMMIT_RESERVE_COMMIT", "misbehaves in push: reserved honami.points/1 after committing it"),
         ("PAST_THE_END", "misbehaves in push: wrote past the end of column x of honami.points/1"),
         ("BAD_STATUS", "misbehaves in push: gave point 3 status 6"),
         ("BAD_QUALITY", "misbehaves in push: gave point 3 fb -3"),
@@ -125,4 +127,27 @@ fn a_failed_instance_answers_no_more() {
     push(&mut tracker, 0).expect_err("a fault");
     let got = tracker.begin(stream(), &cx).expect_err("a failed instance").to_string();
     assert!(got.contains("has failed before; make it anew"), "{got}");
+}
+
+#[test]
+fn a_library_rebuilt_with_another_manifest_is_refused() {
+    if !has_cc() {
+        return;
+    }
+    let build = |known: &str| {
+        let known = format!("-DKNOWN={known:?}");
+        compile("tests/bad/bad.c", "rebuilt", INCLUDE, &["-DFAULT=NONE", &known])
+    };
+    let (old, new) = (r#""honami":1,"abi":[1,0],"#, r#""honami":1,"abi":[1,0],"more":2,"#);
+    let registry = named(&[&build(old)]);
+    use_it(&registry).unwrap();
+    let rebuilt = named(&[&build(new)]);
+    // Both before and after the new one has been loaded.
+    for _ in 0..2 {
+        let got = use_it(&registry).expect_err("another manifest").to_string();
+        let wanted =
+            "rebuilt.so: was rebuilt with another manifest since honami looked at it: start honami again";
+        assert!(got.contains(wanted), "{got}");
+        use_it(&rebuilt).unwrap();
+    }
 }

@@ -141,6 +141,51 @@ fn late_rows_find_their_frames() {
     );
 }
 
+/// What a seed or a retirement changes lies behind frames whose rows are still to come.
+#[test]
+fn late_rows_may_tell_of_several_lives() {
+    let cx = CallContext::silent();
+    let mut tracker = start(&of_zoo(Kind::Tracker, "delayed"), &[]).unwrap();
+    tracker.begin(stream(), &cx).unwrap();
+    let mut come = Vec::new();
+    for n in 0..7 {
+        match n {
+            1 => tracker.seed(&[point(1, 1.0, 1.0), point(2, 2.0, 2.0), point(3, -1.0, 1.0)], &cx).unwrap(),
+            // Point 3 has ended, which nobody but the tracker knows yet; this brings it back.
+            3 => {
+                tracker.retire(&[1, 2], &cx).unwrap();
+                tracker.seed(&[point(2, 2.5, 2.0), point(3, 3.0, 1.0)], &cx).unwrap();
+            }
+            4 => tracker.seed(&[point(1, 1.5, 1.0), point(3, 3.5, 1.0)], &cx).unwrap(),
+            5 => tracker.retire(&[1], &cx).unwrap(),
+            6 => tracker.seed(&[point(1, 1.75, 1.0)], &cx).unwrap(),
+            _ => {}
+        }
+        come.extend(push(&mut tracker, n).unwrap());
+    }
+    come.extend(tracker.end(&cx).unwrap());
+    let shape: Vec<_> = come
+        .iter()
+        .map(|points| {
+            let mut rows: Vec<_> = points.rows.iter().map(|row| (row.id, row.x)).collect();
+            rows.sort_by_key(|row| row.0);
+            (rows, points.ended.clone())
+        })
+        .collect();
+    assert_eq!(
+        shape,
+        [
+            (vec![], vec![]),
+            (vec![(1, 1.0), (2, 2.0), (3, -1.0)], vec![]),
+            (vec![(1, 1.0), (2, 2.0)], vec![3]),
+            (vec![(2, 2.5), (3, 3.0)], vec![]),
+            (vec![(1, 1.5), (2, 2.5), (3, 3.5)], vec![]),
+            (vec![(2, 2.5), (3, 3.5)], vec![]),
+            (vec![(1, 1.75), (2, 2.5), (3, 3.5)], vec![]),
+        ]
+    );
+}
+
 #[test]
 fn detection_keeps_mask_distance_and_maximum() {
     let cx = CallContext::silent();

@@ -1,7 +1,10 @@
 //! Bad input: one clear line each, and nothing left behind.
 
+use std::sync::Arc;
+
 use super::*;
 use crate::MediaError;
+use crate::source::{Decode, Source};
 
 /// The error of opening, or else of reading the last frame.
 fn failure(place: &Place, name: &str, decoder: Decoder) -> String {
@@ -132,7 +135,7 @@ fn videos() {
     assert_exact(&place.open("pieces.mp4"));
 }
 
-/// Damaged files may fail in any way but by a panic or without an end.
+/// Damaged files may fail in any way but by a panic or without an end, with the cache as without it.
 #[test]
 fn damaged_mp4_never_panics() {
     let place = Place::new();
@@ -142,7 +145,18 @@ fn damaged_mp4_never_panics() {
     }
     let sound = std::fs::read(place.path("a.mp4")).unwrap();
     let moov = sound.windows(4).position(|w| w == b"moov").unwrap();
-    let options = OpenOptions { decoder: Decoder::Builtin, cache_bytes: Some(0), ..place.options() };
+    // Frames up to the first error, and that.
+    let outcome = |cache_bytes| {
+        let options = OpenOptions { decoder: Decoder::Builtin, cache_bytes, ..place.options() };
+        let mut frames = Vec::new();
+        let end = open(&place.path("b.mp4"), &options).and_then(|media| {
+            let mut keep = |n| media.frame(n).map(|frame| frames.push(frame.bytes().to_vec()));
+            (0..media.clip().n_frames()).try_for_each(&mut keep)
+        });
+        let line = end.err().map(|error| error.to_string());
+        assert!(line.as_ref().is_none_or(|line| !line.contains("breaks down")), "{line:?}");
+        (frames, line)
+    };
     let mut n_opened = 0;
     for seed in 0..400 {
         let mut random = Pcg64Mcg::seed_from_u64(seed);
@@ -153,12 +167,59 @@ fn damaged_mp4_never_panics() {
             bytes[random.random_range(range.clone())] = random.random();
         }
         std::fs::write(place.path("b.mp4"), &bytes).unwrap();
-        if let Ok(media) = open(&place.path("b.mp4"), &options) {
-            n_opened += 1;
-            (0..media.clip().n_frames()).try_for_each(|n| media.frame(n).map(drop)).unwrap_or_default();
-        }
+        let on_demand = outcome(Some(0));
+        n_opened += u32::from(!on_demand.0.is_empty());
+        assert!(outcome(None) == on_demand, "seed {seed}: the cache makes a difference");
     }
     assert!(n_opened > 100, "{n_opened} of 400 could be opened");
+}
+
+/// Gives two frames, then panics.
+struct Breaking;
+
+struct Giving(u8);
+
+impl Source for Breaking {
+    fn recipe(&self) -> String {
+        "breaking".to_owned()
+    }
+
+    fn decode(&self, _wanted: u32) -> Result<(u32, Box<dyn Decode>), MediaError> {
+        Ok((0, Box::new(Giving(0))))
+    }
+}
+
+impl Decode for Giving {
+    fn next(&mut self, frame: &mut [u8]) -> Result<bool, MediaError> {
+        assert!(self.0 < 2, "no code 77\nat all");
+        frame.fill(self.0);
+        self.0 += 1;
+        Ok(true)
+    }
+}
+
+#[test]
+fn a_panic_of_the_decoder_is_an_error_for_every_reader() {
+    let place = Place::new();
+    let shape = Shape { width: 4, height: 2, colour: false, range: honami_model::picture::Range::Full };
+    let (source, filling) = (Arc::new(Breaking), place.filling(shape, 4));
+    for media in [
+        Media::filling(place.head(shape, 4), source.clone(), filling).unwrap(),
+        Media::on_demand(place.head(shape, 4), source),
+    ] {
+        std::thread::scope(|scope| {
+            for n in [2, 3, 2] {
+                let media = &media;
+                scope.spawn(move || {
+                    let line = media.frame(n).unwrap_err().to_string();
+                    let want = "damaged or cut short (the decoder breaks down on it: no code 77; copy it";
+                    assert!(line.starts_with(want) && !line.contains('\n'), "{line}");
+                });
+            }
+        });
+        assert!(place.cached().is_empty(), "{:?}", place.cached());
+        assert_eq!([0, 1].map(|n| media.frame(n).unwrap().bytes()[7]), [0, 1]);
+    }
 }
 
 #[test]

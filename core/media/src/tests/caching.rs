@@ -4,8 +4,6 @@ use std::fs::File;
 use std::sync::Arc;
 
 use super::*;
-use crate::cache::{Folder, Wanted};
-use crate::media::Head;
 use crate::source::sequence;
 
 fn cache_file(place: &Place) -> PathBuf {
@@ -166,18 +164,9 @@ fn a_full_disk_costs_speed_only() {
     let like = open(&place.path("clip"), &options).unwrap();
     let (files, notes) = sequence::list(like.source()).unwrap();
     let probed = sequence::probe(like.source(), files, notes).unwrap();
-    let wanted = Wanted { key: "key".to_owned(), shape: probed.shape, n_frames: 5 };
-    let mut filling = Folder::find(Some(&place.cache()), None).unwrap().begin(&wanted).unwrap();
+    let mut filling = place.filling(probed.shape, 5);
     filling.refuse_writes().unwrap();
-    let head = Head {
-        clip: like.clip().clone(),
-        notes: Vec::new(),
-        sha256: like.sha256(),
-        path: like.source().to_path_buf(),
-        shape: probed.shape,
-        recent_frames: Some(2),
-        miscounted: None,
-    };
+    let head = place.head(probed.shape, 5);
     let media = Media::filling(head, Arc::from(probed.source), filling).unwrap();
     assert_eq!(bytes_of(&media), bytes_of(&like));
     assert!(media.late_note().unwrap().contains("cannot be kept any more"), "{:?}", media.late_note());

@@ -147,7 +147,7 @@ fn a_gap_costs_no_more_memory_than_there_is() {
         Analyser::new(&FrameTimes::new(times.collect()).expect("times"))
     };
     assert!(gap_after_49(40_000.0).is_ok(), "a million frames");
-    for gap_s in [43_200.0, 1e9, 1e300] {
+    for gap_s in [43_200.0, 1e9, 1e12] {
         let error = gap_after_49(gap_s).unwrap_err();
         assert!(matches!(error, SpectrumError::Gap { frame: 49, .. }), "{error:?}");
         assert!(error.to_string().contains("between frames 49 and 50"), "{error}");

@@ -1,11 +1,12 @@
 //! Clusterers across the border.
 
+use super::stateless::{Function, Stateless};
 use super::table::{Reserved, column, given};
-use super::{Descriptor, State, door, new_instance};
+use super::{Descriptor, door, new_instance};
 use crate::clusterer::{Clusterer, Tracks};
 use crate::{Cx, Error, Params, Result};
 use honami_abi::{self as abi, Call, Code, Instance, code, dtype, interface, schema};
-use std::ffi::{CStr, c_void};
+use std::ffi::CStr;
 use std::marker::PhantomData;
 
 /// Describes a clusterer to [`export!`](crate::export!).
@@ -17,33 +18,18 @@ pub const fn clusterer<T: Clusterer>() -> Descriptor {
         interfaces: [("honami.clusterer/1", true), ("", false), ("", false)],
         params: T::Params::SCHEMA,
         latency: 0,
-        create: new_instance::<ClustererState<T>>,
+        create: new_instance::<Stateless<Grouping<T>>>,
     }
 }
 
-struct ClustererState<T: Clusterer> {
-    params: T::Params,
-    plugin: PhantomData<T>,
-}
+/// `Clusterer::cluster` as a function of the ABI.
+struct Grouping<T>(PhantomData<T>);
 
-impl<T: Clusterer> State for ClustererState<T> {
+impl<T: Clusterer> Function for Grouping<T> {
     type Params = T::Params;
-
-    fn new() -> Self {
-        Self { params: T::Params::default(), plugin: PhantomData }
-    }
-
-    fn params(&mut self) -> Result<&mut T::Params> {
-        Ok(&mut self.params)
-    }
-
-    fn interface(id: &CStr) -> *const c_void {
-        if id == interface::CLUSTERER { (&raw const *Self::CLUSTERER).cast() } else { std::ptr::null() }
-    }
-}
-
-impl<T: Clusterer> ClustererState<T> {
-    const CLUSTERER: &'static abi::ClustererV1 = &abi::ClustererV1 {
+    type Table = abi::ClustererV1;
+    const INTERFACE: &'static CStr = interface::CLUSTERER;
+    const TABLE: &'static abi::ClustererV1 = &abi::ClustererV1 {
         struct_size: size_of::<abi::ClustererV1>() as u32,
         reserved: 0,
         run: Some(run::<T>),
@@ -57,9 +43,9 @@ unsafe extern "C" fn run<T: Clusterer>(
 ) -> Code {
     // SAFETY: the host keeps the contract of honami_clusterer_v1.
     unsafe {
-        door::<ClustererState<T>>(instance, call, |state, call| {
+        door::<Stateless<Grouping<T>>>(instance, call, |state, call| {
             let input = given(input)?;
-            let mut tracks = read_tracks(given(input.tracks)?, given(input.times)?)?;
+            let mut tracks = read_tracks(&given(input.tracks)?, &given(input.times)?)?;
             (tracks.width, tracks.height) = (input.width, input.height);
             (tracks.max_threads, tracks.seed) = (input.max_threads.max(1), input.seed);
             let found = T::cluster(&state.params, &tracks, &Cx::new(call))?;
@@ -92,8 +78,8 @@ unsafe extern "C" fn run<T: Clusterer>(
 /// The tracks, still without what the input struct says of them.
 ///
 /// # Safety
-/// The tables are the host's and live for `'a`.
-pub(super) unsafe fn read_tracks<'a>(tracks: &'a abi::Table, times: &'a abi::Table) -> Result<Tracks<'a>> {
+/// The tables are the host's, and their columns live for `'a`.
+pub(super) unsafe fn read_tracks<'a>(tracks: &abi::Table, times: &abi::Table) -> Result<Tracks<'a>> {
     // SAFETY: the caller's promise.
     let tracks = unsafe {
         Tracks {

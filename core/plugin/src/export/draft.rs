@@ -1,6 +1,7 @@
 //! Structure builders and simulators across the border.
 
 use super::clusterer::read_tracks;
+use super::stateless::{Function, Stateless};
 use super::table::{Reserved, column, given};
 use super::{Descriptor, State, door, new_instance};
 use crate::draft::{Gust, Node, Plant, Simulator, Structure};
@@ -18,7 +19,7 @@ pub const fn structure<T: Structure>() -> Descriptor {
         interfaces: [("honami.structure/1", true), ("", false), ("", false)],
         params: T::Params::SCHEMA,
         latency: 0,
-        create: new_instance::<StructureState<T>>,
+        create: new_instance::<Stateless<Growing<T>>>,
     }
 }
 
@@ -35,29 +36,14 @@ pub const fn simulator<T: Simulator>() -> Descriptor {
     }
 }
 
-struct StructureState<T: Structure> {
-    params: T::Params,
-    plugin: PhantomData<T>,
-}
+/// `Structure::grow` as a function of the ABI.
+struct Growing<T>(PhantomData<T>);
 
-impl<T: Structure> State for StructureState<T> {
+impl<T: Structure> Function for Growing<T> {
     type Params = T::Params;
-
-    fn new() -> Self {
-        Self { params: T::Params::default(), plugin: PhantomData }
-    }
-
-    fn params(&mut self) -> Result<&mut T::Params> {
-        Ok(&mut self.params)
-    }
-
-    fn interface(id: &CStr) -> *const c_void {
-        if id == draft::STRUCTURE { (&raw const *Self::STRUCTURE).cast() } else { std::ptr::null() }
-    }
-}
-
-impl<T: Structure> StructureState<T> {
-    const STRUCTURE: &'static draft::StructureV1 = &draft::StructureV1 {
+    type Table = draft::StructureV1;
+    const INTERFACE: &'static CStr = draft::STRUCTURE;
+    const TABLE: &'static draft::StructureV1 = &draft::StructureV1 {
         struct_size: size_of::<draft::StructureV1>() as u32,
         reserved: 0,
         run: Some(grow::<T>),
@@ -71,9 +57,9 @@ unsafe extern "C" fn grow<T: Structure>(
 ) -> Code {
     // SAFETY: the host keeps the contract of honami_structure_v1.
     unsafe {
-        door::<StructureState<T>>(instance, call, |state, call| {
+        door::<Stateless<Growing<T>>>(instance, call, |state, call| {
             let input = given(input)?;
-            let mut tracks = read_tracks(given(input.tracks)?, given(input.times)?)?;
+            let mut tracks = read_tracks(&given(input.tracks)?, &given(input.times)?)?;
             (tracks.max_threads, tracks.seed) = (input.max_threads.max(1), input.seed);
             let nodes = T::grow(&state.params, &tracks, &Cx::new(call))?;
             let (i, f) = (dtype::I32, dtype::F32);
@@ -155,7 +141,7 @@ unsafe extern "C" fn prepare<T: Simulator>(
     unsafe {
         door::<SimulatorState<T>>(instance, call, |state, call| {
             let input = given(input)?;
-            let nodes = read_skeleton(given(input.skeleton)?)?;
+            let nodes = read_skeleton(&given(input.skeleton)?)?;
             let motion = vec![[0.0; 3]; nodes.len() * input.n_instances as usize];
             let (max_threads, seed) = (input.max_threads.max(1), input.seed);
             let plant = Plant { nodes, n_instances: input.n_instances, max_threads, seed };
@@ -213,11 +199,12 @@ unsafe extern "C" fn step<T: Simulator>(
     // SAFETY: see `prepare`.
     unsafe {
         door::<SimulatorState<T>>(instance, call, |state, call| {
-            let wind: Vec<Gust> = match wind.as_ref() {
-                None => Vec::new(),
-                Some(table) => {
+            let wind: Vec<Gust> = match wind.is_null() {
+                true => Vec::new(),
+                false => {
+                    let table = given(wind)?;
                     let (times, winds) =
-                        (column::<f64>(table, c"time_s", 1)?, column::<f32>(table, c"wind", 3)?);
+                        (column::<f64>(&table, c"time_s", 1)?, column::<f32>(&table, c"wind", 3)?);
                     let gust = |(&time_s, w): (&f64, &[f32])| Gust { time_s, wind: [w[0], w[1], w[2]] };
                     times.iter().zip(winds.chunks_exact(3)).map(gust).collect()
                 }

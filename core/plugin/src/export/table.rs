@@ -2,8 +2,10 @@
 
 use super::HostCall;
 use crate::{Error, Result};
-use honami_abi::{Column, Table, code, dtype};
+use honami_abi::{self as abi, Column, Table, code, draft, dtype};
 use std::ffi::CStr;
+use std::mem::MaybeUninit;
+use std::ptr::copy_nonoverlapping;
 
 /// A Rust type that can be an element of a column.
 pub(crate) trait Element: Copy {
@@ -31,18 +33,62 @@ pub(crate) unsafe fn slice<'a, T>(data: *const T, n: u64) -> Result<&'a [T]> {
     }
 }
 
+/// A struct that the host passes in.
+///
 /// # Safety
-/// `struct_ptr` is null or lives for `'a`.
-pub(crate) unsafe fn given<'a, T>(struct_ptr: *const T) -> Result<&'a T> {
-    // SAFETY: the caller's promise.
-    unsafe { struct_ptr.as_ref() }.ok_or_else(|| misuse("the host passed a null pointer"))
+/// It begins with `struct_size: u32`, has no padding, and zeros are a value of every field.
+pub(crate) unsafe trait Given: Sized {
+    /// Its size in ABI 1.0: what every host knows. Fields behind it are read behind `has!`.
+    const SIZE_MIN: usize;
+}
+
+macro_rules! all_given {
+    ($($ty:ty: $last:ident),* $(,)?) => { $(
+        // SAFETY: asserted by the layout table of honami-abi; the fields are numbers, pointers and optional functions.
+        unsafe impl Given for $ty { const SIZE_MIN: usize = abi::size_to!($ty, $last); }
+    )* };
+}
+all_given!(
+    // Its functions may all be missing; they are asked for one by one.
+    abi::Call: host,
+    abi::Table: rows,
+    abi::Frame: time_s,
+    abi::StreamInfo: birth_count,
+    abi::DetectInput: seed,
+    abi::FieldInput: to,
+    abi::ClustererInput: times,
+    draft::StructureInput: dendrogram,
+    draft::SimulatorInput: reserved,
+);
+
+/// As much of a host's struct as the host knew; the fields after that are zero.
+///
+/// # Safety
+/// `at` is null, or as many bytes as `struct_size`, its first field, says can be read there.
+pub(crate) unsafe fn given<T: Given>(at: *const T) -> Result<T> {
+    if at.is_null() {
+        return Err(misuse("the host passed a null pointer"));
+    }
+    // SAFETY: not null, and every struct that grows is at least its size.
+    let size = unsafe { at.cast::<u32>().read_unaligned() } as usize;
+    if size < T::SIZE_MIN {
+        return Err(misuse(format!("the host passed a struct of {size} bytes, wanted {}", T::SIZE_MIN)));
+    }
+    let size = size.min(size_of::<T>());
+    let whole_fields = size - size % align_of::<T>();
+    let mut known = MaybeUninit::<T>::zeroed();
+    // SAFETY: the caller's promise, and not more than `known` holds; what is not copied is zero, which `Given` allows.
+    unsafe {
+        copy_nonoverlapping(at.cast::<u8>(), known.as_mut_ptr().cast::<u8>(), whole_fields);
+        Ok(known.assume_init())
+    }
 }
 
 /// All elements of a column, however many rows it has.
 ///
 /// # Safety
-/// The table is one of the host's and lives for `'a`.
-pub(crate) unsafe fn column<'a, T: Element>(table: &'a Table, name: &CStr, ncomp: u32) -> Result<&'a [T]> {
+/// The table is one of the host's, and its columns live for `'a`.
+pub(crate) unsafe fn column<'a, T: Element>(table: &Table, name: &CStr, ncomp: u32) -> Result<&'a [T]> {
     // SAFETY: the caller's promise; the header wants names to be strings and data to hold rows * ncomp elements.
     unsafe {
         let columns = slice(table.cols, u64::from(table.ncols))?;
@@ -77,7 +123,7 @@ impl<'c> Reserved<'c> {
         rows: usize,
         specs: &[ColumnSpec],
     ) -> Result<Self> {
-        let reserve = call.0.reserve.ok_or_else(|| misuse("the host has no reserve"))?;
+        let reserve = call.known.reserve.ok_or_else(|| misuse("the host has no reserve"))?;
         let none = Column { name: std::ptr::null(), dtype: 0, ncomp: 0, data: std::ptr::null_mut(), rows: 0 };
         let mut columns = [none; MAX_COLUMNS];
         for (column, &(name, dtype, ncomp)) in columns.iter_mut().zip(specs) {
@@ -85,7 +131,7 @@ impl<'c> Reserved<'c> {
         }
         let n = specs.len().min(MAX_COLUMNS) as u32;
         // SAFETY: the host's function with its own context and columns that outlive the call.
-        let answer = unsafe { reserve(call.0, schema.as_ptr(), rows as u64, n, columns.as_mut_ptr()) };
+        let answer = unsafe { reserve(call.raw, schema.as_ptr(), rows as u64, n, columns.as_mut_ptr()) };
         if answer < 0 {
             let why = format!("the host refused {rows} rows of {}", schema.to_string_lossy());
             return Err(Error::with_code(answer, why));
@@ -112,9 +158,9 @@ impl<'c> Reserved<'c> {
     }
 
     pub(crate) fn commit(self) -> Result<()> {
-        let commit = self.call.0.commit.ok_or_else(|| misuse("the host has no commit"))?;
+        let commit = self.call.known.commit.ok_or_else(|| misuse("the host has no commit"))?;
         // SAFETY: as in `new`.
-        let answer = unsafe { commit(self.call.0, self.schema.as_ptr(), self.rows as u64) };
+        let answer = unsafe { commit(self.call.raw, self.schema.as_ptr(), self.rows as u64) };
         if answer < 0 {
             let why = format!("the host refused {}", self.schema.to_string_lossy());
             return Err(Error::with_code(answer, why));

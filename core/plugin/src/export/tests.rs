@@ -115,3 +115,45 @@ fn a_panic_poisons_the_instance() {
         }
     });
 }
+
+#[test]
+fn only_what_the_host_knew_is_read() {
+    with_bomb(|bomb, table| {
+        // SAFETY: everything is alive; the last call is of a host that knew neither reserve nor what follows.
+        unsafe {
+            let short = StreamInfo { struct_size: 52, ..gray(1) };
+            assert_eq!((table.begin.unwrap())(bomb, &BARE, &short), code::ARGUMENT);
+            let none = Call { struct_size: 8, ..BARE };
+            assert_eq!((table.begin.unwrap())(bomb, &none, &gray(1)), code::ARGUMENT);
+            let size = std::mem::offset_of!(Call, reserve);
+            let mut start = vec![0_u64; size / 8];
+            let words = start.as_mut_ptr();
+            words.cast::<u32>().write(size as u32);
+            assert_eq!((table.begin.unwrap())(bomb, words.cast(), &gray(1)), code::OK);
+        }
+    });
+}
+
+/// Two threads panic before either is asked what it said; a third passes on the panic of another.
+#[test]
+fn a_panic_is_reported_where_it_is_caught() {
+    let both = std::sync::Barrier::new(2);
+    let caught = |said: &'static str| {
+        panics::keep(format!("panicked at a place: {said}"));
+        both.wait();
+        panics::report(&said)
+    };
+    std::thread::scope(|scope| {
+        let threads = ["one", "two"].map(|said| {
+            let caught = &caught;
+            scope.spawn(move || caught(said))
+        });
+        let told = threads.map(|thread| thread.join().unwrap());
+        assert_eq!(told, ["panicked at a place: one", "panicked at a place: two"]);
+    });
+    assert_eq!(panics::report(&"three"), "three");
+    std::thread::scope(|scope| {
+        scope.spawn(|| panics::keep("panicked at a place: four".into())).join().unwrap()
+    });
+    assert_eq!(panics::report(&"four".to_owned()), "panicked at a place: four");
+}

@@ -136,7 +136,7 @@ unsafe extern "C" fn seed<T: Tracker>(
     // SAFETY: see `begin`.
     unsafe {
         door::<TrackerState<T>>(instance, call, |state, call| {
-            read_seeds(given(points)?, &mut state.seeds)?;
+            read_seeds(&given(points)?, &mut state.seeds)?;
             state.with_running(|tracker, seeds, _| tracker.seed(seeds, &Cx::new(call)))?;
             Ok(code::OK)
         })
@@ -272,9 +272,9 @@ unsafe extern "C" fn detect<T: Tracker>(
                 true => None,
                 false => Some(read_gray(input.mask, width, height, input.mask_stride)?),
             };
-            match input.points.as_ref() {
-                Some(points) => read_seeds(points, &mut state.seeds)?,
-                None => state.seeds.clear(),
+            match input.points.is_null() {
+                true => state.seeds.clear(),
+                false => read_seeds(&given(input.points)?, &mut state.seeds)?,
             }
             let request = Detect {
                 frame,
