@@ -2,7 +2,7 @@
 
 use std::process::{Child, Stdio};
 
-use honami_tests::{Bench, Ran, by_track};
+use honami_tests::{Bench, by_track};
 use rusqlite::{Connection, OpenFlags};
 use rustix::process::{Pid, Signal, kill_process};
 
@@ -12,15 +12,21 @@ const N_FRAMES: u32 = 400;
 /// Frames that are kept at a time.
 const CHUNK: u64 = 64;
 
+/// Looks for new features, away from those of the first run.
+const NEW: &str = " --detect";
+/// Follows those of the first run again.
+const AGAIN: &str = "";
+
 /// A project with a short run and a correction in it, and a second run at work that has kept some frames.
-fn at_work() -> (Bench, Child) {
+fn at_work(what: &str) -> (Bench, Child) {
     let bench = Bench::new();
     bench.synth("clip.y4m", N_FRAMES, "--leaves 40");
     bench.json("new p.honami clip.y4m");
-    bench.json("track p.honami --frames 0..8");
+    bench.json("track p.honami --frames 0..8 --set max_features=20");
     assert_eq!(bench.edit("p.honami", "key 0 3 20 30").code, Some(0));
     // A large window makes every frame slow.
-    let mut command = bench.command("track p.honami --json --set radius=50 --set levels=1".split(' '));
+    let line = format!("track p.honami --json --set radius=50 --set levels=1{what}");
+    let mut command = bench.command(line.split(' '));
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let database =
         Connection::open_with_flags(bench.path("p.honami"), OpenFlags::SQLITE_OPEN_READ_ONLY).unwrap();
@@ -42,15 +48,30 @@ fn assert_corrected(bench: &Bench) {
     assert_eq!(["track", "frame", "x", "y"].map(|column| keys[0][column].as_str()), ["0", "3", "20", "30"]);
 }
 
-#[test]
-fn a_run_that_is_stopped_keeps_its_frames() {
-    let (bench, child) = at_work();
+/// Ctrl-C, and what the run then says; to be stopped is not to be done.
+fn stop(child: Child) -> serde_json::Value {
     kill_process(Pid::from_child(&child), Signal::INT).unwrap();
     let output = child.wait_with_output().unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    let ran = Ran { stdout: text(output.stdout), stderr: text(output.stderr), code: output.status.code() };
-    let track = ran.json();
+    assert_eq!(output.status.code(), Some(1));
+    let track: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(track["stopped"], true);
+    track
+}
+
+#[test]
+fn half_a_run_leaves_no_seam_in_tracks_that_reach_further() {
+    let (bench, child) = at_work(AGAIN);
+    let before = bench.samples("p.honami");
+    let track = stop(child);
+    assert_eq!(bench.samples("p.honami"), before);
+    let run = &bench.log("p.honami", "run")[1];
+    assert_eq!((&run["state"], &run["frames"]), (&"stopped: stopped".into(), &track["frames"]));
+}
+
+#[test]
+fn a_run_that_is_stopped_keeps_its_frames() {
+    let (bench, child) = at_work(NEW);
+    let track = stop(child);
     let end = track["frames"][1].as_u64().unwrap();
     assert!((CHUNK..u64::from(N_FRAMES)).contains(&end), "{track}");
 
@@ -67,7 +88,7 @@ fn a_run_that_is_stopped_keeps_its_frames() {
 
 #[test]
 fn a_run_that_is_killed_keeps_its_frames() {
-    let (bench, mut child) = at_work();
+    let (bench, mut child) = at_work(NEW);
     let before = bench.json("log p.honami");
     child.kill().unwrap();
     child.wait().unwrap();
@@ -84,7 +105,9 @@ fn a_run_that_is_killed_keeps_its_frames() {
     let end = run["frames"][1].as_u64().unwrap();
     assert!(end >= CHUNK && end % CHUNK == 0 && end < u64::from(N_FRAMES), "{run}");
     let samples = bench.samples("p.honami");
-    for (id, track) in by_track(&samples) {
+    let found: Vec<_> = samples.into_iter().filter(|row| row["run"] == "2").collect();
+    assert!(!found.is_empty());
+    for (id, track) in by_track(&found) {
         let frames: Vec<u64> = track.iter().map(|row| row["frame"].parse().unwrap()).collect();
         assert_eq!(frames, (0..end).collect::<Vec<_>>(), "track {id} is whole");
     }
@@ -99,7 +122,7 @@ fn a_run_that_is_killed_keeps_its_frames() {
 
 #[test]
 fn a_killed_run_is_kept_though_its_clip_is_missing_at_first() {
-    let (bench, mut child) = at_work();
+    let (bench, mut child) = at_work(NEW);
     child.kill().unwrap();
     child.wait().unwrap();
     std::fs::rename(bench.path("clip.y4m"), bench.path("away")).unwrap();

@@ -23,21 +23,21 @@ const CASES: &[Case] = &[
     ("new nowhere/q.honami clip.y4m", FAILED, &["nowhere/q.honami", "No such file"]),
     ("new q.honami clip.y4m --fps 0", FAILED, &["frame rate", "positive", "0"]),
     ("new q.honami", USAGE, &["<CLIP>"]),
-    ("new q.txt clip.y4m", FAILED, &[".honami", "q.txt"]),
-    ("log missing.honami", FAILED, &["cannot open the project", "missing.honami"]),
+    ("new q.txt clip.y4m", USAGE, &[".honami", "q.txt"]),
+    ("log missing.honami", FAILED, &["there is no project missing.honami", "honami new"]),
     ("log text.honami", FAILED, &["not a honami project", "honami new", "text.honami"]),
     ("track text.honami", FAILED, &["not a honami project"]),
     ("export text.honami tracks out.csv", FAILED, &["not a honami project"]),
     // Plugins and their parameters.
-    ("track p.honami --with nothing", FAILED, &["no tracker \"nothing\"", "there are:", "klt"]),
-    ("track p.honami --with movement", FAILED, &["no tracker \"movement\""]),
-    ("cluster p.honami --with klt", FAILED, &["no clusterer \"klt\"", "movement"]),
+    ("track p.honami --with nothing", USAGE, &["no tracker \"nothing\"", "there are:", "klt"]),
+    ("track p.honami --with movement", USAGE, &["no tracker \"movement\""]),
+    ("cluster p.honami --with klt", USAGE, &["no clusterer \"klt\"", "movement"]),
     ("plugin info nothing", FAILED, &["no plugin \"nothing\"", "there are:"]),
-    ("track p.honami --set foo=1", FAILED, &["no parameter \"foo\"", "there are: radius"]),
-    ("track p.honami --set radius", FAILED, &["name=value"]),
-    ("track p.honami --set radius=wide", FAILED, &["radius", "whole number, 1 to 100 (px)", "wide"]),
-    ("track p.honami --set radius=0", FAILED, &["radius", "1 to 100", "\"0\""]),
-    ("track p.honami --set method=fast", FAILED, &["one of shi-tomasi, harris", "fast"]),
+    ("track p.honami --set foo=1", USAGE, &["no parameter \"foo\"", "there are: radius"]),
+    ("track p.honami --set radius", USAGE, &["name=value"]),
+    ("track p.honami --set radius=wide", USAGE, &["radius", "whole number, 1 to 100 (px)", "wide"]),
+    ("track p.honami --set radius=0", USAGE, &["radius", "1 to 100", "\"0\""]),
+    ("track p.honami --set method=fast", USAGE, &["one of shi-tomasi, harris", "fast"]),
     // Frames, areas and points.
     ("track p.honami --frames 0..41", FAILED, &["0..41", "0..40"]),
     ("track p.honami --frames 5..5", USAGE, &["A..B", "5..5"]),
@@ -58,19 +58,19 @@ const CASES: &[Case] = &[
     // Results.
     ("cluster p.honami --groups 0", FAILED, &["groups, not 0"]),
     ("cluster p.honami --groups 9999", FAILED, &["groups, not 9999"]),
-    ("cluster bare.honami", FAILED, &["no tracks yet", "honami track"]),
-    ("export p.honami tracks out.txt", FAILED, &[".csv", "out.txt"]),
+    ("cluster bare.honami", FAILED, &["no tracks yet", "track features first"]),
+    ("export p.honami tracks out.txt", USAGE, &[".csv", "out.txt"]),
     ("export p.honami tracks nowhere/out.csv", FAILED, &["nowhere/out.csv"]),
-    ("export bare.honami tracks out.csv", FAILED, &["no tracks yet", "honami track"]),
+    ("export bare.honami tracks out.csv", FAILED, &["no tracks yet", "track features first"]),
     ("export p.honami pictures out.csv", USAGE, &["pictures", "tracks"]),
     ("spectrum p.honami --track 9999", FAILED, &["track 9999"]),
     ("spectrum points.csv", FAILED, &["points.csv", "`track` is missing"]),
     ("spectrum bare.honami", FAILED, &["no tracks yet"]),
-    ("compare clip.y4m", FAILED, &["no points", "--truth or --points"]),
+    ("compare clip.y4m", USAGE, &["no points", "--truth or --points"]),
     ("compare clip.y4m --truth missing.csv", FAILED, &["missing.csv"]),
     ("compare clip.y4m --truth points.csv", FAILED, &["points.csv line 1"]),
-    ("compare p.honami --with klt --set foo=1", FAILED, &["no parameter \"foo\""]),
-    ("compare p.honami --with nothing", FAILED, &["no tracker \"nothing\"", "klt"]),
+    ("compare p.honami --with klt --set foo=1", USAGE, &["no parameter \"foo\""]),
+    ("compare p.honami --with nothing", USAGE, &["no tracker \"nothing\"", "klt"]),
     // Generated clips.
     ("synth clip.y4m", FAILED, &["clip.y4m", "choose another name"]),
     ("synth out.gif", FAILED, &[".mp4, .y4m or a folder", "out.gif"]),
@@ -78,7 +78,10 @@ const CASES: &[Case] = &[
     ("synth out.y4m --frames 1", USAGE, &["--frames"]),
     ("synth out.y4m --wind gale", USAGE, &["gale", "storm"]),
     // Anything else.
-    ("trak p.honami", USAGE, &["p.honami"]),
+    ("trak p.honami", USAGE, &["no command", "\"trak\"", "did you mean track"]),
+    ("trak.honami", USAGE, &["there is no file trak.honami"]),
+    ("relink p.honami small.y4m", FAILED, &["SHA-256"]),
+    ("export bare.honami groups out.csv", FAILED, &["no groups yet"]),
     ("doctor --loud", USAGE, &["--loud"]),
 ];
 
@@ -124,7 +127,7 @@ fn wrong_input_is_told_in_one_line_and_leaves_nothing_behind() {
 #[test]
 fn errors_never_tell_the_same_cause_twice() {
     let bench = Bench::new();
-    for line in ["log missing.honami", "compare missing.y4m --points missing.csv", "spectrum missing.csv"] {
+    for line in ["new q.honami missing.y4m", "compare missing.y4m --points missing.csv", "spectrum missing.csv"] {
         let told = bench.line(line).stderr;
         assert_eq!(told.matches("o such file").count(), 1, "honami {line}: {told}");
     }
@@ -161,5 +164,5 @@ fn a_clip_is_found_beside_its_moved_project_and_never_guessed() {
     fs::remove_file(bench.path("moved/clip.y4m")).unwrap();
     let ran = bench.line("track moved/p.honami");
     assert_eq!(ran.code, Some(1));
-    assert!(ran.stderr.contains("clip.y4m") && ran.stderr.contains("say where it is"), "{}", ran.stderr);
+    assert!(ran.stderr.contains("clip.y4m") && ran.stderr.contains("honami relink"), "{}", ran.stderr);
 }

@@ -91,7 +91,8 @@ table! {
     PlayBackwards "play-backwards" ["B"] [Review ""] "play backwards, or pause"
     NextTrack "next-track" ["n"] [Review "next"] "select the next track"
     PreviousTrack "previous-track" ["p"] [Review ""] "select the previous track"
-    WorstFrame "worst-frame" ["w"] [Review "worst"] "go to the most doubtful frame of the selected track"
+    WorstFrame "worst-frame" ["w"] [Review "worst"]
+        "go to the most doubtful frame of the selected track; again, to the next worst"
     StepForward "step" ["."] [Review ""] "one frame forward; a number before it steps so many"
     StepBack "step-back" [","] [Review ""] "one frame back"
     LeapForward "leap" [">"] [Review ""] "ten frames forward"
@@ -102,12 +103,13 @@ table! {
     GoEnd "go-end" ["g e" "End"] [Review ""] "go to the last frame"
     GoFrame "go-frame" ["g f"] [Review ""] "go to a frame by its number (120 g f goes at once)"
     GoTrack "go-track" ["g t" "/"] [Review ""] "find a track by its number or name"
+    Sort "sort-tracks" ["S"] [Review ""] "sort the tracks by doubt, the worst first, or by number"
     // Work.
     MoveSample "move-sample" ["m"] [Review "move"] "move the sample here; it becomes a key-frame"
     AddFeature "add-feature" ["a"] [Review "add"] "add a feature by hand"
     DeleteTrack "delete-track" ["d"] [Review ""] "delete the selected track (u brings it back)"
-    Erase "erase" ["Backspace"] [Review "" Form "" Menu "" Prompt ""]
-        "take back: a typed letter; while reviewing, the key-frame here"
+    ClearKey "clear-key-frame" ["X"] [Review ""] "clear the key-frame here (u brings it back)"
+    Erase "erase" ["Backspace"] [Form "" Menu "" Prompt ""] "take back a typed letter"
     RunTracker "track" ["t"] [Review "track"] "follow features with a tracker"
     RunClusterer "cluster" ["c"] [Review "cluster"] "group the tracks by their movement"
     MoreGroups "more-groups" ["+" "="] [Review ""] "cut the hierarchy into one group more"

@@ -1,6 +1,7 @@
 //! The only door to the world: what the state wants done is done here, and what comes of it becomes facts.
 
 use std::collections::BTreeMap;
+use std::io::Write as _;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -60,6 +61,11 @@ impl World {
     /// Frames decoded so far.
     pub(super) fn n_ready(&self) -> u32 {
         self.session.media.n_ready()
+    }
+
+    /// Whether more frames will be: the first that is missing has not failed.
+    pub(super) fn is_decoding(&self) -> bool {
+        self.session.media.try_frame(self.n_ready()).is_ok()
     }
 
     pub(super) fn media(&self) -> Arc<honami_workbench::media::Media> {
@@ -201,10 +207,13 @@ impl World {
         self.shown_and(Fact::Said(notice))
     }
 
-    /// Stops what runs and keeps what it has found.
+    /// Stops what runs and keeps what it has found; says so on standard error, for it may take a while.
     pub(super) fn close(mut self) -> Result<(), WorkbenchError> {
-        if let Some((running, _)) = &self.running {
+        if let Some((running, job)) = &self.running {
             running.stop();
+            let kept = if job.keeps_frames { ", keeping its frames" } else { "" };
+            // Nobody may be there to read it.
+            writeln!(std::io::stderr(), "stopping {}{kept} …", job.plugin).unwrap_or_default();
             self.finish()?;
         }
         Ok(())

@@ -30,10 +30,31 @@ pub struct Plugin {
 pub const FEATURES: &str = "@features";
 /// Every how many frames new features are looked for: id of a parameter of ours.
 pub const EVERY: &str = "@every";
-/// [`FEATURES`]: found by the plugin.
-pub const DETECT: &str = "detect";
-/// [`FEATURES`]: the tracks that are there.
-pub const EXISTING: &str = "existing";
+
+/// Which features a tracker follows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Features {
+    /// Those it finds by itself.
+    Found,
+    /// Those of all tracks that are there.
+    Here,
+    /// That of the selected track.
+    Selected,
+}
+
+impl Features {
+    const ALL: [Self; 3] = [Self::Found, Self::Here, Self::Selected];
+
+    /// What the form calls them: the value of [`FEATURES`].
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Found => "found anew",
+            Self::Here => "the tracks here",
+            Self::Selected => "the selected track",
+        }
+    }
+}
 
 /// A form being filled in.
 #[derive(Clone, Debug)]
@@ -50,8 +71,6 @@ pub struct Form {
     pub unfolded: bool,
     /// What is being typed into the row.
     pub typed: Option<String>,
-    /// Whether there are tracks to follow.
-    has_tracks: bool,
     values: Values,
 }
 
@@ -67,16 +86,17 @@ pub enum Row<'a> {
 }
 
 impl Form {
-    /// The form of a task; `None` when no plugin does it.
+    /// The form of a task; `None` when no plugin does it. A tracker can follow these features, the first of them
+    /// unless something else is chosen.
     #[must_use]
-    pub fn new(task: Task, plugins: &[Plugin], has_tracks: bool) -> Option<Self> {
+    pub fn new(task: Task, plugins: &[Plugin], features: &[Features]) -> Option<Self> {
         let mut plugins: Vec<Plugin> = plugins.iter().filter(|p| p.task == task).cloned().collect();
         for plugin in plugins.iter_mut().filter(|p| p.task == Task::Track) {
-            let ours = own_params(plugin.can_detect, has_tracks);
+            let ours = own_params(plugin.can_detect, features);
             plugin.params.splice(0..0, ours);
         }
         let values = Values::defaults(&plugins.first()?.params);
-        Some(Self { task, plugins, which: 0, at: 0, unfolded: false, typed: None, has_tracks, values })
+        Some(Self { task, plugins, which: 0, at: 0, unfolded: false, typed: None, values })
     }
 
     /// The chosen plugin.
@@ -100,10 +120,12 @@ impl Form {
         values
     }
 
-    /// Whether the features are those of the tracks that are there.
+    /// The features to follow.
     #[must_use]
-    pub fn follows_existing(&self) -> bool {
-        self.values.get(FEATURES) == Some(&Value::Text(EXISTING.to_owned()))
+    pub fn features(&self) -> Features {
+        let is_chosen =
+            |f: &Features| self.values.get(FEATURES) == Some(&Value::Text(f.word().to_owned()));
+        Features::ALL.into_iter().find(is_chosen).unwrap_or(Features::Found)
     }
 
     /// Every how many frames new features are looked for; `None`: only at the first.
@@ -184,16 +206,10 @@ impl Form {
         self.typed = None;
         Ok(())
     }
-
-    /// Whether there are tracks to follow.
-    #[must_use]
-    pub fn has_tracks(&self) -> bool {
-        self.has_tracks
-    }
 }
 
 /// Parameters of every tracking, whatever the plugin.
-fn own_params(can_detect: bool, has_tracks: bool) -> Vec<Param> {
+fn own_params(can_detect: bool, features: &[Features]) -> Vec<Param> {
     let param = |id: &str, label: &str, doc: &str, kind| Param {
         id: id.to_owned(),
         label: label.to_owned(),
@@ -205,18 +221,12 @@ fn own_params(can_detect: bool, has_tracks: bool) -> Vec<Param> {
         when: std::collections::BTreeMap::new(),
         kind,
     };
-    let entry =
-        |id: &str, label: &str| Entry { id: id.to_owned(), label: label.to_owned(), doc: String::new() };
-    let mut entries = Vec::new();
-    if has_tracks {
-        entries.push(entry(EXISTING, "the tracks here"));
-    }
-    if can_detect {
-        entries.insert(0, entry(DETECT, "found anew"));
-    }
-    let Some(first) = entries.first() else { return Vec::new() };
-    let features = ParamKind::Enum { default: first.id.clone(), entries: entries.clone() };
-    let mut ours = vec![param(FEATURES, "features", "where the features to follow come from", features)];
+    let features = features.iter().filter(|&&f| can_detect || f != Features::Found);
+    let entry = |f: &Features| Entry { id: f.word().to_owned(), label: String::new(), doc: String::new() };
+    let entries: Vec<Entry> = features.map(entry).collect();
+    let Some(default) = entries.first().map(|first| first.id.clone()) else { return Vec::new() };
+    let kind = ParamKind::Enum { default, entries };
+    let mut ours = vec![param(FEATURES, "features", "the features to follow", kind)];
     if can_detect {
         let range = Numeric {
             default: 0,
@@ -229,7 +239,7 @@ fn own_params(can_detect: bool, has_tracks: bool) -> Vec<Param> {
         };
         let mut every = param(EVERY, "look again", "every so many frames; 0: never", ParamKind::Int(range));
         every.unit = "frames".to_owned();
-        every.when.insert(FEATURES.to_owned(), Value::Text(DETECT.to_owned()));
+        every.when.insert(FEATURES.to_owned(), Value::Text(Features::Found.word().to_owned()));
         ours.push(every);
     }
     ours

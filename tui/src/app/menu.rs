@@ -67,9 +67,9 @@ impl Menu {
     /// Every shown track.
     #[must_use]
     pub fn of_tracks(state: &State) -> Self {
-        let rows = state.tracks.iter().map(|row| {
+        let rows = state.listed().into_iter().map(|row| {
             let group = state.groups.as_ref().and_then(|g| g.of(row.id));
-            let doubt = row.worst.map_or_else(String::new, |w| format!("worst {w}"));
+            let doubt = row.worst.first().map_or_else(String::new, |w| format!("worst at {w}"));
             Row {
                 label: format!("track {} {}", row.id, row.name.as_deref().unwrap_or_default()),
                 detail: group.map_or(doubt.clone(), |g| format!("group {}  {doubt}", g + 1)),
@@ -93,14 +93,19 @@ impl Menu {
 
     /// Changes what was typed, and with it the rows.
     pub fn retype(&mut self, change: impl FnOnce(&mut String)) {
+        let before = self.typed.clone();
         change(&mut self.typed);
+        if self.typed == before {
+            return;
+        }
+        let lower = self.typed.to_lowercase();
         let mut scored: Vec<(i32, usize)> = Vec::new();
         for (i, row) in self.rows.iter().enumerate() {
             // A name counts for more than a key, a key for more than a word of the description.
             let name = fuzzy::score(&self.typed, &row.label).map(|s| s + 20);
             let key = (!self.typed.is_empty() && row.keys.split("  ").any(|k| k == self.typed)).then_some(90);
             let words = row.detail.split_whitespace();
-            let detail = words.filter(|w| w.to_lowercase().starts_with(&self.typed.to_lowercase())).count();
+            let detail = words.filter(|w| w.to_lowercase().starts_with(&lower)).count();
             let detail = (detail > 0).then_some(5);
             if let Some(score) = [name, key, detail].into_iter().flatten().max() {
                 scored.push((score, i));

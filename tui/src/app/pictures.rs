@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
+use std::time::Duration;
 
 use honami_workbench::media::{FrameRef, Media, MediaError, Rect};
 
@@ -9,11 +10,16 @@ use super::layout::Lens;
 use super::view::Shot;
 use crate::term::signals::Waker;
 
-/// What the screen and the decoding thread share: one wish, one fulfilment. The newest wish wins.
+/// While the clip is being decoded, a wished frame is looked for this often.
+const LOOK: Duration = Duration::from_millis(20);
+
+/// What the screen and the thread share: one wish, one fulfilment. The newest wish wins.
 #[derive(Default)]
 struct Desk {
     wish: Option<u32>,
     here: Option<(u32, Result<FrameRef, MediaError>)>,
+    /// The thread decodes a frame itself, and cannot be told to stop.
+    is_decoding: bool,
     is_closed: bool,
 }
 
@@ -85,7 +91,7 @@ impl Pictures {
     }
 }
 
-/// The thread: decodes what is wished for, one frame after another.
+/// The thread: fetches what is wished for, one frame after another.
 fn fulfil(shared: &Shared, media: &Media, waker: &Waker) {
     let mut desk = lock(shared);
     while !desk.is_closed {
@@ -93,9 +99,16 @@ fn fulfil(shared: &Shared, media: &Media, waker: &Waker) {
             desk = shared.1.wait(desk).unwrap_or_else(PoisonError::into_inner);
             continue;
         };
+        // What the clip's own decoder will come by is waited for here, where the newest wish and the end are seen.
+        if frame >= media.n_ready() && matches!(media.try_frame(frame), Ok(None)) {
+            desk = shared.1.wait_timeout(desk, LOOK).unwrap_or_else(PoisonError::into_inner).0;
+            continue;
+        }
+        desk.is_decoding = true;
         drop(desk);
         let picture = media.frame(frame);
         desk = lock(shared);
+        desk.is_decoding = false;
         desk.here = Some((frame, picture));
         if desk.wish == Some(frame) {
             desk.wish = None;
@@ -106,10 +119,14 @@ fn fulfil(shared: &Shared, media: &Media, waker: &Waker) {
 
 impl Drop for Pictures {
     fn drop(&mut self) {
-        lock(&self.shared).is_closed = true;
+        let mut desk = lock(&self.shared);
+        desk.is_closed = true;
+        let is_decoding = desk.is_decoding;
+        drop(desk);
         self.shared.1.notify_one();
-        // A frame being decoded is waited for; a panic there was reported where it happened.
-        if let Some(thread) = self.thread.take() {
+        // A frame being decoded is not waited for: it ends with the program.
+        if let Some(thread) = self.thread.take().filter(|_| !is_decoding) {
+            // A panic there was reported where it happened.
             thread.join().ok();
         }
     }

@@ -15,6 +15,7 @@ use super::view;
 use crate::term::encode::Frame;
 use crate::term::input::Event;
 use crate::term::screen::Screen;
+use crate::term::signals;
 
 /// While the clip is being decoded, the time line is looked after this often.
 const DECODING_TICK: Duration = Duration::from_millis(250);
@@ -38,6 +39,7 @@ pub fn run(session: Session) -> anyhow::Result<()> {
     app.state.mono = screen.is_mono();
     let outcome = app.turn(&mut screen, &mut world);
     let closed = screen.close();
+    signals::end_as_usual()?;
     drop(app);
     world.close()?;
     outcome?;
@@ -65,7 +67,7 @@ impl App {
     fn turn(&mut self, screen: &mut Screen, world: &mut World) -> anyhow::Result<()> {
         loop {
             let until =
-                [self.state.next_tick(), self.decoding_tick(screen.now())].into_iter().flatten().min();
+                [self.state.next_tick(), self.decoding_tick(screen, world)].into_iter().flatten().min();
             let happened = screen.wait(until, self.frame.is_none() || !self.is_exact)?;
             self.tell(Msg::Clock(screen.now()), screen, world)?;
             let mut is_leaving = happened.end.is_some();
@@ -76,14 +78,17 @@ impl App {
                 self.frame = None;
             }
             for event in happened.events {
+                if is_leaving {
+                    break;
+                }
                 let msg = match event {
                     Event::Key(key) => Msg::Key(key),
                     Event::Mouse(mouse) => Msg::Mouse(mouse),
                     Event::Paste(text) => Msg::Paste(text),
-                    Event::Reply(_) | Event::Focus(_) => continue,
+                    Event::Reply(_) => continue,
                 };
                 self.frame = None;
-                is_leaving |= self.tell(msg, screen, world)?;
+                is_leaving = self.tell(msg, screen, world)?;
             }
             for fact in world.news() {
                 self.frame = None;
@@ -100,8 +105,9 @@ impl App {
         }
     }
 
-    fn decoding_tick(&self, now: Duration) -> Option<Duration> {
-        (self.state.n_ready < self.state.clip.n_frames()).then_some(now + DECODING_TICK)
+    fn decoding_tick(&self, screen: &Screen, world: &World) -> Option<Duration> {
+        let is_decoding = self.state.n_ready < self.state.clip.n_frames() && world.is_decoding();
+        is_decoding.then(|| screen.now() + DECODING_TICK)
     }
 
     /// Updates the state and does what it wants; returns whether it wants to leave.

@@ -27,6 +27,10 @@ pub struct State {
     pub tracks: Vec<TrackRow>,
     /// The track that keys work on.
     pub selected: Option<TrackId>,
+    /// The track that was placed or moved by hand since the last run: the next run is likely for it.
+    pub corrected: Option<TrackId>,
+    /// Whether tracks are listed by doubt, not by number.
+    pub by_doubt: bool,
     /// The shown clustering.
     pub groups: Option<Groups>,
     /// The tracker whose run is on top, with its version.
@@ -167,6 +171,8 @@ impl State {
             play: None,
             tracks: Vec::new(),
             selected: None,
+            corrected: None,
+            by_doubt: false,
             groups: None,
             tracker: None,
             plugins: Vec::new(),
@@ -200,6 +206,16 @@ impl State {
     #[must_use]
     pub fn selected_row(&self) -> Option<&TrackRow> {
         self.row(self.selected?)
+    }
+
+    /// The shown tracks, in the order of lists.
+    #[must_use]
+    pub fn listed(&self) -> Vec<&TrackRow> {
+        let mut rows: Vec<&TrackRow> = self.tracks.iter().collect();
+        if self.by_doubt {
+            rows.sort_by(|a, b| b.doubt.total_cmp(&a.doubt));
+        }
+        rows
     }
 
     /// The row of a track.

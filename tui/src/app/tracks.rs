@@ -6,6 +6,11 @@ use std::sync::Arc;
 use honami_model::hierarchy::Dendrogram;
 use honami_model::track::{Sample, Source, Span, Status, TrackId};
 
+/// So many doubtful frames of a track are worth a look, at most.
+const N_WORST: usize = 9;
+/// Doubtful frames worth a look are so far apart.
+const APART: usize = 5;
+
 /// A track on screen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrackRow {
@@ -17,8 +22,10 @@ pub struct TrackRow {
     pub span: Arc<Span>,
     /// Frames of its key-frames, rising.
     pub keys: Vec<u32>,
-    /// Its most doubtful frame; `None` where nothing is doubtful.
-    pub worst: Option<u32>,
+    /// Its most doubtful frames, the worst first, none near another; empty where nothing is doubtful.
+    pub worst: Vec<u32>,
+    /// How doubtful it is: the sum over its samples. Only good for comparing.
+    pub doubt: f32,
 }
 
 impl TrackRow {
@@ -27,12 +34,9 @@ impl TrackRow {
     pub fn new(id: TrackId, name: Option<String>, span: Arc<Span>) -> Self {
         let frames = || span.frames().zip(&span.samples);
         let keys = frames().filter(|(_, s)| s.source == Source::Key).map(|(f, _)| f).collect();
-        let worst = frames()
-            .map(|(frame, sample)| (doubt(sample), frame))
-            .filter(|(doubt, _)| *doubt > 0.0)
-            .max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)))
-            .map(|(_, frame)| frame);
-        Self { id, name, keys, worst, span }
+        let doubts: Vec<f32> = span.samples.iter().map(doubt).collect();
+        let worst = worst(&span, &doubts);
+        Self { id, name, keys, worst, doubt: doubts.iter().sum(), span }
     }
 
     /// Where it is in a frame, image pixels.
@@ -40,12 +44,26 @@ impl TrackRow {
     pub fn at(&self, frame: u32) -> Option<[f32; 2]> {
         self.span.get(frame).map(|s| [s.x, s.y])
     }
+}
 
-    /// Its largest doubt, 0 to 1.
-    #[must_use]
-    pub fn doubt(&self) -> f32 {
-        self.worst.and_then(|frame| self.span.get(frame)).map_or(0.0, doubt)
+/// Doubtful frames of a track that are worth a look: the worst first, at least so far apart. Of frames in a row
+/// in which it is lost only the first counts.
+fn worst(span: &Span, doubts: &[f32]) -> Vec<u32> {
+    let is_lost = |i: usize| doubts[i] >= 1.0;
+    let mut ranked: Vec<usize> = (0..doubts.len())
+        .filter(|&i| doubts[i] > 0.0 && !(is_lost(i) && i > 0 && is_lost(i - 1)))
+        .collect();
+    ranked.sort_by(|&a, &b| doubts[b].total_cmp(&doubts[a]).then(a.cmp(&b)));
+    let mut worst: Vec<usize> = Vec::new();
+    for i in ranked {
+        if worst.iter().all(|&other| other.abs_diff(i) >= APART) {
+            worst.push(i);
+        }
+        if worst.len() == N_WORST {
+            break;
+        }
     }
+    worst.into_iter().filter_map(|i| Some(span.first_frame + u32::try_from(i).ok()?)).collect()
 }
 
 /// How doubtful a sample is, 0 (a person's word) to 1 (lost).

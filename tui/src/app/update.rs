@@ -9,10 +9,10 @@ mod time;
 use std::time::Duration;
 
 use honami_model::edit::Transaction;
-use honami_workbench::plugins::Values;
+use honami_workbench::cluster::ClusterRequest;
+use honami_workbench::track::TrackRequest;
 
 use super::action::{Action, Context};
-use super::form::Task;
 use super::keymap::Found;
 use super::menu::{Choice, Menu};
 use super::state::{Mode, Notice, State};
@@ -50,23 +50,14 @@ pub enum Effect {
         /// Where, image pixels.
         at: [f32; 2],
     },
-    /// Take back the last edit.
-    Undo,
-    /// Do it again.
-    Redo,
-    /// Run a plugin.
-    Run {
-        /// What for.
-        task: Task,
-        /// Its short name.
-        plugin: String,
-        /// Its parameters.
-        values: Values,
-        /// Follow the tracks that are there instead of looking for features.
-        existing: bool,
-        /// Look for new features every so many frames.
-        every: Option<u32>,
-    },
+    /// Take back so many edits.
+    Undo(u32),
+    /// Do so many again.
+    Redo(u32),
+    /// Run a tracker.
+    Track(TrackRequest),
+    /// Run a clusterer.
+    Cluster(ClusterRequest),
     /// Stop the running job; it keeps what it has.
     StopJob,
     /// Paint the screen anew.
@@ -83,7 +74,8 @@ pub fn update(state: &mut State, msg: Msg) -> Vec<Effect> {
         Msg::Key(key) => on_key(state, key),
         Msg::Mouse(mouse) => mouse::on_mouse(state, mouse),
         Msg::Paste(text) => {
-            text.chars().filter(|c| !c.is_control()).for_each(|c| on_text(state, c));
+            let text: String = text.trim().chars().filter(|c| !c.is_control()).collect();
+            on_text(state, &text);
             Vec::new()
         }
         Msg::Resize(columns, rows) => {
@@ -103,6 +95,8 @@ pub fn update(state: &mut State, msg: Msg) -> Vec<Effect> {
 
 /// Largest number before a command.
 const COUNT_MAX: u32 = 999_999;
+/// Longest text typed into a menu or a form, characters.
+const TYPED_MAX: usize = 256;
 
 fn on_key(state: &mut State, key: Key) -> Vec<Effect> {
     let context = state.mode.context();
@@ -120,7 +114,7 @@ fn on_key(state: &mut State, key: Key) -> Vec<Effect> {
             let is_whole = state.pending.len() == 1;
             state.pending.clear();
             if let Some(c) = key.text().filter(|_| is_whole) {
-                on_text(state, c);
+                on_text(state, c.encode_utf8(&mut [0; 4]));
             } else {
                 state.count = None;
             }
@@ -129,22 +123,36 @@ fn on_key(state: &mut State, key: Key) -> Vec<Effect> {
     }
 }
 
-/// A character that is no command here: text, or a digit of a count.
-fn on_text(state: &mut State, c: char) {
+/// Characters that are no command here: text, or digits of a count.
+fn on_text(state: &mut State, text: &str) {
+    let mut chars = text.chars();
     match &mut state.mode {
-        Mode::Menu(menu) => menu.retype(|typed| typed.push(c)),
-        Mode::Prompt(typed) if c.is_ascii_digit() && typed.len() < 9 => typed.push(c),
-        Mode::Form(form) => match &mut form.typed {
-            Some(typed) => typed.push(c),
-            None => form.type_first(c),
-        },
-        Mode::Review | Mode::Place(_) | Mode::Move { .. } => {
-            state.count = c.to_digit(10).map(|digit| {
-                state.count.unwrap_or(0).saturating_mul(10).saturating_add(digit).min(COUNT_MAX)
-            });
+        Mode::Menu(menu) => menu.retype(|typed| append(typed, chars, TYPED_MAX)),
+        Mode::Prompt(typed) => append(typed, chars.filter(char::is_ascii_digit), 9),
+        Mode::Form(form) => {
+            if form.typed.is_none()
+                && let Some(first) = chars.next()
+            {
+                form.type_first(first);
+            }
+            if let Some(typed) = &mut form.typed {
+                append(typed, chars, TYPED_MAX);
+            }
         }
-        Mode::Prompt(_) => {}
+        Mode::Review | Mode::Place(_) | Mode::Move { .. } => {
+            for c in chars {
+                state.count = c.to_digit(10).map(|digit| {
+                    state.count.unwrap_or(0).saturating_mul(10).saturating_add(digit).min(COUNT_MAX)
+                });
+            }
+        }
     }
+}
+
+/// Types more, as far as there is room.
+fn append(typed: &mut String, more: impl Iterator<Item = char>, n_max: usize) {
+    let n = typed.chars().count();
+    typed.extend(more.take(n_max.saturating_sub(n)));
 }
 
 /// Calls an action as the palette, the help and the mouse do.

@@ -1,8 +1,8 @@
 //! Decoder of what a terminal sends: keys, mouse, paste, and replies to queries.
 //!
-//! Incremental: bytes may be split anywhere. The only thing that time decides is whether an `ESC` at the end of
-//! what has come is the Esc key or the beginning of more; the caller waits as long as it likes while
-//! [`Decoder::is_waiting`], then calls [`Decoder::flush`].
+//! Incremental: bytes may be split anywhere. Time decides only two things: whether an `ESC` at the end of what has
+//! come is the Esc key or the beginning of more, and whether a paste goes on. The caller waits as long as it likes
+//! while there is something [`Decoder::unfinished`], then calls [`Decoder::flush`].
 
 mod csi;
 
@@ -17,8 +17,6 @@ pub enum Event {
     Mouse(Mouse),
     /// Text was pasted.
     Paste(String),
-    /// The terminal gained or lost the focus.
-    Focus(bool),
     /// The terminal answers a query.
     Reply(Reply),
 }
@@ -39,12 +37,8 @@ pub struct Mouse {
 pub enum MouseKind {
     /// Button 0 (left), 1 (middle) or 2 (right) went down.
     Press(u8),
-    /// That button came up.
-    Release(u8),
     /// It moved with that button down.
     Drag(u8),
-    /// It moved.
-    Move,
     /// The wheel turned away from the user.
     WheelUp,
     /// The wheel turned towards the user.
@@ -56,8 +50,6 @@ pub enum MouseKind {
 pub enum Reply {
     /// `CSI 0 n`: everything before the query `CSI 5 n` has been processed.
     Ready,
-    /// `CSI ? … c` (DA1): the terminal's class and features.
-    Attributes(Vec<u16>),
     /// `CSI ? mode ; state $ y` (DECRQM); state 0 = unknown, 1 = set, 2 = reset, 3 and 4 = permanently so.
     Mode {
         /// Private mode asked for.
@@ -67,17 +59,15 @@ pub enum Reply {
     },
     /// `DCS > | text ST` (XTVERSION): name and version.
     Version(String),
-    /// OSC 11: the background colour, 8 bits a channel.
-    Background([u8; 3]),
-    /// `CSI row ; column R`: the cursor, from 0.
-    Cursor {
-        /// Rows from the top.
-        row: u16,
-        /// Columns from the left.
-        column: u16,
-    },
-    /// `CSI ? flags u`: the kitty keyboard protocol is spoken.
-    Keyboard(u16),
+}
+
+/// What ends only when nothing more comes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unfinished {
+    /// An `ESC`, alone or with one byte: a key, unless a sequence follows.
+    Escape,
+    /// A paste whose end has not come.
+    Paste,
 }
 
 /// Longest control sequence, bytes; a longer one is garbage.
@@ -85,7 +75,7 @@ const CSI_MAX: usize = 64;
 /// Longest control string (OSC, DCS …), bytes; the rest of a longer one is dropped.
 const STRING_MAX: usize = 4096;
 /// Longest pasted text, bytes; the rest of a longer one is dropped.
-const PASTE_MAX: usize = 1 << 20;
+const PASTE_MAX: usize = 4096;
 const PASTE_END: &[u8] = b"\x1b[201~";
 
 /// Turns bytes into events.
@@ -132,23 +122,29 @@ impl Decoder {
         self.pending.drain(..start);
     }
 
-    /// Whether what is pending would be an Esc key (or Alt and a key) if nothing followed.
+    /// What would end if nothing followed.
     #[must_use]
-    pub fn is_waiting(&self) -> bool {
-        matches!(self.mode, Mode::Ground) && matches!(self.pending[..], [0x1b] | [0x1b, _])
+    pub fn unfinished(&self) -> Option<Unfinished> {
+        match (&self.mode, &self.pending[..]) {
+            (Mode::Ground, [0x1b] | [0x1b, _]) => Some(Unfinished::Escape),
+            (Mode::Paste(_), _) => Some(Unfinished::Paste),
+            _ => None,
+        }
     }
 
-    /// Says that nothing follows: a lone `ESC` is the Esc key.
+    /// Says that nothing follows: a lone `ESC` is the Esc key, a paste is over.
     pub fn flush(&mut self, events: &mut Vec<Event>) {
-        if !self.is_waiting() {
-            return;
-        }
-        let key = match self.pending[..] {
-            [_, c @ 0x20..=0x7e] => Key { alt: true, ..Key::plain(Code::Char(char::from(c))) },
-            _ => Key::plain(Code::Esc),
+        let event = match (&self.mode, &self.pending[..]) {
+            (Mode::Ground, [0x1b, c @ 0x20..=0x7e]) => {
+                Event::Key(Key { alt: true, ..Key::plain(Code::Char(char::from(*c))) })
+            }
+            (Mode::Ground, [0x1b] | [0x1b, _]) => Event::Key(Key::plain(Code::Esc)),
+            (Mode::Paste(text), _) => pasted(text),
+            _ => return,
         };
         self.pending.clear();
-        events.push(Event::Key(key));
+        self.mode = Mode::Ground;
+        events.push(event);
     }
 
     /// Handles the pending bytes from `start` on; returns how many it has used, 0 when it needs more.
@@ -163,7 +159,7 @@ impl Decoder {
                 if end.is_none() {
                     return n;
                 }
-                events.push(Event::Paste(String::from_utf8_lossy(text).into_owned()));
+                events.push(pasted(text));
                 self.mode = Mode::Ground;
                 n + PASTE_END.len()
             }
@@ -192,6 +188,10 @@ impl Decoder {
             },
         }
     }
+}
+
+fn pasted(text: &[u8]) -> Event {
+    Event::Paste(String::from_utf8_lossy(text).into_owned())
 }
 
 fn find(hay: &[u8], needle: &[u8]) -> Option<usize> {
@@ -287,26 +287,9 @@ fn control_string(bytes: &[u8]) -> Head {
         return if scanned == STRING_MAX { Head::TooLong(STRING_MAX - 1) } else { Head::Part };
     };
     let text = &bytes[2..2 + end];
-    let reply = match bytes[1] {
-        b'P' => text.strip_prefix(b">|").map(|v| Reply::Version(String::from_utf8_lossy(v).into_owned())),
-        b']' => text.strip_prefix(b"11;rgb:").and_then(rgb).map(Reply::Background),
-        _ => None,
-    };
-    Head::Whole(reply.map(Event::Reply), 2 + next)
-}
-
-/// `ffff/8000/0`, any number of hexadecimal digits a channel up to 4.
-fn rgb(text: &[u8]) -> Option<[u8; 3]> {
-    let mut channels = std::str::from_utf8(text).ok()?.split('/').map(|digits| {
-        let max = match digits.len() {
-            n @ 1..=4 => (1_u32 << (4 * n)) - 1,
-            _ => return None,
-        };
-        let value = u32::from_str_radix(digits, 16).ok()?;
-        u8::try_from((value * 255 + max / 2) / max).ok()
-    });
-    let colour = [channels.next()??, channels.next()??, channels.next()??];
-    channels.next().is_none().then_some(colour)
+    let version = text.strip_prefix(b">|").filter(|_| bytes[1] == b'P');
+    let reply = version.map(|v| Event::Reply(Reply::Version(String::from_utf8_lossy(v).into_owned())));
+    Head::Whole(reply, 2 + next)
 }
 
 #[cfg(test)]

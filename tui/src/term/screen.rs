@@ -10,7 +10,7 @@ use signal_hook::consts::{SIGCONT, SIGHUP, SIGTSTP, SIGWINCH};
 
 use super::colour::Depth;
 use super::encode::Frame;
-use super::input::{Decoder, Event};
+use super::input::{Decoder, Event, Unfinished};
 use super::link::Link;
 use super::signals::{Signals, Waker};
 use super::tty::{self, Tty};
@@ -18,6 +18,8 @@ use super::writer::Writer;
 
 /// How long an `ESC` may be the beginning of more: on this machine, and over ssh.
 const ESC_DELAY: [Duration; 2] = [Duration::from_millis(10), Duration::from_millis(60)];
+/// A paste of which nothing more has come for so long is over: its end was lost.
+const PASTE_PATIENCE: Duration = Duration::from_secs(1);
 /// How long answers still on their way are awaited before the terminal is given back.
 const LAST_ANSWERS: Duration = Duration::from_millis(400);
 
@@ -30,8 +32,8 @@ pub struct Screen {
     decoder: Decoder,
     writer: Writer,
     esc_delay: Duration,
-    /// Until when an `ESC` may be the beginning of more.
-    esc_until: Option<Duration>,
+    /// Until when more may come of what is unfinished.
+    more_until: Option<Duration>,
     start: Instant,
 }
 
@@ -40,7 +42,7 @@ pub struct Screen {
 pub struct Happened {
     /// What the terminal has sent.
     pub events: Vec<Event>,
-    /// The terminal has another size now.
+    /// The terminal has another size, or was somebody else's for a while: nothing is on it.
     pub resized: bool,
     /// Somebody wants the program stopped for a while.
     pub suspend: bool,
@@ -61,7 +63,7 @@ impl Screen {
     /// Takes the terminal over and asks it what it can do, without waiting for answers.
     ///
     /// # Errors
-    /// When there is no terminal or the log cannot be written.
+    /// When there is no terminal.
     pub fn open(log: &Path) -> io::Result<Self> {
         let var = |name: &str| std::env::var(name).ok();
         // Catch signals before anything needs to be undone.
@@ -75,7 +77,7 @@ impl Screen {
             decoder: Decoder::default(),
             writer: Writer::new(Depth::from_env(var), !in_multiplexer),
             esc_delay: ESC_DELAY[usize::from(var("SSH_CONNECTION").is_some())],
-            esc_until: None,
+            more_until: None,
             start: Instant::now(),
         };
         screen.enter()?;
@@ -151,28 +153,32 @@ impl Screen {
         let now = self.now();
         let slot = if for_slot { self.writer.next_slot(now) } else { None };
         let deadline = self.writer.check(now);
-        let until = [until, slot, deadline, self.esc_until].into_iter().flatten().min();
+        let until = [until, slot, deadline, self.more_until].into_iter().flatten().min();
         let mut happened = Happened::default();
-        self.poll(until.map(|t| t.saturating_sub(now)), &mut happened)?;
+        let has_read = self.poll(until.map(|t| t.saturating_sub(now)), &mut happened)?;
         for signal in self.signals.take() {
             match signal {
                 SIGWINCH => happened.resized = true,
                 SIGTSTP => happened.suspend = true,
-                SIGCONT => self.writer.forget(),
+                SIGCONT => {
+                    self.resume()?;
+                    happened.resized = true;
+                }
                 SIGHUP => happened.end = Some(End::Hangup),
                 _ => happened.end = Some(End::Signal(signal)),
             }
         }
         let now = self.now();
         self.writer.check(now);
-        if self.esc_until.is_some_and(|t| t <= now) {
+        if has_read {
+            self.more_until = self.decoder.unfinished().map(|unfinished| match unfinished {
+                Unfinished::Escape => now + self.esc_delay,
+                Unfinished::Paste => now + PASTE_PATIENCE,
+            });
+        } else if self.more_until.is_some_and(|t| t <= now) {
+            self.more_until = None;
             self.decoder.flush(&mut happened.events);
         }
-        self.esc_until = match self.esc_until {
-            _ if !self.decoder.is_waiting() => None,
-            Some(t) if t > now => Some(t),
-            _ => Some(now + self.esc_delay),
-        };
         for event in &happened.events {
             if let Event::Reply(reply) = event {
                 self.writer.answered(reply, now);
@@ -181,8 +187,9 @@ impl Screen {
         Ok(happened)
     }
 
-    fn poll(&mut self, timeout: Option<Duration>, happened: &mut Happened) -> io::Result<()> {
-        let Some(tty) = &self.tty else { return Ok(()) };
+    /// Waits for the devices; returns whether bytes were read.
+    fn poll(&mut self, timeout: Option<Duration>, happened: &mut Happened) -> io::Result<bool> {
+        let Some(tty) = &self.tty else { return Ok(false) };
         let timeout = timeout.map(|t| Timespec {
             tv_sec: i64::try_from(t.as_secs()).unwrap_or(i64::MAX),
             tv_nsec: i64::from(t.subsec_nanos()),
@@ -201,12 +208,23 @@ impl Screen {
             let mut bytes = [0; 4096];
             match rustix::io::read(tty, &mut bytes) {
                 Ok(0) => happened.end = Some(End::Hangup),
-                Ok(n) => self.decoder.feed(&bytes[..n], &mut happened.events),
+                Ok(n) => {
+                    self.decoder.feed(&bytes[..n], &mut happened.events);
+                    return Ok(true);
+                }
                 Err(Errno::AGAIN | Errno::INTR) => {}
                 Err(_) => happened.end = Some(End::Hangup),
             }
         }
-        Ok(())
+        Ok(false)
+    }
+
+    /// Takes the terminal back after somebody else has stopped and continued the program.
+    fn resume(&mut self) -> io::Result<()> {
+        let now = self.now();
+        let Some(tty) = &self.tty else { return Ok(()) };
+        tty.set_raw()?;
+        self.writer.begin(tty, tty::RESUME, now)
     }
 
     /// Gives the terminal back, stops the program until it is continued, and takes the terminal again.

@@ -20,6 +20,17 @@ impl Waker {
     }
 }
 
+/// From now on SIGINT and SIGTERM end the program at once, as they do without [`Signals`].
+///
+/// # Errors
+/// When the system refuses a handler.
+pub fn end_as_usual() -> io::Result<()> {
+    for signal in [SIGINT, SIGTERM] {
+        signal_hook::flag::register_conditional_default(signal, Arc::new(AtomicBool::new(true)))?;
+    }
+    Ok(())
+}
+
 /// The signals of a terminal program, counted while it waits for input.
 #[derive(Debug)]
 pub struct Signals {

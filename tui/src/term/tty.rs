@@ -6,6 +6,7 @@
 use std::fs::{self, File};
 use std::io;
 use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
+use std::os::unix::fs::OpenOptionsExt as _;
 use std::path::Path;
 use std::sync::{Mutex, Once, PoisonError};
 use std::thread::ThreadId;
@@ -18,6 +19,9 @@ use rustix::termios::{self, OptionalActions, Termios};
 /// Alternate screen, no cursor, mouse presses and drags, bracketed paste, unambiguous Esc where kitty's
 /// protocol is spoken.
 pub const ENTER: &[u8] = b"\x1b[?1049h\x1b[?25l\x1b[?1000h\x1b[?1002h\x1b[?1006h\x1b[?2004h\x1b[>1u";
+/// [`ENTER`] over itself: what it has pushed before, if that is still there, is not there twice.
+pub const RESUME: &[u8] =
+    b"\x1b[?1049h\x1b[<u\x1b[?25l\x1b[?1000h\x1b[?1002h\x1b[?1006h\x1b[?2004h\x1b[>1u";
 /// Undoes [`ENTER`], and whatever a frame cut in half has left.
 pub const LEAVE: &[u8] =
     b"\x1b[?2026l\x1b[<u\x1b[?2004l\x1b[?1006l\x1b[?1002l\x1b[?1000l\x1b[m\x1b[?25h\x1b[?1049l";
@@ -42,13 +46,15 @@ static SAVED: Mutex<Option<Saved>> = Mutex::new(None);
 #[derive(Debug)]
 pub struct Tty {
     device: OwnedFd,
+    raw: Termios,
 }
 
 impl Tty {
-    /// Takes the terminal over: raw mode, output of everybody else to the log file.
+    /// Takes the terminal over: raw mode, output of everybody else to the log file, or where that cannot be written
+    /// to one in the folder for temporary files, or nowhere.
     ///
     /// # Errors
-    /// When the process has no terminal, or the log cannot be written.
+    /// When the process has no terminal.
     pub fn enter(log: &Path) -> io::Result<Self> {
         let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC | OFlags::NONBLOCK;
         let device = rustix::fs::open("/dev/tty", flags, Mode::empty()).map_err(|error| {
@@ -56,22 +62,33 @@ impl Tty {
             io::Error::new(io::ErrorKind::NotFound, format!("{what} ({error})"))
         })?;
         let modes = termios::tcgetattr(&device)?;
-        let log = open_log(log)?;
-        let mut saved = SAVED.lock().unwrap_or_else(PoisonError::into_inner);
-        *saved = Some(Saved {
-            stdout: redirect(rustix::stdio::stdout(), || rustix::stdio::dup2_stdout(&log))?,
-            stderr: redirect(rustix::stdio::stderr(), || rustix::stdio::dup2_stderr(&log))?,
-            device: rustix::io::fcntl_dupfd_cloexec(&device, 3)?,
-            modes: modes.clone(),
-            owner: std::thread::current().id(),
-        });
-        drop(saved);
+        let spare = rustix::io::fcntl_dupfd_cloexec(&device, 3)?;
+        let log = open_any_log(log)?;
+        let stdout = redirect(rustix::stdio::stdout(), || rustix::stdio::dup2_stdout(&log))?;
+        let stderr = match redirect(rustix::stdio::stderr(), || rustix::stdio::dup2_stderr(&log)) {
+            Ok(stderr) => stderr,
+            Err(error) => {
+                stdout.map_or(Ok(()), rustix::stdio::dup2_stdout)?;
+                return Err(error);
+            }
+        };
+        let owner = std::thread::current().id();
+        *SAVED.lock().unwrap_or_else(PoisonError::into_inner) =
+            Some(Saved { device: spare, modes: modes.clone(), stdout, stderr, owner });
         hook_panics();
-        let tty = Self { device };
         let mut raw = modes;
         raw.make_raw();
-        termios::tcsetattr(&tty.device, OptionalActions::Now, &raw)?;
+        let tty = Self { device, raw };
+        tty.set_raw()?;
         Ok(tty)
+    }
+
+    /// Keys as they are pressed, unseen and unread by the system.
+    ///
+    /// # Errors
+    /// When the terminal is gone.
+    pub fn set_raw(&self) -> io::Result<()> {
+        Ok(termios::tcsetattr(&self.device, OptionalActions::Now, &self.raw)?)
     }
 
     /// Columns and rows; 80x24 where the terminal does not say.
@@ -137,15 +154,30 @@ fn write_all(fd: &OwnedFd, mut bytes: &[u8], patience: Duration) {
     }
 }
 
-/// Opens the log for appending, its folder made where missing; an overlong one begins anew.
+/// Opens the log, or another one where it cannot be written.
+fn open_any_log(path: &Path) -> io::Result<File> {
+    let name = format!("honami-{}-session.log", rustix::process::getuid().as_raw());
+    open_log(path)
+        .or_else(|_| open_log(&std::env::temp_dir().join(name)))
+        .or_else(|_| open_log(Path::new("/dev/null")))
+}
+
+/// Opens a log for appending, its folder made where missing; an overlong one begins anew.
 fn open_log(path: &Path) -> io::Result<File> {
-    if let Some(folder) = path.parent() {
-        fs::create_dir_all(folder)?;
-    }
-    if fs::metadata(path).is_ok_and(|m| m.len() > LOG_MAX) {
-        fs::remove_file(path)?;
-    }
-    File::options().create(true).append(true).open(path)
+    let open = || {
+        if let Some(folder) = path.parent() {
+            fs::create_dir_all(folder)?;
+        }
+        if fs::metadata(path).is_ok_and(|m| m.len() > LOG_MAX) {
+            fs::remove_file(path)?;
+        }
+        // No link: in a folder that others write to it might lead anywhere.
+        let no_link = OFlags::NOFOLLOW.bits().cast_signed();
+        File::options().create(true).append(true).custom_flags(no_link).open(path)
+    };
+    open().map_err(|error| {
+        io::Error::new(error.kind(), format!("the log {} cannot be written: {error}", path.display()))
+    })
 }
 
 /// Points a standard descriptor elsewhere if it is a terminal; returns the old one.

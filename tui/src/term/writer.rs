@@ -11,8 +11,8 @@ use super::encode::{Encoder, Frame};
 use super::input::Reply;
 use super::link::Link;
 
-/// Asks who the terminal is, whether it knows synchronized output, and its background; ends with the status query.
-const PROBE: &[u8] = b"\x1b[>q\x1b[?2026$p\x1b]11;?\x07\x1b[5n";
+/// Asks who the terminal is and whether it knows synchronized output; ends with the status query.
+const PROBE: &[u8] = b"\x1b[>q\x1b[?2026$p\x1b[5n";
 /// The query at the end of a frame. Its answer, `CSI 0 n`, is no key.
 const QUERY: &[u8] = b"\x1b[5n";
 const BEGIN: &[u8] = b"\x1b[?2026h";

@@ -1,7 +1,11 @@
 //! Actions, each by its place.
 
 use super::{Action, Effect, Mode, State, choose, complain, edit, open_menu, say, time};
-use crate::app::form::{Form, Task};
+use honami_model::track::TrackSet;
+use honami_workbench::cluster::ClusterRequest;
+use honami_workbench::track::{Area, PointSource, TrackRequest};
+
+use crate::app::form::{Features, Form, Task};
 
 /// Deepest magnification, as a power of two.
 const ZOOM_MAX: u8 = 5;
@@ -43,11 +47,13 @@ pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {
         Action::PreviousKey => time::go_key(state, -count(state)),
         Action::MoveSample => edit::begin_move(state),
         Action::AddFeature => edit::begin_place(state),
+        Action::ClearKey => return edit::clear_key(state),
+        Action::Sort => time::sort(state),
         Action::DeleteTrack => return edit::delete(state),
         Action::MoreGroups => return edit::cut(state, count(state)),
         Action::FewerGroups => return edit::cut(state, -count(state)),
-        Action::Undo => return edit::repeat(state, &Effect::Undo),
-        Action::Redo => return edit::repeat(state, &Effect::Redo),
+        Action::Undo => return edit::repeat(state, Effect::Undo),
+        Action::Redo => return edit::repeat(state, Effect::Redo),
         Action::RunTracker => open_form(state, Task::Track),
         Action::RunClusterer => open_form(state, Task::Cluster),
         Action::ZoomIn => zoom(state, 1),
@@ -119,13 +125,17 @@ fn run(state: &mut State) -> Vec<Effect> {
         return Vec::new();
     }
     let Mode::Form(form) = std::mem::replace(&mut state.mode, Mode::Review) else { return Vec::new() };
-    vec![Effect::Run {
-        task: form.task,
-        plugin: form.plugin().name.clone(),
-        values: form.values(),
-        existing: form.follows_existing(),
-        every: form.every(),
-    }]
+    let (plugin, params) = (form.plugin().name.clone(), form.values());
+    if form.task == Task::Cluster {
+        return vec![Effect::Cluster(ClusterRequest { plugin, params, groups: None })];
+    }
+    let points = match (form.features(), state.selected) {
+        (Features::Selected, Some(track)) => PointSource::Tracks(TrackSet::from(track)),
+        (Features::Here | Features::Selected, _) => PointSource::Existing,
+        (Features::Found, _) => PointSource::Detect,
+    };
+    let (frames, every, area) = (0..state.clip.n_frames(), form.every(), Area::Whole);
+    vec![Effect::Track(TrackRequest { plugin, params, points, frames, every, area })]
 }
 
 /// Leaves what is open; while reviewing, stops what runs: first the clip, then the job.
@@ -147,7 +157,6 @@ fn back(state: &mut State) -> Vec<Effect> {
 
 fn erase(state: &mut State) -> Vec<Effect> {
     match &mut state.mode {
-        Mode::Review => return edit::clear_key(state),
         Mode::Menu(menu) => menu.retype(|typed| {
             typed.pop();
         }),
@@ -159,7 +168,7 @@ fn erase(state: &mut State) -> Vec<Effect> {
                 typed.pop();
             }
         }
-        Mode::Place(_) | Mode::Move { .. } => {}
+        Mode::Review | Mode::Place(_) | Mode::Move { .. } => {}
     }
     Vec::new()
 }
@@ -176,7 +185,15 @@ fn open_form(state: &mut State, task: Task) {
     if task == Task::Cluster && state.tracks.len() < 2 {
         return complain(state, "two tracks or more can be grouped; t follows features first");
     }
-    match Form::new(task, &state.plugins, !state.tracks.is_empty()) {
+    let features: &[Features] = match state.selected {
+        None if state.tracks.is_empty() => &[Features::Found],
+        None => &[Features::Here, Features::Found],
+        Some(_) if state.corrected == state.selected => {
+            &[Features::Selected, Features::Here, Features::Found]
+        }
+        Some(_) => &[Features::Here, Features::Selected, Features::Found],
+    };
+    match Form::new(task, &state.plugins, features) {
         Some(form) => state.mode = Mode::Form(Box::new(form)),
         None => {
             complain(state, format!("no {word} was found; `honami doctor` says where {plugin} is looked for"))

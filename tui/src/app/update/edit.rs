@@ -56,6 +56,7 @@ pub(super) fn begin_move(state: &mut State) {
 pub(super) fn keep(state: &mut State) -> Vec<Effect> {
     let Mode::Move { to, .. } = std::mem::replace(&mut state.mode, Mode::Review) else { return Vec::new() };
     let Some(row) = state.selected_row() else { return Vec::new() };
+    let id = row.id;
     vec![Effect::Commit(Transaction::set_key(row.id, state.frame, to, row.at(state.frame)))]
 }
 
@@ -131,9 +132,6 @@ pub(super) fn cut(state: &mut State, by: i64) -> Vec<Effect> {
 }
 
 /// Undo or redo as often as the count says.
-pub(super) fn repeat(state: &mut State, effect: &Effect) -> Vec<Effect> {
-    if !is_writable(state) {
-        return Vec::new();
-    }
-    vec![effect.clone(); usize::try_from(super::actions::count(state).min(100)).unwrap_or(1)]
+pub(super) fn repeat(state: &mut State, effect: fn(u32) -> Effect) -> Vec<Effect> {
+    if is_writable(state) { vec![effect(state.count.unwrap_or(1))] } else { Vec::new() }
 }

@@ -39,7 +39,10 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
         }
         Fact::Groups(groups) => state.groups = groups,
         Fact::Tracker(tracker) => state.tracker = tracker,
-        Fact::Placed(track) => state.selected = Some(track),
+        Fact::Placed(track) => {
+            state.selected = Some(track);
+            state.corrected = Some(track);
+        }
         Fact::Job(job) => {
             let was_stopping = state.job.as_ref().is_some_and(|old| old.is_stopping);
             state.job = job.map(|job| Job { is_stopping: job.is_stopping || was_stopping, ..job });

@@ -34,8 +34,8 @@ pub(super) fn play(state: &mut State, rate: f64) {
 /// Goes to a frame, the last one at most; stops playing.
 pub(super) fn go(state: &mut State, frame: u32) {
     if frame > state.last_frame() {
-        let line = format!("frame {frame} is wanted, the last one is {}", state.last_frame());
-        complain(state, line);
+        let line = format!("there is no frame {frame}: this is the last one, {}", state.last_frame());
+        say(state, line);
     }
     state.play = None;
     state.frame = frame.min(state.last_frame());
@@ -55,18 +55,31 @@ pub(super) fn select(state: &mut State, track: TrackId) {
     keep_in_view(state);
 }
 
-/// Selects the track so many further in order of numbers, from the last to the first.
+/// Selects the track so many further in the list, from its end to its beginning.
 pub(super) fn step_track(state: &mut State, by: i64) {
     let n = i64::try_from(state.tracks.len()).unwrap_or(0);
     if n == 0 {
         return complain(state, "there are no tracks yet: t follows features, a adds one by hand");
     }
-    let here = state.selected.and_then(|id| state.tracks.iter().position(|row| row.id == id));
+    let listed = state.listed();
+    let here = state.selected.and_then(|id| listed.iter().position(|row| row.id == id));
     let next = match here {
         Some(at) => (i64::try_from(at).unwrap_or(0) + by).rem_euclid(n),
         None => 0,
     };
-    select(state, state.tracks[usize::try_from(next).unwrap_or(0)].id);
+    let next = listed[usize::try_from(next).unwrap_or(0)].id;
+    select(state, next);
+}
+
+/// Lists tracks by doubt, or by number again.
+pub(super) fn sort(state: &mut State) {
+    state.by_doubt = !state.by_doubt;
+    let line = if state.by_doubt {
+        "tracks are listed by doubt, the worst first"
+    } else {
+        "tracks are listed by number"
+    };
+    say(state, line);
 }
 
 /// Selects the track with the number typed before, or opens the list of tracks.
@@ -81,12 +94,19 @@ pub(super) fn go_track(state: &mut State) {
     }
 }
 
+/// Goes to the most doubtful frame of the selected track, from there to the next worst, and round again.
 pub(super) fn go_worst(state: &mut State) {
-    let Some((id, worst)) = state.selected_row().map(|row| (row.id, row.worst)) else {
+    let Some(row) = state.selected_row() else {
         return complain(state, "select a track first: n takes the next");
     };
-    match worst {
-        Some(frame) => go(state, frame),
+    let (id, n) = (row.id, row.worst.len());
+    let here = row.worst.iter().position(|&frame| frame == state.frame);
+    let at = here.map_or(0, |at| (at + 1) % n);
+    match row.worst.get(at).copied() {
+        Some(frame) => {
+            go(state, frame);
+            say(state, format!("track {id}: doubtful frame {} of {n}, the worst first", at + 1));
+        }
         None => say(state, format!("track {id}: nothing is doubtful")),
     }
 }

@@ -24,7 +24,8 @@ fn split(state: &State, area: Rect) -> (Rect, Rect) {
 
 /// First listed track: the selected one stays near the middle.
 fn first_listed(state: &State, n_rows: usize) -> usize {
-    let at = state.selected.and_then(|id| state.tracks.iter().position(|row| row.id == id)).unwrap_or(0);
+    let listed = state.listed();
+    let at = state.selected.and_then(|id| listed.iter().position(|row| row.id == id)).unwrap_or(0);
     at.saturating_sub(n_rows / 2).min(state.tracks.len().saturating_sub(n_rows))
 }
 
@@ -34,7 +35,7 @@ pub fn track_at(state: &State, area: Rect, row: u16) -> Option<TrackId> {
     let (list, _) = split(state, area);
     let n_rows = usize::from(list.height.saturating_sub(1));
     let at = usize::from(row.checked_sub(list.y + 1)?);
-    (at < n_rows).then(|| state.tracks.get(first_listed(state, n_rows) + at).map(|row| row.id))?
+    (at < n_rows).then(|| state.listed().get(first_listed(state, n_rows) + at).map(|row| row.id))?
 }
 
 pub(super) fn draw(state: &State, area: Rect, frame: &mut Frame) {
@@ -43,9 +44,11 @@ pub(super) fn draw(state: &State, area: Rect, frame: &mut Frame) {
     }
     let (list, below) = split(state, area);
     let n_rows = usize::from(list.height.saturating_sub(1));
-    put(frame, list, 0, &Line::styled(format!("tracks {:>29}", state.tracks.len()), style::DIM));
+    let order = if state.by_doubt { "by doubt" } else { "by number" };
+    let heading = format!("tracks  {order:<20}worst at");
+    put(frame, list, 0, &Line::styled(heading, style::DIM));
     let first = first_listed(state, n_rows);
-    for (y, row) in (1..).zip(state.tracks.iter().skip(first).take(n_rows)) {
+    for (y, row) in (1..).zip(state.listed().into_iter().skip(first).take(n_rows)) {
         put(frame, list, y, &track_line(state, row));
     }
     groups(state, below, frame);
@@ -56,7 +59,7 @@ fn track_line(state: &State, row: &TrackRow) -> Line<'static> {
     let group = state.groups.as_ref().and_then(|g| g.of(row.id));
     let name: String = row.name.as_deref().unwrap_or_default().chars().take(8).collect();
     let n = state.clip.n_frames();
-    let worst = row.worst.map_or_else(String::new, |f| format!("{f}"));
+    let worst = row.worst.first().map_or_else(String::new, u32::to_string);
     let line = Line::from(vec![
         Span::raw(if is_selected { "▸" } else { " " }),
         Span::styled("●", style::group_text(group)),

@@ -102,7 +102,7 @@ fn sample_words(row: &TrackRow, frame: u32) -> String {
         words.extend(quality.fb_px.map(|fb| format!("FB {fb:.*} px", digits(fb))));
         words.extend(quality.ncc.map(|ncc| format!("NCC {ncc:.2}").replace("0.", ".")));
     }
-    words.extend(row.worst.map(|frame| format!("worst {frame}")));
+    words.extend(row.worst.first().map(|frame| format!("worst {frame}")));
     words.join(" · ")
 }
 
@@ -222,7 +222,7 @@ fn is_useful(state: &State, action: Action) -> bool {
     match action {
         Action::NextTrack => !state.tracks.is_empty(),
         Action::MoveSample => !state.tracks.is_empty() && state.read_only.is_none(),
-        Action::WorstFrame => state.selected_row().is_some_and(|row| row.worst.is_some()),
+        Action::WorstFrame => state.selected_row().is_some_and(|row| !row.worst.is_empty()),
         Action::RunTracker => state.job.is_none() && state.read_only.is_none(),
         Action::RunClusterer => state.tracks.len() > 1 && state.job.is_none() && state.read_only.is_none(),
         Action::AddFeature => state.read_only.is_none(),

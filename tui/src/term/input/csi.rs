@@ -41,31 +41,20 @@ pub(super) fn letter_key(final_byte: u8) -> Option<Code> {
 }
 
 fn event(body: &str, final_byte: u8) -> Option<Event> {
-    let reply = |reply| Some(Event::Reply(reply));
     let key = |code, modifiers| Some(Event::Key(Key::with_modifiers(code, modifiers)));
     if let Some(private) = body.strip_prefix('?') {
-        return match final_byte {
-            b'c' => reply(Reply::Attributes(numbers(private))),
-            b'u' => reply(Reply::Keyboard(*numbers(private).first()?)),
-            b'y' => match numbers(private.strip_suffix('$')?)[..] {
-                [mode, state] => reply(Reply::Mode { mode, state }),
-                _ => None,
-            },
+        return match numbers(private.strip_suffix('$').filter(|_| final_byte == b'y')?)[..] {
+            [mode, state] => Some(Event::Reply(Reply::Mode { mode, state })),
             _ => None,
         };
     }
     if let Some(body) = body.strip_prefix('<') {
-        return mouse(&numbers(body), final_byte == b'm').map(Event::Mouse);
+        return mouse(&numbers(body)).filter(|_| final_byte == b'M').map(Event::Mouse);
     }
     let p = numbers(body);
     let modifiers = p.get(1).copied().unwrap_or(1);
     match final_byte {
         b'n' => (p == [0]).then_some(Event::Reply(Reply::Ready)),
-        // `CSI 1 ; 2 R` is Shift-F3; every other position is the answer to a cursor query.
-        b'R' if p.len() == 2 && !(p[0] == 1 && (2..=8).contains(&p[1])) => {
-            reply(Reply::Cursor { row: p[0].saturating_sub(1), column: p[1].saturating_sub(1) })
-        }
-        b'I' | b'O' if body.is_empty() => Some(Event::Focus(final_byte == b'I')),
         b'Z' => key(Code::Tab, 2),
         b'~' if p.len() == 3 && p[0] == 27 => key(unicode_key(p[2])?, p[1]),
         b'~' => key(tilde_key(*p.first()?)?, modifiers),
@@ -86,16 +75,16 @@ fn numbers(body: &str) -> Vec<u16> {
         .collect()
 }
 
-fn mouse(p: &[u16], released: bool) -> Option<Mouse> {
+/// Presses, drags and turns of the wheel; nobody wants to know of the rest.
+fn mouse(p: &[u16]) -> Option<Mouse> {
     let &[bits, column, row] = p else { return None };
     let button = u8::try_from(bits & 3).ok()?;
     let kind = match (bits & 64 != 0, bits & 32 != 0) {
         (true, _) if button == 0 => MouseKind::WheelUp,
         (true, _) if button == 1 => MouseKind::WheelDown,
         (true, _) => return None,
-        (false, true) if button == 3 => MouseKind::Move,
+        (false, true) if button == 3 => return None,
         (false, true) => MouseKind::Drag(button),
-        (false, false) if released => MouseKind::Release(button),
         (false, false) => MouseKind::Press(button),
     };
     Some(Mouse { kind, column: column.saturating_sub(1), row: row.saturating_sub(1) })

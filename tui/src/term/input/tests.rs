@@ -33,16 +33,14 @@ const TABLE: &[(&[u8], &[&str])] = &[
     (b"\x1b[", &["Alt-["]),
     (b"\x1b[A\x1bOB\x1b[1;5C\x1b[3~\x1b[24~\x1bOP", &["Up", "Down", "Ctrl-Right", "Delete", "F12", "F1"]),
     (b"\x1b[27u\x1b[114;5u\x1b[27;5;46~", &["Esc", "Ctrl-r", "Ctrl-."]),
-    (b"\x1b[1;2R\x1b[5;9R", &["Shift-F3", "Reply(Cursor { row: 4, column: 8 })"]),
-    (b"\x1b[0n\x1b[?62;22c", &["Reply(Ready)", "Reply(Attributes([62, 22]))"]),
+    (b"\x1b[1;2R\x1b[0n\x1b[?62;22c\x1b[?1u\x1b[I", &["Shift-F3", "Reply(Ready)"]),
     (b"\x1b[?2026;2$y", &["Reply(Mode { mode: 2026, state: 2 })"]),
     (b"\x1bP>|tmux 3.3a\x1b\\q", &["Reply(Version(\"tmux 3.3a\"))", "q"]),
-    (b"\x1b]11;rgb:ffff/8080/0000\x07", &["Reply(Background([255, 128, 0]))"]),
-    (b"\x1b[?1u", &["Reply(Keyboard(1))"]),
-    (b"\x1b[<0;10;5M\x1b[<0;10;5m\x1b[<32;1;1M", &["Press(0)@9,4", "Release(0)@9,4", "Drag(0)@0,0"]),
-    (b"\x1b[<64;3;3M\x1b[<65;3;3M\x1b[<35;2;2M", &["WheelUp@2,2", "WheelDown@2,2", "Move@1,1"]),
+    (b"\x1b]11;rgb:ffff/8080/0000\x07q", &["q"]),
+    (b"\x1b[<0;10;5M\x1b[<0;10;5m\x1b[<32;1;1M", &["Press(0)@9,4", "Drag(0)@0,0"]),
+    (b"\x1b[<64;3;3M\x1b[<65;3;3M\x1b[<35;2;2M", &["WheelUp@2,2", "WheelDown@2,2"]),
     (b"\x1b[200~a\x1b[Ab\x1b[201~c", &["Paste(\"a\\u{1b}[Ab\")", "c"]),
-    (b"\x1b[I\x1b[O", &["Focus(true)", "Focus(false)"]),
+    (b"\x1b[200~never ended\x1b[20", &["Paste(\"never ended\")"]),
     (b"\xffa\xc3\x28", &["a", "("]),
     (b"\x1b[12\x1b[B", &["Down"]),
     (b"\x1b]0;title cut off\x1b[B", &["Down"]),
@@ -70,6 +68,22 @@ fn endless_strings_neither_grow_nor_swallow_what_follows() {
     }
     decoder.feed(b"\x1b\\q", &mut events);
     assert_eq!(events.iter().map(word).collect::<Vec<_>>(), ["q"]);
+}
+
+#[test]
+fn a_long_paste_is_cut_and_an_endless_one_can_be_ended() {
+    let mut decoder = Decoder::default();
+    let mut events = Vec::new();
+    decoder.feed(b"\x1b[200~", &mut events);
+    for _ in 0..1000 {
+        decoder.feed(&[b'x'; 999], &mut events);
+        assert_eq!(decoder.unfinished(), Some(Unfinished::Paste));
+    }
+    assert_eq!(events, []);
+    decoder.flush(&mut events);
+    decoder.feed(b"q", &mut events);
+    assert_eq!(events, [Event::Paste("x".repeat(PASTE_MAX)), Event::Key(Key::plain(Code::Char('q')))]);
+    assert_eq!(decoder.unfinished(), None);
 }
 
 proptest! {
