@@ -200,9 +200,10 @@ fn the_picture_becomes_exact_and_then_nothing_is_sent() {
     let dark = Some((vt100::Color::Rgb(0, 0, 0), vt100::Color::Rgb(0, 0, 0)));
     terminal.wait_for("the square", |s| colour(s, 26, 10) == bright && colour(s, 60, 3) == dark);
     terminal.wait_for_text(" ms");
-    // Quiet, once decoding is done and the last answer has come.
+    // Quiet, once decoding is done and the last answer has come; longer than the figures of the link and the
+    // patience with an answer take to come round again.
     let until = Instant::now() + PATIENCE;
-    while terminal.listen(Duration::from_millis(700)).0 {
+    while terminal.listen(Duration::from_millis(2500)).0 {
         assert!(Instant::now() < until, "it never falls silent");
     }
     terminal.press("q");
@@ -230,8 +231,77 @@ fn signals_end_it_and_the_terminal_is_restored() {
         let mut terminal = Terminal::honami(folder.path(), (80, 24), true);
         terminal.wait_for_text("0/11");
         terminal.signal(signal);
-        terminal.wait_for_end();
+        assert!(terminal.wait_for_end(), "{signal:?}: all is saved, nothing has failed");
         terminal.assert_restored();
+    }
+}
+
+#[test]
+fn it_takes_the_terminal_back_when_it_is_continued() {
+    let folder = folder();
+    let mut terminal = Terminal::honami(folder.path(), (80, 24), true);
+    terminal.wait_for_text("0/11");
+    let slave = std::fs::File::open(terminal.pty.tty_name().unwrap()).unwrap();
+    let raw = format!("{:?}", terminal.pty.get_termios());
+    // What a shell does when its job stops: lines again, and its own screen.
+    terminal.signal(Signal::STOP);
+    let mut modes = rustix::termios::tcgetattr(&slave).unwrap();
+    modes.local_modes |= rustix::termios::LocalModes::ICANON | rustix::termios::LocalModes::ECHO;
+    rustix::termios::tcsetattr(&slave, rustix::termios::OptionalActions::Now, &modes).unwrap();
+    assert_ne!(format!("{:?}", terminal.pty.get_termios()), raw);
+    terminal.emulator = vt100::Parser::new(24.try_into().unwrap(), 80.try_into().unwrap(), 0);
+    terminal.signal(Signal::CONT);
+    terminal.wait_for("the whole screen", |s| {
+        s.alternate_screen() && s.contents().contains("0/11") && s.contents().contains('▀')
+    });
+    assert_eq!(format!("{:?}", terminal.pty.get_termios()), raw);
+    terminal.press("q");
+    assert!(terminal.wait_for_end());
+    terminal.assert_restored();
+}
+
+#[test]
+fn a_long_paste_stops_nothing_and_one_without_end_ends() {
+    let folder = folder();
+    let mut terminal = Terminal::honami(folder.path(), (80, 24), true);
+    terminal.wait_for_text("0/11");
+    terminal.press("?");
+    terminal.wait_for_text("what works here");
+    let words = "undo the last edit ".repeat(1000);
+    terminal.press(&format!("\x1b[200~{words}\x1b[201~"));
+    terminal.wait_for_text("undo the last");
+    terminal.press("\x1b");
+    terminal.wait_for("the help to close", |s| !s.contents().contains("choose"));
+    terminal.press("?\x1b[200~whose end is lost");
+    terminal.wait_for_text("whose end is lost");
+    // The keyboard is the user's again.
+    terminal.press("\x1b");
+    terminal.wait_for("the help to close", |s| !s.contents().contains("choose"));
+    terminal.press("q");
+    assert!(terminal.wait_for_end());
+    terminal.assert_restored();
+}
+
+#[test]
+fn where_its_log_cannot_be_written_it_starts_all_the_same() {
+    for temp in ["temp", "honami"] {
+        let folder = folder();
+        std::fs::create_dir(folder.path().join("temp")).unwrap();
+        // A file is where the folder of the log would be.
+        std::fs::write(folder.path().join("honami"), []).unwrap();
+        write_clip(&folder.path().join("sway.y4m"));
+        let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_honami"));
+        command.arg("sway.y4m");
+        command.env("TMPDIR", folder.path().join(temp));
+        let mut terminal = Terminal::start(command, folder.path(), (80, 24), true);
+        terminal.wait_for_text("0/11");
+        terminal.press("q");
+        assert!(terminal.wait_for_end(), "{temp}");
+        terminal.assert_restored();
+        assert_eq!(
+            std::fs::read_dir(folder.path().join("temp")).unwrap().count(),
+            usize::from(temp == "temp")
+        );
     }
 }
 

@@ -92,7 +92,7 @@ table! {
     NextTrack "next-track" ["n"] [Review "next"] "select the next track"
     PreviousTrack "previous-track" ["p"] [Review ""] "select the previous track"
     WorstFrame "worst-frame" ["w"] [Review "worst"]
-        "go to the most doubtful frame of the selected track; again, to the next worst"
+        "go to the worst frame of the track; again, to the next worst"
     StepForward "step" ["."] [Review ""] "one frame forward; a number before it steps so many"
     StepBack "step-back" [","] [Review ""] "one frame back"
     LeapForward "leap" [">"] [Review ""] "ten frames forward"

@@ -6,18 +6,20 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use honami_model::edit::Transaction;
+use honami_model::history::Entry;
 use honami_model::track::TrackId;
 use honami_workbench::WorkbenchError;
 use honami_workbench::cluster::{self, ClusterRequest};
-use honami_workbench::plugins::{Kind, PluginInfo, Values};
+use honami_workbench::plugins::{Kind, PluginInfo};
 use honami_workbench::session::Session;
-use honami_workbench::track::{self, Area, PointSource, TrackRequest};
+use honami_workbench::store::{Project, StoreError};
+use honami_workbench::track::{self, TrackRequest};
 
 use super::form::{Plugin, Task};
 use super::jobs::{Done, Running, Work};
 use super::state::{Job, Notice, State};
 use super::tracks::{Groups, TrackRow};
-use super::update::{Effect, Fact};
+use super::update::{Effect, Fact, Hint};
 use crate::term::signals::Waker;
 
 /// The world: the project, the clip, the plugins, and the job that runs.
@@ -47,7 +49,8 @@ impl World {
         }
         state.plugins = self.session.registry.plugins().iter().filter_map(plugin).collect();
         state.n_ready = self.session.media.n_ready();
-        let mut notes = self.session.media.notes().to_vec();
+        let mut notes = self.session.notes.clone();
+        notes.extend_from_slice(self.session.media.notes());
         notes.extend(state.read_only.iter().map(|holder| format!("read only: {holder} holds this project")));
         if !notes.is_empty() {
             state.notice = Some(Notice { text: notes.join(" · "), is_error: false });
@@ -75,13 +78,12 @@ impl World {
     /// Does what the state wants; what fails becomes a line.
     pub(super) fn carry_out(&mut self, effect: Effect, now: Duration) -> Vec<Fact> {
         let done = match effect {
-            Effect::Commit(transaction) => self.commit(transaction),
+            Effect::Commit(transaction, hint) => self.commit(transaction, hint),
             Effect::AddFeature { frame, at } => self.add_feature(frame, at),
-            Effect::Undo => self.travel("undone", |project| project.undo()),
-            Effect::Redo => self.travel("redone", |project| project.redo()),
-            Effect::Run { task, plugin, values, existing, every } => {
-                self.run(task, plugin, values, existing, every, now)
-            }
+            Effect::Undo(n) => self.travel("undone", n, Project::undo),
+            Effect::Redo(n) => self.travel("redone", n, Project::redo),
+            Effect::Track(request) => self.track(&request, now),
+            Effect::Cluster(request) => self.cluster(&request, now),
             Effect::StopJob => {
                 self.running.iter().for_each(|(running, _)| running.stop());
                 Ok(Vec::new())
@@ -92,68 +94,54 @@ impl World {
         done.unwrap_or_else(|error| vec![failed(&error)])
     }
 
-    fn commit(&mut self, transaction: Transaction) -> Facts {
-        let line = format!("{} (u undoes)", transaction.label);
+    fn commit(&mut self, transaction: Transaction, hint: Hint) -> Facts {
+        let line = format!("{} ({hint})", transaction.label);
         self.session.project.commit(transaction)?;
         self.shown_and(said(line))
     }
 
     fn add_feature(&mut self, frame: u32, [x, y]: [f32; 2]) -> Facts {
         let track = TrackId(self.session.project.reserve_tracks(1)?.start);
-        let mut facts = self.commit(Transaction::add_track(track, frame, x, y))?;
+        let mut facts = self.commit(Transaction::add_track(track, frame, x, y), "t tracks it, u undoes")?;
         facts.push(Fact::Placed(track));
         Ok(facts)
     }
 
-    fn travel<E>(
+    /// Goes so many edits back or forward, as far as there are any.
+    fn travel(
         &mut self,
         word: &str,
-        go: impl FnOnce(&mut honami_workbench::store::Project) -> Result<Option<honami_model::history::Entry>, E>,
-    ) -> Facts
-    where
-        WorkbenchError: From<E>,
-    {
-        let line = match go(&mut self.session.project)? {
-            Some(entry) => format!("{word}: {}", entry.label),
-            None => format!("nothing to be {word}"),
+        n: u32,
+        go: fn(&mut Project) -> Result<Option<Entry>, StoreError>,
+    ) -> Facts {
+        let mut labels = Vec::new();
+        for _ in 0..n {
+            match go(&mut self.session.project)? {
+                Some(entry) => labels.push(entry.label),
+                None => break,
+            }
+        }
+        let line = match &labels[..] {
+            [] => format!("nothing to be {word}"),
+            [label] => format!("{word}: {label}"),
+            [.., last] => format!("{word}: {} edits, the last of them: {last}", labels.len()),
         };
         self.shown_and(said(line))
     }
 
-    fn run(
-        &mut self,
-        task: Task,
-        plugin: String,
-        params: Values,
-        existing: bool,
-        every: Option<u32>,
-        now: Duration,
-    ) -> Facts {
-        let job = Job {
-            plugin: plugin.clone(),
-            what: "starting".to_owned(),
-            done: (0, 0),
-            since: now,
-            keeps_frames: task == Task::Track,
-            is_stopping: false,
-        };
-        let work = match task {
-            Task::Track => {
-                let request = TrackRequest {
-                    plugin,
-                    params,
-                    points: if existing { PointSource::Existing } else { PointSource::Detect },
-                    frames: 0..self.session.media.clip().n_frames(),
-                    every,
-                    area: Area::default(),
-                };
-                Work::Track(track::prepare(&mut self.session, &request)?)
-            }
-            Task::Cluster => {
-                let request = ClusterRequest { plugin, params, groups: None };
-                Work::Cluster(cluster::prepare(&self.session, &request)?)
-            }
-        };
+    fn track(&mut self, request: &TrackRequest, now: Duration) -> Facts {
+        let work = Work::Track(track::prepare(&mut self.session, request)?);
+        self.start(work, &request.plugin, true, now)
+    }
+
+    fn cluster(&mut self, request: &ClusterRequest, now: Duration) -> Facts {
+        let work = Work::Cluster(cluster::prepare(&self.session, request)?);
+        self.start(work, &request.plugin, false, now)
+    }
+
+    fn start(&mut self, work: Work, plugin: &str, keeps_frames: bool, since: Duration) -> Facts {
+        let (plugin, what) = (plugin.to_owned(), "starting".to_owned());
+        let job = Job { plugin, what, done: (0, 0), since, keeps_frames, is_stopping: false };
         match Running::start(work, self.waker.clone()) {
             Ok(running) => {
                 self.running = Some((running, job.clone()));
@@ -184,26 +172,27 @@ impl World {
     /// Takes the ended job's result into the project.
     fn finish(&mut self) -> Facts {
         let Some((running, job)) = self.running.take() else { return Ok(Vec::new()) };
-        let notice = match running.join() {
+        let before = self.session.project.revision();
+        let (mut text, is_error) = match running.join() {
             Some(Done::Track(done)) => {
                 let outcome = track::finish(&mut self.session, done?)?;
-                Notice { is_error: outcome.error.is_some(), text: format!("{} (u undoes)", outcome.line) }
+                (outcome.line, outcome.error.is_some())
             }
             Some(Done::Cluster(done)) => match *done {
                 Err(WorkbenchError::Stopped) => {
-                    Notice { text: format!("{} stopped; nothing was changed", job.plugin), is_error: false }
+                    (format!("{} stopped; nothing was changed", job.plugin), false)
                 }
-                done => {
-                    let outcome = cluster::finish(&mut self.session, done?)?;
-                    Notice { text: format!("{} (u undoes)", outcome.line), is_error: false }
-                }
+                done => (cluster::finish(&mut self.session, done?)?.line, false),
             },
             None => {
-                let text =
-                    format!("{} stopped by a fault of its own; the session's log has its report", job.plugin);
-                Notice { text, is_error: true }
+                let fault = "stopped by a fault of its own; the session's log has its report";
+                (format!("{} {fault}", job.plugin), true)
             }
         };
+        if self.session.project.revision() != before {
+            text.push_str(" (u undoes)");
+        }
+        let notice = Notice { text, is_error };
         self.shown_and(Fact::Said(notice))
     }
 

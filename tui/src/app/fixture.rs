@@ -48,6 +48,20 @@ fn row(id: u32, frames: std::ops::Range<u32>, keys: &[u32]) -> TrackRow {
     TrackRow::new(TrackId(id), None, Arc::new(span))
 }
 
+/// Several hundred tracks more, beside and above one another.
+pub(super) fn crowd(state: &mut State) {
+    let still = |id: u32| {
+        let mut row = row(id, 0..100, &[]);
+        let samples = row.span.samples.iter().map(|s| {
+            let (x, y) = ((id * 37 % 320) as f32, (id * 23 % 240) as f32);
+            Sample { x, y, ..*s }
+        });
+        row.span = Arc::new(Span { first_frame: 0, samples: samples.collect() });
+        row
+    };
+    state.tracks.extend((8..480).map(still));
+}
+
 pub(super) fn groups(k: u32) -> Groups {
     let merges = vec![Merge { a: 0, b: 1, height: 1.0, size: 2 }, Merge { a: 2, b: 3, height: 2.0, size: 3 }];
     let tracks = [1, 2, 7].map(TrackId).to_vec();

@@ -123,8 +123,7 @@ impl Form {
     /// The features to follow.
     #[must_use]
     pub fn features(&self) -> Features {
-        let is_chosen =
-            |f: &Features| self.values.get(FEATURES) == Some(&Value::Text(f.word().to_owned()));
+        let is_chosen = |f: &Features| self.values.get(FEATURES) == Some(&Value::Text(f.word().to_owned()));
         Features::ALL.into_iter().find(is_chosen).unwrap_or(Features::Found)
     }
 
@@ -226,7 +225,7 @@ fn own_params(can_detect: bool, features: &[Features]) -> Vec<Param> {
     let entries: Vec<Entry> = features.map(entry).collect();
     let Some(default) = entries.first().map(|first| first.id.clone()) else { return Vec::new() };
     let kind = ParamKind::Enum { default, entries };
-    let mut ours = vec![param(FEATURES, "features", "the features to follow", kind)];
+    let mut ours = vec![param(FEATURES, "features", "", kind)];
     if can_detect {
         let range = Numeric {
             default: 0,

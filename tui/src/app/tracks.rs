@@ -8,6 +8,8 @@ use honami_model::track::{Sample, Source, Span, Status, TrackId};
 
 /// So many doubtful frames of a track are worth a look, at most.
 const N_WORST: usize = 9;
+/// The worst frame is worth a look in any case, others from this doubt on: 0.25 px forward-backward, or NCC .8.
+const DOUBTFUL: f32 = 0.2;
 /// Doubtful frames worth a look are so far apart.
 const APART: usize = 5;
 
@@ -50,12 +52,14 @@ impl TrackRow {
 /// in which it is lost only the first counts.
 fn worst(span: &Span, doubts: &[f32]) -> Vec<u32> {
     let is_lost = |i: usize| doubts[i] >= 1.0;
-    let mut ranked: Vec<usize> = (0..doubts.len())
-        .filter(|&i| doubts[i] > 0.0 && !(is_lost(i) && i > 0 && is_lost(i - 1)))
-        .collect();
+    let mut ranked: Vec<usize> =
+        (0..doubts.len()).filter(|&i| doubts[i] > 0.0 && !(is_lost(i) && i > 0 && is_lost(i - 1))).collect();
     ranked.sort_by(|&a, &b| doubts[b].total_cmp(&doubts[a]).then(a.cmp(&b)));
     let mut worst: Vec<usize> = Vec::new();
     for i in ranked {
+        if !worst.is_empty() && doubts[i] < DOUBTFUL {
+            break;
+        }
         if worst.iter().all(|&other| other.abs_diff(i) >= APART) {
             worst.push(i);
         }

@@ -38,11 +38,17 @@ pub enum Msg {
     Fact(Fact),
 }
 
+/// What may be done after an edit, as its line says it.
+pub type Hint = &'static str;
+
+/// The usual one.
+const UNDO: Hint = "u undoes";
+
 /// Something that the state wants done in the world.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Effect {
-    /// Commit an edit.
-    Commit(Transaction),
+    /// Commit an edit, and say what may be done next.
+    Commit(Transaction, Hint),
     /// Place a new track here; its number is the project's to give.
     AddFeature {
         /// Frame of its first key-frame.

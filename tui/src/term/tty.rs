@@ -20,8 +20,7 @@ use rustix::termios::{self, OptionalActions, Termios};
 /// protocol is spoken.
 pub const ENTER: &[u8] = b"\x1b[?1049h\x1b[?25l\x1b[?1000h\x1b[?1002h\x1b[?1006h\x1b[?2004h\x1b[>1u";
 /// [`ENTER`] over itself: what it has pushed before, if that is still there, is not there twice.
-pub const RESUME: &[u8] =
-    b"\x1b[?1049h\x1b[<u\x1b[?25l\x1b[?1000h\x1b[?1002h\x1b[?1006h\x1b[?2004h\x1b[>1u";
+pub const RESUME: &[u8] = b"\x1b[?1049h\x1b[<u\x1b[?25l\x1b[?1000h\x1b[?1002h\x1b[?1006h\x1b[?2004h\x1b[>1u";
 /// Undoes [`ENTER`], and whatever a frame cut in half has left.
 pub const LEAVE: &[u8] =
     b"\x1b[?2026l\x1b[<u\x1b[?2004l\x1b[?1006l\x1b[?1002l\x1b[?1000l\x1b[m\x1b[?25h\x1b[?1049l";

@@ -25,14 +25,15 @@ fn steps_stay_in_the_range_and_free_of_noise() {
 #[test]
 fn what_does_not_count_is_not_shown() {
     let state = fixture::state();
-    let mut form = Form::new(Task::Track, &state.plugins, true).unwrap();
+    let features = [Features::Here, Features::Selected, Features::Found];
+    let mut form = Form::new(Task::Track, &state.plugins, &features).unwrap();
     let ids = |form: &Form| {
         let rows = form.rows();
         rows.iter()
             .filter_map(|r| if let Row::Param(p, _) = r { Some(p.id.clone()) } else { None })
             .collect::<Vec<_>>()
     };
-    assert_eq!(ids(&form), ["@features", "@every", "radius", "motion", "check", "label"]);
+    assert_eq!(ids(&form), ["@features", "radius", "motion", "check", "label"]);
     assert!(form.rows().contains(&Row::Fold(1)));
     form.unfolded = true;
     assert!(ids(&form).contains(&"expire".to_owned()));
@@ -40,6 +41,19 @@ fn what_does_not_count_is_not_shown() {
     form.change(1, false);
     assert!(!ids(&form).contains(&"expire".to_owned()), "it counts only with `check`");
     form.at = 1;
-    form.change(1, false);
-    assert!(form.follows_existing() && !ids(&form).contains(&"@every".to_owned()));
+    for expect in [Features::Here, Features::Selected, Features::Found, Features::Here] {
+        assert_eq!(form.features(), expect);
+        assert_eq!(ids(&form).contains(&"@every".to_owned()), expect == Features::Found);
+        form.change(1, false);
+    }
+}
+
+#[test]
+fn choices_are_called_what_is_shown() {
+    let features = [Features::Here, Features::Selected, Features::Found];
+    let form = |plugin: Plugin| Form::new(Task::Track, &[plugin], &features).unwrap();
+    let [klt, flow, ..] = &fixture::state().plugins[..] else { panic!("two trackers") };
+    let wanted = |plugin: &Plugin| form(plugin.clone()).plugin().params[0].wanted();
+    assert_eq!(wanted(klt), "one of the tracks here, the selected track, found anew");
+    assert_eq!(wanted(flow), "one of the tracks here, the selected track", "it finds none by itself");
 }

@@ -134,6 +134,7 @@ fn run(state: &mut State) -> Vec<Effect> {
         (Features::Here | Features::Selected, _) => PointSource::Existing,
         (Features::Found, _) => PointSource::Detect,
     };
+    state.corrected = None;
     let (frames, every, area) = (0..state.clip.n_frames(), form.every(), Area::Whole);
     vec![Effect::Track(TrackRequest { plugin, params, points, frames, every, area })]
 }

@@ -2,9 +2,9 @@
 
 use honami_model::clip::Clip;
 use honami_model::edit::Transaction;
-use honami_model::track::{Source, TrackSet};
+use honami_model::track::{Source, TrackId, TrackSet};
 
-use super::{Effect, Mode, State, complain, say};
+use super::{Effect, Mode, State, UNDO, complain, say};
 
 /// Whether edits are possible; says why not.
 fn is_writable(state: &mut State) -> bool {
@@ -57,7 +57,9 @@ pub(super) fn keep(state: &mut State) -> Vec<Effect> {
     let Mode::Move { to, .. } = std::mem::replace(&mut state.mode, Mode::Review) else { return Vec::new() };
     let Some(row) = state.selected_row() else { return Vec::new() };
     let id = row.id;
-    vec![Effect::Commit(Transaction::set_key(row.id, state.frame, to, row.at(state.frame)))]
+    let edit = Transaction::set_key(id, state.frame, to, row.at(state.frame));
+    state.corrected = Some(id);
+    vec![Effect::Commit(edit, "t tracks again from here, u undoes")]
 }
 
 /// Confirms the sample shown here.
@@ -75,7 +77,10 @@ pub(super) fn confirm(state: &mut State) -> Vec<Effect> {
             say(state, format!("track {id}: frame {} is a key-frame already", state.frame));
             Vec::new()
         }
-        Some(sample) => vec![Effect::Commit(Transaction::confirm_key(id, state.frame, [sample.x, sample.y]))],
+        Some(sample) => {
+            let edit = Transaction::confirm_key(id, state.frame, [sample.x, sample.y]);
+            vec![Effect::Commit(edit, UNDO)]
+        }
         None => {
             complain(state, format!("track {id} has no sample at {}; m places one", state.frame));
             Vec::new()
@@ -90,7 +95,7 @@ pub(super) fn clear_key(state: &mut State) -> Vec<Effect> {
     }
     let key = state.selected_row().filter(|row| row.keys.contains(&state.frame)).map(|row| row.id);
     match key {
-        Some(track) => vec![Effect::Commit(Transaction::clear_key(track, state.frame))],
+        Some(track) => vec![Effect::Commit(Transaction::clear_key(track, state.frame), UNDO)],
         None => {
             complain(state, "no key-frame of the selected track is here; [ and ] go to them");
             Vec::new()
@@ -103,14 +108,14 @@ pub(super) fn delete(state: &mut State) -> Vec<Effect> {
     if !is_writable(state) {
         return Vec::new();
     }
-    let at = state.selected.and_then(|id| state.tracks.iter().position(|row| row.id == id));
-    let Some(at) = at else {
+    let listed: Vec<TrackId> = state.listed().iter().map(|row| row.id).collect();
+    let Some(at) = listed.iter().position(|id| Some(*id) == state.selected) else {
         complain(state, "select a track first: n takes the next");
         return Vec::new();
     };
-    let track = state.tracks[at].id;
-    state.selected = state.tracks.get(at + 1).or_else(|| state.tracks.get(at.wrapping_sub(1))).map(|r| r.id);
-    vec![Effect::Commit(Transaction::delete_tracks(TrackSet::from(track)))]
+    let track = listed[at];
+    state.selected = listed.get(at + 1).or_else(|| listed.get(at.wrapping_sub(1))).copied();
+    vec![Effect::Commit(Transaction::delete_tracks(TrackSet::from(track)), UNDO)]
 }
 
 /// Cuts the hierarchy into so many groups more.
@@ -128,10 +133,14 @@ pub(super) fn cut(state: &mut State, by: i64) -> Vec<Effect> {
         say(state, format!("{k} groups is as far as it goes"));
         return Vec::new();
     }
-    vec![Effect::Commit(Transaction::set_cut(k))]
+    vec![Effect::Commit(Transaction::set_cut(k), UNDO)]
 }
 
 /// Undo or redo as often as the count says.
 pub(super) fn repeat(state: &mut State, effect: fn(u32) -> Effect) -> Vec<Effect> {
-    if is_writable(state) { vec![effect(state.count.unwrap_or(1))] } else { Vec::new() }
+    if !is_writable(state) {
+        return Vec::new();
+    }
+    state.corrected = None;
+    vec![effect(state.count.unwrap_or(1))]
 }

@@ -6,7 +6,8 @@ use crate::app::fixture;
 use crate::app::state::{Job, Play};
 use crate::app::update::Fact;
 use crate::term::input::MouseKind;
-use honami_model::track::TrackId;
+use honami_model::track::{TrackId, TrackSet};
+use honami_workbench::track::PointSource;
 
 /// The state that a line of words describes, from the fixture: `frame=10 track=2 zoom=1 playing job …`.
 fn start(words: &str) -> State {
@@ -66,11 +67,16 @@ fn line(state: &State, effects: &[Effect]) -> String {
         state.notice.as_ref().map(|n| format!("{} {}", if n.is_error { "error" } else { "said" }, n.text)),
     );
     words.extend(effects.iter().map(|effect| match effect {
-        Effect::Commit(transaction) => format!("commit {}", transaction.label),
-        Effect::Run { plugin, values, existing, every, .. } => {
-            let values: Vec<String> = values.iter().map(|(id, value)| format!("{id}={value}")).collect();
-            format!("run {plugin} existing={existing} every={every:?} {}", values.join(" "))
+        Effect::Commit(transaction, _) => format!("commit {}", transaction.label),
+        Effect::Track(TrackRequest { plugin, params, points, every, .. }) => {
+            let params: Vec<String> = params.iter().map(|(id, value)| format!("{id}={value}")).collect();
+            let points = match points {
+                PointSource::Tracks(tracks) => tracks.to_string(),
+                other => format!("{other:?}"),
+            };
+            format!("{plugin} follows {points}, every {every:?} {}", params.join(" "))
         }
+        Effect::Cluster(ClusterRequest { plugin, .. }) => format!("{plugin} groups"),
         other => format!("{other:?}"),
     }));
     words.join(" | ")
@@ -99,11 +105,13 @@ fn moving_in_time() {
         ("", "4 2 g f", "review | frame 42 track 1"),
         ("", "g f 4 2 Enter", "review | frame 42 track 1"),
         ("frame=5", "g f 4 x Backspace 7 Esc", "review | frame 5 track 1"),
-        ("", "5 0 0 g f", "review | frame 99 track 1 | error frame 500 is wanted, the last one is 99"),
+        ("", "5 0 0 g f", "review | frame 99 track 1 | said there is no frame 500: this is the last one, 99"),
         ("frame=20", "]", "review | frame 50 track 1"),
         ("frame=99", "2 [", "review | frame 10 track 1"),
         ("frame=60", "]", "review | frame 60 track 1 | said track 1: no key-frame after this"),
-        ("", "w", "review | frame 70 track 1"),
+        ("", "w", "review | frame 70 track 1 | said track 1: doubtful frame 1 of 2"),
+        ("", "w w", "review | frame 40 track 1 | said track 1: doubtful frame 2 of 2"),
+        ("", "w w w", "review | frame 70 track 1 | said track 1: doubtful frame 1 of 2"),
         ("", "1 2 Esc", "review | frame 0 track 1"),
         ("", "1 2 F9", "review | frame 0 track 1"),
         ("", "g x", "review | frame 0 track 1"),
@@ -155,6 +163,11 @@ fn selecting_tracks() {
         ("", "n", "review | frame 0 track 2"),
         ("", "p", "review | frame 0 track 7"),
         ("", "2 n", "review | frame 0 track 7"),
+        ("", "S", "review | frame 0 track 1 | said tracks are listed by doubt, the worst first"),
+        ("track=7", "S n", "review | frame 0 track 2"),
+        ("track=1", "S n", "review | frame 0 track 7"),
+        ("track=2", "S / Enter", "review | frame 0 track 1"),
+        ("", "S S n", "review | frame 0 track 2"),
         ("", "j j k", "review | frame 0 track 2"),
         ("", "7 g t", "review | frame 0 track 7"),
         ("", "3 g t", "review | frame 0 track 1 | error there is no track 3"),
@@ -187,10 +200,10 @@ fn editing() {
         ),
         ("frame=20", "Enter", &format!("{sway} | commit track 1: key-frame at 20 (confirmed)")),
         ("frame=50", "Enter", "review | frame 50 track 1 | said track 1: frame 50 is a key-frame already"),
-        ("frame=50", "Backspace", "review | frame 50 track 1 | commit track 1: key-frame at 50 cleared"),
+        ("frame=50", "X", "review | frame 50 track 1 | commit track 1: key-frame at 50 cleared"),
         (
             "frame=20",
-            "Backspace",
+            "X",
             &format!("{sway} | error no key-frame of the selected track is here; [ and ] go to them"),
         ),
         ("", "d", "review | frame 0 track 2 | commit track 1 deleted"),
@@ -198,8 +211,9 @@ fn editing() {
         ("", "a", "place 160 120 | frame 0 track 1"),
         ("", "a 1 0 h J Enter", "review | frame 0 track 1 | AddFeature { frame: 0, at: [150.0, 120.25] }"),
         ("", "a 9 9 9 h Enter", "review | frame 0 track 1 | AddFeature { frame: 0, at: [0.0, 120.0] }"),
-        ("", "u", "review | frame 0 track 1 | Undo"),
-        ("", "2 Ctrl-r", "review | frame 0 track 1 | Redo | Redo"),
+        ("frame=50", "Backspace", "review | frame 50 track 1"),
+        ("", "u", "review | frame 0 track 1 | Undo(1)"),
+        ("", "2 Ctrl-r", "review | frame 0 track 1 | Redo(2)"),
         ("", "+", "review | frame 0 track 1 | commit cut into 3 groups"),
         ("", "9 +", "review | frame 0 track 1 | commit cut into 3 groups"),
         ("", "-", "review | frame 0 track 1 | commit cut into 1 group"),
@@ -221,7 +235,7 @@ fn editing() {
 
 #[test]
 fn every_edit_is_refused_in_a_locked_project() {
-    for keys in ["m", "a", "d", "Enter", "Backspace", "u", "Ctrl-r", "+", "-", "t", "c"] {
+    for keys in ["m", "a", "d", "Enter", "X", "u", "Ctrl-r", "+", "-", "t", "c"] {
         let mut state = start("locked frame=50");
         let effects = press(&mut state, keys);
         assert!(effects.is_empty() && matches!(state.mode, Mode::Review), "{keys}: {effects:?}");
@@ -231,41 +245,32 @@ fn every_edit_is_refused_in_a_locked_project() {
 
 #[test]
 fn forms() {
-    let klt = "run klt existing=false every=None";
-    let rest = "check=true expire=0.55 label=none motion=translation";
+    let klt = |points: &str, every: &str, params: &str| {
+        format!("review | frame 0 track 1 | klt follows {points}, every {every} {params}")
+    };
+    let params = "check=true expire=0.55 label=none motion=translation radius=10";
+    let with_radius = |px: u32| params.replace("radius=10", &format!("radius={px}"));
+    let unchecked = params.replace("check=true", "check=false");
     for (from, keys, expect) in [
         ("", "t", "form Track row 0 typed None | frame 0 track 1"),
         ("", "t Esc", "review | frame 0 track 1"),
-        ("", "t Enter", &format!("review | frame 0 track 1 | {klt} {rest} radius=10")),
-        ("", "t j j j l l Enter", &format!("review | frame 0 track 1 | {klt} {rest} radius=12")),
-        ("", "t j j j 2 5 Enter Enter", &format!("review | frame 0 track 1 | {klt} {rest} radius=25")),
-        ("", "t j j j j j j j j j k", "form Track row 6 typed None | frame 0 track 1"),
+        ("", "t Enter", &klt("Existing", "None", params)),
+        ("", "t j l Enter", &klt("track 1", "None", params)),
+        ("", "t j l l Enter", &klt("Detect", "None", params)),
+        ("", "t j h j l l Enter", &klt("Detect", "Some(10)", params)),
+        ("empty", "t Enter", &klt("Detect", "None", params).replace("track 1", "track -")),
+        ("", "t j j l l Enter", &klt("Existing", "None", &with_radius(12))),
+        ("", "t j j 2 5 Enter Enter", &klt("Existing", "None", &with_radius(25))),
+        ("", "t j j j j l k l l Enter", &klt("Existing", "None", &unchecked)),
+        ("", "t j j j j j j j j j k", "form Track row 5 typed None | frame 0 track 1"),
         (
             "",
-            "t j j j 9 9 Enter",
-            "form Track row 3 typed Some(\"99\") | frame 0 track 1 | error radius: wanted a whole number, 2 to 50 (px), got \"99\"",
+            "t j j 9 9 Enter",
+            "form Track row 2 typed Some(\"99\") | frame 0 track 1 | error radius: wanted a whole number, 2 to 50 (px), got \"99\"",
         ),
-        ("", "t j j j 9 9 Esc Esc", "review | frame 0 track 1"),
-        (
-            "",
-            "t j j j j j l k l l Enter",
-            &format!(
-                "review | frame 0 track 1 | {klt} {} radius=10",
-                rest.replace("check=true", "check=false")
-            ),
-        ),
-        (
-            "",
-            "t j l Enter",
-            &format!("review | frame 0 track 1 | {} {rest} radius=10", klt.replace("false", "true")),
-        ),
-        (
-            "",
-            "t j j l l Enter",
-            &format!("review | frame 0 track 1 | {} {rest} radius=10", klt.replace("None", "Some(10)")),
-        ),
-        ("", "t l Enter", "review | frame 0 track 1 | run flow existing=true every=None "),
-        ("", "c Enter", "review | frame 0 track 1 | run movement existing=false every=None "),
+        ("", "t j j 9 9 Esc Esc", "review | frame 0 track 1"),
+        ("", "t l Enter", "review | frame 0 track 1 | flow follows Existing, every None "),
+        ("", "c Enter", "review | frame 0 track 1 | movement groups"),
         (
             "job",
             "t Enter",
@@ -287,9 +292,28 @@ fn forms() {
 }
 
 #[test]
+fn a_run_after_work_by_hand_is_for_that_track() {
+    let followed = |state: &mut State| match &press(state, "t Enter")[..] {
+        [Effect::Track(request)] => request.points.clone(),
+        other => panic!("{other:?}"),
+    };
+    let only = |track| PointSource::Tracks(TrackSet::from(TrackId(track)));
+    let mut state = start("frame=20");
+    press(&mut state, "m l Enter");
+    assert_eq!(followed(&mut state), only(1));
+    assert_eq!(followed(&mut state), PointSource::Existing, "the run was for it; the next is not");
+    press(&mut state, "m l Enter u");
+    assert_eq!(followed(&mut state), PointSource::Existing, "it was undone");
+    press(&mut state, "m l Enter n");
+    assert_eq!(followed(&mut state), PointSource::Existing, "another is selected");
+    update(&mut state, Msg::Fact(Fact::Placed(TrackId(7))));
+    assert_eq!(followed(&mut state), only(7));
+}
+
+#[test]
 fn a_text_is_typed_with_every_letter() {
     let mut state = start("");
-    press(&mut state, "t j j j j j j");
+    press(&mut state, "t j j j j j");
     press(&mut state, "l Backspace Backspace Backspace Backspace q h j k l Enter");
     let effects = press(&mut state, "Enter");
     assert!(line(&state, &effects).contains("label=qhjkl"), "{}", line(&state, &effects));
@@ -299,7 +323,7 @@ fn a_text_is_typed_with_every_letter() {
 fn menus_do_what_they_say() {
     let n_review = TABLE.iter().filter(|i| i.action.word_in(Context::Review).is_some()).count();
     check("", ":", &format!("menu Some(\"left\") of {n_review} | frame 0 track 1"));
-    check("", ": u n d o Enter", "review | frame 0 track 1 | Undo");
+    check("", ": u n d o Enter", "review | frame 0 track 1 | Undo(1)");
     check("", ": q q", "menu None of 0 | frame 0 track 1");
     check("", ": q q Enter", "review | frame 0 track 1");
     check(

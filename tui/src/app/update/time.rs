@@ -105,7 +105,7 @@ pub(super) fn go_worst(state: &mut State) {
     match row.worst.get(at).copied() {
         Some(frame) => {
             go(state, frame);
-            say(state, format!("track {id}: doubtful frame {} of {n}, the worst first", at + 1));
+            say(state, format!("track {id}: doubtful frame {} of {n}", at + 1));
         }
         None => say(state, format!("track {id}: nothing is doubtful")),
     }

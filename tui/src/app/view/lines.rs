@@ -5,10 +5,11 @@ use ratatui::text::{Line, Span};
 
 use honami_model::track::{Source, Status};
 
+use super::picture::marks_nth;
 use super::{fill, put, style};
 use crate::app::action::{Action, TABLE};
 use crate::app::keymap::shown;
-use crate::app::layout::{bar, column_of, frame_at};
+use crate::app::layout::{Layout, Lens, bar, column_of, frame_at};
 use crate::app::state::{Job, Mode, State};
 use crate::app::tracks::{TrackRow, doubt};
 use crate::term::encode::Frame;
@@ -26,6 +27,8 @@ pub(super) fn title(state: &State, area: Rect, frame: &mut Frame) {
         1 => "1 group".to_owned(),
         k => format!("{k} groups"),
     }));
+    let nth = marks_nth(state, &Lens::of(state, Layout::of(state).picture), state.frame);
+    facts.extend((state.marks_all && nth > 1).then(|| format!("1 in {nth} marked")));
     facts.extend(state.read_only.is_some().then(|| "read only".to_owned()));
     if state.zoom > 0 {
         facts.push(format!("{}x{}", 1_u32 << state.zoom, if state.follow { " following" } else { "" }));

@@ -22,6 +22,9 @@ pub struct Shot {
     pub pixels: Vec<[u8; 3]>,
 }
 
+/// A mark for so many cells, at most: more would hide the picture.
+const CELLS_PER_MARK: usize = 6;
+
 /// How much a wrong cell matters: of the picture, and of a mark on it.
 const PICTURE: u8 = 1;
 const MARK: u8 = 8;
@@ -85,6 +88,15 @@ struct Canvas<'a> {
     letters: Option<Vec<(usize, char)>>,
 }
 
+/// Every so many-th track is marked, a power of two: few enough marks that the picture is seen between them.
+/// From frame to frame it is mostly the same, and fewer marks are some of the more.
+pub(super) fn marks_nth(state: &State, lens: &Lens, frame: u32) -> usize {
+    let is_there = |row: &&TrackRow| row.at(frame).is_some_and(|at| lens.pixel_of(at).is_some());
+    let n_marks = state.tracks.iter().filter(is_there).count();
+    let room = usize::from(lens.area.width) * usize::from(lens.area.height) / CELLS_PER_MARK;
+    n_marks.div_ceil(room.max(1)).next_power_of_two()
+}
+
 pub(super) fn draw(state: &State, layout: &Layout, shot: Option<&Shot>, frame: &mut Frame) {
     let here = Lens::of(state, layout.picture);
     let fits = |shot: &&Shot| shot.lens.area == here.area;
@@ -111,7 +123,11 @@ impl Canvas<'_> {
         if let Some(row) = selected {
             self.path(row, frame);
         }
-        for row in state.tracks.iter().filter(|row| state.marks_all || state.selected == Some(row.id)) {
+        let nth = marks_nth(state, self.lens, frame);
+        let is_marked = |i: usize, row: &TrackRow| {
+            state.selected == Some(row.id) || (state.marks_all && i.is_multiple_of(nth))
+        };
+        for (_, row) in state.tracks.iter().enumerate().filter(|(i, row)| is_marked(*i, row)) {
             let Some(sample) = row.span.get(frame) else { continue };
             let colour = match sample.status {
                 Status::Tracked | Status::Newborn => {

@@ -97,9 +97,12 @@ fn screens() {
     });
     check("move_80x24", small, "m 3 l", |_| {});
     check("place_80x24", small, "a", |_| {});
-    check("form_80x24", small, "t j j j", |_| {});
-    check("form_120x40", large, "t j j j", |_| {});
-    check("typing_80x24", small, "t j j j 2 5", |_| {});
+    check("form_80x24", small, "t j j", |_| {});
+    check("form_120x40", large, "t j j", |_| {});
+    check("features_80x24", small, "t j h", |_| {});
+    check("doubt_80x24", small, "S Tab w", |_| {});
+    check("crowded_80x24", small, "", fixture::crowd);
+    check("typing_80x24", small, "t j j 2 5", |_| {});
     check("prefix_80x24", small, "g", |_| {});
     check("palette_80x24", small, ": f r a m e", |_| {});
     check("help_120x40", large, "?", |_| {});
@@ -139,6 +142,22 @@ fn no_size_panics() {
             }
         }
     }
+}
+
+#[test]
+fn the_picture_is_seen_between_marks() {
+    let mut state = fixture::state();
+    fixture::crowd(&mut state);
+    let layout = Layout::of(&state);
+    let shot = fixture::shot(&state, layout.picture);
+    let marked = |state: &State| {
+        let frame = draw(state, Some(&shot));
+        frame.softness.iter().filter(|softness| **softness > 1).count()
+    };
+    let cells = usize::from(shot.lens.area.width) * usize::from(shot.lens.area.height);
+    let alone = marked(&State { marks_all: false, ..state.clone() });
+    let all = marked(&state);
+    assert!((alone + 40..=alone + cells / 6).contains(&all), "{all} cells of {cells} are marked");
 }
 
 #[test]
