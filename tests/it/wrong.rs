@@ -127,7 +127,9 @@ fn wrong_input_is_told_in_one_line_and_leaves_nothing_behind() {
 #[test]
 fn errors_never_tell_the_same_cause_twice() {
     let bench = Bench::new();
-    for line in ["new q.honami missing.y4m", "compare missing.y4m --points missing.csv", "spectrum missing.csv"] {
+    for line in
+        ["new q.honami missing.y4m", "compare missing.y4m --points missing.csv", "spectrum missing.csv"]
+    {
         let told = bench.line(line).stderr;
         assert_eq!(told.matches("o such file").count(), 1, "honami {line}: {told}");
     }

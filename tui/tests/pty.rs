@@ -10,6 +10,9 @@ use std::time::{Duration, Instant};
 use portable_pty::{Child, CommandBuilder, MasterPty, PtySize, native_pty_system};
 use rustix::process::{Pid, Signal, kill_process};
 
+#[path = "pty/work.rs"]
+mod work;
+
 /// A condition that has not come true by then never will.
 const PATIENCE: Duration = Duration::from_secs(60);
 const N_FRAMES: usize = 12;

@@ -1,6 +1,6 @@
 //! Frames in: videos and image sequences with exact random access; and movies out.
 //!
-//! [`open`] takes a video (through a child ffmpeg, or H.264 in MP4 without it), a Y4M file, a folder of images or
+//! [`open()`] takes a video (through a child ffmpeg, or H.264 in MP4 without it), a Y4M file, a folder of images or
 //! an image pattern. Frame n is the n-th frame of a sequential decode in display order, always the same bytes: a
 //! thread decodes the clip once into a memory-mapped cache, from which frames are read in any order. The cache is
 //! bounded and can be deleted at any time; without it frames are decoded on demand, exactly but slower.

@@ -9,6 +9,7 @@ use honami_model::edit::Transaction;
 use honami_store::{Access, ClipRecord, Project, StoreError};
 
 use crate::error::WorkbenchError;
+use crate::track::any_reaches;
 
 /// What a session starts with.
 #[derive(Clone, Debug, Default)]
@@ -90,7 +91,7 @@ fn show_interrupted(project: &mut Project) -> Result<Vec<String>, WorkbenchError
     for run in project.interrupted().to_vec() {
         let info = project.run(run)?;
         // As with a run that was stopped: half of one is not laid over tracks that reach further.
-        if info.tracks.is_empty() || info.tracks.iter().any(|track| project.document().shows(track)) {
+        if info.tracks.is_empty() || any_reaches(project, &info.tracks, info.found.end)? {
             continue;
         }
         let (tracks, last) = (info.tracks.to_string(), info.found.end.saturating_sub(1));

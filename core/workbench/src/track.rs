@@ -12,7 +12,7 @@ use honami_model::clip::Clip;
 use honami_model::document::RunId;
 use honami_model::edit::Transaction;
 use honami_model::track::{Span, TrackId, TrackSet};
-use honami_store::{RunHead, RunWriter};
+use honami_store::{Project, RunHead, RunWriter};
 
 use crate::drive::{self, Detect, Driven, Plan, Rows, Seed};
 use crate::error::WorkbenchError;
@@ -250,17 +250,15 @@ pub fn finish(session: &mut Session, done: TrackDone) -> Result<TrackOutcome, Wo
     let n_lost = n_tracks - seen.len();
     let stopped = driven.end < frames.end;
     // Half a run laid over tracks that reach further would leave a seam in each: it is kept, and not shown.
-    let shown =
-        n_tracks > 0 && !(stopped && found.iter().any(|track| session.project.document().shows(track)));
+    let shown = n_tracks > 0 && !(stopped && any_reaches(&session.project, &found, driven.end)?);
+    let tracks = found.to_string();
     if shown {
         session.project.commit(Transaction::show_run(run, found))?;
     }
-    let mut line = format!(
-        "{plugin}: {n_tracks} tracks, frames {}-{last}, {n_lost} lost, {seconds:.1} s",
-        reached.start
-    );
+    let mut line =
+        format!("{plugin}: {tracks}, frames {}-{last}, {n_lost} lost, {seconds:.1} s", reached.start);
     let kept = match (shown, n_tracks) {
-        (true, _) => format!("{n_tracks} tracks up to there are kept"),
+        (true, _) => format!("{tracks} up to there kept"),
         (false, 0) => "nothing was tracked".to_owned(),
         (false, _) => format!("the tracks stay as they were, run {run} is kept beside them"),
     };
@@ -273,6 +271,16 @@ pub fn finish(session: &mut Session, done: TrackDone) -> Result<TrackOutcome, Wo
     let Driven { tracker_secs, warnings, .. } = driven;
     let frames = reached;
     Ok(TrackOutcome { run, n_tracks, n_lost, frames, stopped, seconds, tracker_secs, error, warnings, line })
+}
+
+/// Whether any of the tracks, as it is shown, goes on at this frame.
+pub(crate) fn any_reaches(project: &Project, tracks: &TrackSet, frame: u32) -> Result<bool, WorkbenchError> {
+    for track in tracks.iter() {
+        if project.shown(track)?.is_some_and(|span| span.frames().end > frame) {
+            return Ok(true);
+        }
+    }
+    Ok(false)
 }
 
 /// Seeds of the project's own tracks, or of some: where each is first seen, and each of its key-frames.

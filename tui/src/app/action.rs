@@ -109,7 +109,7 @@ table! {
     AddFeature "add-feature" ["a"] [Review "add"] "add a feature by hand"
     DeleteTrack "delete-track" ["d"] [Review ""] "delete the selected track (u brings it back)"
     ClearKey "clear-key-frame" ["X"] [Review ""] "clear the key-frame here (u brings it back)"
-    Erase "erase" ["Backspace"] [Form "" Menu "" Prompt ""] "take back a typed letter"
+    Erase "erase" ["Backspace"] [Menu "" Prompt ""] "take back a typed letter"
     RunTracker "track" ["t"] [Review "track"] "follow features with a tracker"
     RunClusterer "cluster" ["c"] [Review "cluster"] "group the tracks by their movement"
     MoreGroups "more-groups" ["+" "="] [Review ""] "cut the hierarchy into one group more"

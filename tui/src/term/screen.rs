@@ -160,10 +160,8 @@ impl Screen {
             match signal {
                 SIGWINCH => happened.resized = true,
                 SIGTSTP => happened.suspend = true,
-                SIGCONT => {
-                    self.resume()?;
-                    happened.resized = true;
-                }
+                SIGCONT if self.resume().is_err() => happened.end = Some(End::Hangup),
+                SIGCONT => happened.resized = true,
                 SIGHUP => happened.end = Some(End::Hangup),
                 _ => happened.end = Some(End::Signal(signal)),
             }

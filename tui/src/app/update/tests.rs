@@ -358,6 +358,27 @@ fn every_binding_answers() {
             press(&mut state, "Esc Esc Esc Esc");
             assert!(matches!(state.mode, Mode::Review), "{binding:?} from {from}: no way back");
         }
+        // Where nothing is in its way it changes something, asks for something, or says why not.
+        let mut state = start("frame=20 zoom=2");
+        press(&mut state, way);
+        press(&mut state, prepared(binding.context, binding.action));
+        let before = format!("{state:?}");
+        let keys = binding.keys.iter();
+        let effects: Vec<Effect> = keys.flat_map(|key| update(&mut state, Msg::Key(*key))).collect();
+        let answered = !effects.is_empty() || format!("{state:?}") != before;
+        assert!(answered, "{binding:?} is silent");
+    }
+}
+
+/// Keys that give an action something to do.
+fn prepared(context: Context, action: Action) -> &'static str {
+    match (context, action) {
+        (Context::Form, Action::Up | Action::FineLeft | Action::FineRight) => "j j",
+        (Context::Menu, Action::Up) => "j Down",
+        (Context::Menu, Action::Erase) => "x",
+        (Context::Prompt, Action::Erase) => "1",
+        (Context::Review, Action::Back) => "space",
+        _ => "",
     }
 }
 
@@ -395,4 +416,24 @@ fn deleting_what_was_selected_selects_another() {
     assert_eq!(state.selected, Some(TrackId(2)));
     update(&mut state, Msg::Fact(Fact::Tracks(Vec::new())));
     assert_eq!(state.selected, None);
+}
+
+#[test]
+fn a_paste_is_typed_at_once_as_far_as_there_is_room() {
+    let long = "un\tdo ".repeat(1000);
+    for (keys, text, expect) in [
+        (":", " undo\n", "menu Some(\"undo\") of 3 | frame 0 track 1"),
+        (":", &long, "menu None of 0 | frame 0 track 1"),
+        ("g f", "frame 42", "prompt \"42\" | frame 0 track 1"),
+        ("g f", "12345678901234", "prompt \"123456789\" | frame 0 track 1"),
+        ("", "4 2", "review | frame 0 track 1 | count 2"),
+    ] {
+        let mut state = start("");
+        press(&mut state, keys);
+        let effects = update(&mut state, Msg::Paste(text.to_owned()));
+        assert_eq!(line(&state, &effects), expect, "{keys} and {text:.20}");
+        if let Mode::Menu(menu) = &state.mode {
+            assert!(menu.typed.chars().count() <= TYPED_MAX && !menu.typed.contains(char::is_control));
+        }
+    }
 }

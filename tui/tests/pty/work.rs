@@ -1,0 +1,122 @@
+//! What a person comes for, with the real plugins: track, group, correct, and find it all there after a kill.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use portable_pty::CommandBuilder;
+use rustix::process::Signal;
+use serde_json::Value;
+
+use super::Terminal;
+
+/// Folder of the shipped plugins, as cargo built them: the tests of this package do not build them.
+fn plugins() -> PathBuf {
+    let profile = if cfg!(debug_assertions) { "dev" } else { "release" };
+    let output = Command::new(env!("CARGO"))
+        .args(["build", "--quiet", "--message-format=json", "--profile", profile])
+        .args(["-p", "honami-tracker-klt", "-p", "honami-clusterer-movement"])
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .stderr(Stdio::inherit())
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "the plugins do not build");
+    let library = |line: &str| {
+        let message: Value = serde_json::from_str(line).ok()?;
+        let is_it = message["target"]["name"] == "honami_tracker_klt";
+        message["filenames"][0].as_str().filter(|_| is_it).map(PathBuf::from)
+    };
+    let messages = String::from_utf8(output.stdout).unwrap();
+    let library = messages.lines().find_map(library).expect("the tracker is a library");
+    library.parent().unwrap().to_owned()
+}
+
+/// What the program says on a command line.
+fn said(folder: &Path, line: &str) -> String {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_honami"));
+    command.args(line.split_whitespace()).current_dir(folder);
+    for name in ["XDG_STATE_HOME", "XDG_CACHE_HOME", "XDG_DATA_HOME", "HOME"] {
+        command.env(name, folder);
+    }
+    let output = command.output().unwrap();
+    assert!(output.status.success(), "{line}: {output:?}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// A clip or a project in the terminal, with plugins.
+fn open(what: &str, folder: &Path, plugins: &Path) -> Terminal {
+    let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_honami"));
+    command.arg(what);
+    command.env("HONAMI_PLUGIN_PATH", plugins);
+    Terminal::start(command, folder, (80, 24), true)
+}
+
+#[test]
+fn a_clip_is_tracked_grouped_and_corrected_and_survives_a_kill() {
+    let (folder, plugins) = (super::folder(), plugins());
+    let open = |what| open(what, folder.path(), &plugins);
+    said(folder.path(), "synth leaves.y4m --size 160x120 --frames 30");
+    let mut terminal = open("leaves.y4m");
+    terminal.wait_for_text("no tracks yet");
+    terminal.press("t");
+    terminal.wait_for_text("found anew");
+    terminal.press("\r");
+    terminal.wait_for("the tracks", |s| {
+        let screen = s.contents();
+        screen.contains("tracks, frames 0-29") && screen.contains("(u undoes)")
+    });
+    terminal.press("c");
+    terminal.wait_for_text("group with");
+    terminal.press("\r");
+    terminal.wait_for_text("outlier frames");
+    terminal.press("3.m");
+    terminal.wait_for_text("moved 0.00 px");
+    terminal.press("l");
+    terminal.wait_for_text("moved 1.00 px");
+    terminal.press("\r");
+    terminal.wait_for_text("key-frame at 3 (moved 1.0 px)");
+    terminal.wait_for_text("t tracks again from here");
+    // The run that follows is for the corrected track alone.
+    terminal.press("t");
+    terminal.wait_for_text("the selected track");
+    terminal.press("\r");
+    terminal.wait_for_text("klt: 1 track");
+    terminal.signal(Signal::KILL);
+    assert!(!terminal.wait_for_end());
+
+    let log: Value = serde_json::from_str(&said(folder.path(), "log leaves.honami --json")).unwrap();
+    let entries = log["log"].as_array().unwrap().iter();
+    let labels: Vec<&str> = entries.filter_map(|entry| entry["label"].as_str()).collect();
+    assert!(labels.iter().any(|label| label.contains("key-frame at 3 (moved 1.0 px)")), "{labels:?}");
+    let mut terminal = open("leaves.honami");
+    terminal.wait_for_text("groups");
+    terminal.press("]");
+    terminal.wait_for("the key-frame", |s| {
+        let screen = s.contents();
+        screen.contains("3/29") && screen.contains("key-frame")
+    });
+    terminal.press("q");
+    assert!(terminal.wait_for_end());
+    terminal.assert_restored();
+}
+
+#[test]
+fn a_run_that_finds_nothing_has_nothing_to_undo() {
+    let folder = super::folder();
+    let mut clip = b"YUV4MPEG2 W64 H48 F25:1 Cmono\n".to_vec();
+    for _ in 0..3 {
+        clip.extend(b"FRAME\n");
+        clip.extend([90; 64 * 48]);
+    }
+    std::fs::write(folder.path().join("fog.y4m"), clip).unwrap();
+    let mut terminal = open("fog.y4m", folder.path(), &plugins());
+    terminal.wait_for_text("no tracks yet");
+    terminal.press("t");
+    terminal.wait_for_text("found anew");
+    terminal.press("\r");
+    terminal.wait_for_text("0 tracks, frames 0-2");
+    assert!(!terminal.emulator.screen().contents().contains("undoes"));
+    terminal.press("u");
+    terminal.wait_for_text("nothing to be undone");
+    terminal.press("q");
+    assert!(terminal.wait_for_end());
+}
