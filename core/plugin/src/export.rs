@@ -22,7 +22,7 @@ use std::marker::PhantomData;
 use std::mem::ManuallyDrop;
 use std::panic::AssertUnwindSafe;
 
-/// What the border knows of a plugin; made by [`tracker`] and its like.
+/// What the border knows of a plugin; made by [`tracker()`] and its like.
 #[derive(Clone, Copy, Debug)]
 pub struct Descriptor {
     pub(crate) kind: &'static str,
