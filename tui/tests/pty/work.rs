@@ -79,7 +79,7 @@ fn a_clip_is_tracked_grouped_and_corrected_and_survives_a_kill() {
     terminal.press("t");
     terminal.wait_for_text("the selected track");
     terminal.press("\r");
-    terminal.wait_for_text("klt: 1 track");
+    terminal.wait_for_text("klt: track ");
     terminal.signal(Signal::KILL);
     assert!(!terminal.wait_for_end());
 

@@ -11,7 +11,7 @@ use crate::app::form::{Form, Row, Task, slider};
 use crate::term::encode::Frame;
 
 /// Cells of a slider.
-const SLIDER: usize = 20;
+const SLIDER: usize = 14;
 /// Cells of the labels, least and most.
 const LABEL: (usize, usize) = (16, 32);
 
@@ -100,7 +100,7 @@ fn value_spans(param: &Param, value: &Value) -> Vec<Span<'static>> {
         (ParamKind::Float(range), Value::Float(x)) => slide(range, *x, |x| x),
         _ => String::new(),
     };
-    vec![Span::raw(format!("{text:<14} ")), Span::styled(slider, style::DIM)]
+    vec![Span::raw(format!("{text:<12} ")), Span::styled(slider, style::DIM)]
 }
 
 /// `1 ────●──── 40`, where the number has two ends.
