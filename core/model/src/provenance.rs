@@ -56,7 +56,7 @@ pub struct Provenance {
     pub input_revision: u32,
     /// How it was isolated: `in process`.
     pub sandbox: String,
-    /// SIMD level chosen at run time.
+    /// Widest SIMD level of the machine it ran on; a plugin may have used less.
     pub simd: String,
     /// When it began, RFC 3339.
     pub date: String,
