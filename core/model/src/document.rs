@@ -7,7 +7,9 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::track::{TrackId, TrackSet};
+use crate::judgement::Judgement;
+use crate::over::Over;
+use crate::track::{Status, TrackId, TrackSet};
 
 /// Number of a run: one use of a tracker. Runs never change once they have ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -59,6 +61,38 @@ pub struct Key {
     pub y: f32,
     /// Set or confirmed.
     pub made: Made,
+    /// What the person says of the feature here; the position counts unless it is lost or outside.
+    #[serde(default = "tracked", skip_serializing_if = "is_tracked")]
+    pub status: Status,
+}
+
+impl Key {
+    /// A person places the feature here.
+    #[must_use]
+    pub fn set(x: f32, y: f32) -> Self {
+        Self { x, y, made: Made::Set, status: Status::Tracked }
+    }
+
+    /// A person finds the sample here right.
+    #[must_use]
+    pub fn confirmed(x: f32, y: f32) -> Self {
+        Self { made: Made::Confirmed, ..Self::set(x, y) }
+    }
+
+    /// Whether its position says where the feature is.
+    #[must_use]
+    pub fn is_placed(&self) -> bool {
+        !matches!(self.status, Status::Lost | Status::Outside | Status::Rejected)
+    }
+}
+
+fn tracked() -> Status {
+    Status::Tracked
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
+fn is_tracked(status: &Status) -> bool {
+    *status == Status::Tracked
 }
 
 /// A track as edits know it: where it came from, and the hand work on it.
@@ -70,19 +104,25 @@ pub struct Track {
     pub name: Option<String>,
     /// Its key-frames by frame.
     pub keys: BTreeMap<u32, Key>,
+    /// What corrections have laid over its runs, by frame.
+    pub over: BTreeMap<u32, Over>,
+    /// What reviewers have found, by the first frame of the segment.
+    pub judgements: BTreeMap<u32, Judgement>,
     /// Whether it was deleted; its work is kept for the day it is restored.
     pub deleted: bool,
 }
 
 impl Track {
     pub(crate) fn new(origin: Origin) -> Self {
-        Self { origin, name: None, keys: BTreeMap::new(), deleted: false }
+        let (keys, over, judgements) = Default::default();
+        Self { origin, name: None, keys, over, judgements, deleted: false }
     }
 
     /// Whether a person has done anything to it but place it.
     #[must_use]
     pub fn has_work(&self) -> bool {
-        self.deleted || self.name.is_some() || !self.keys.is_empty()
+        let is_bare = self.keys.is_empty() && self.over.is_empty() && self.judgements.is_empty();
+        self.deleted || self.name.is_some() || !is_bare
     }
 }
 
@@ -180,7 +220,7 @@ impl Document {
     }
 
     fn is_seen(&self, id: TrackId, track: &Track) -> bool {
-        let placed = track.origin == Origin::Hand || !track.keys.is_empty();
+        let placed = track.origin == Origin::Hand || !track.keys.is_empty() || !track.over.is_empty();
         !track.deleted && (placed || self.runs_of(id).next().is_some())
     }
 }

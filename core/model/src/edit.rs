@@ -7,6 +7,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::document::{ClusteringId, Document, Key, Origin, RunId, ShownClustering, ShownRun, Track};
+use crate::judgement::Judgement;
+use crate::over::Over;
 use crate::track::{TrackId, TrackSet};
 
 pub use error::EditError;
@@ -60,6 +62,24 @@ pub enum Edit {
         track: TrackId,
         /// The key-frame's frame.
         frame: u32,
+    },
+    /// A correction is laid over the runs of a track, or taken away from them.
+    Lay {
+        /// The track.
+        track: TrackId,
+        /// Frame of the first of `over`.
+        first_frame: u32,
+        /// What lies over consecutive frames from now on; `None`: nothing does, the runs show.
+        over: Vec<Option<Over>>,
+    },
+    /// A reviewer judges a segment of a track, or takes the judgement back.
+    Judge {
+        /// The track.
+        track: TrackId,
+        /// The segment's first frame.
+        first_frame: u32,
+        /// The judgement.
+        judgement: Option<Judgement>,
     },
     /// A run is shown; tracks not known before are born.
     ShowRun {
@@ -115,12 +135,15 @@ impl Edit {
     pub fn touched(&self) -> TrackSet {
         match self {
             Self::AddTrack { track } | Self::RemoveTrack { track } => (*track).into(),
-            Self::SetKey { track, .. } | Self::ClearKey { track, .. } => (*track).into(),
+            Self::SetKey { track, .. } | Self::ClearKey { track, .. } | Self::Lay { track, .. } => {
+                (*track).into()
+            }
             Self::DeleteTracks { tracks } | Self::RestoreTracks { tracks } | Self::ShowRun { tracks, .. } => {
                 tracks.clone()
             }
             Self::HideRun { forget, .. } => forget.clone(),
             Self::NameTrack { .. }
+            | Self::Judge { .. }
             | Self::ShowClustering { .. }
             | Self::SetCut { .. }
             | Self::NameGroup { .. } => TrackSet::default(),
@@ -177,6 +200,10 @@ impl Document {
             }
             Edit::SetKey { track, frame, key } => self.set_key(*track, *frame, *key),
             Edit::ClearKey { track, frame } => self.clear_key(*track, *frame),
+            Edit::Lay { track, first_frame, over } => self.lay(*track, *first_frame, over),
+            Edit::Judge { track, first_frame, judgement } => {
+                self.judge(*track, *first_frame, judgement.as_ref())
+            }
             Edit::ShowRun { run, tracks, above } => self.show_run(*run, tracks, *above),
             Edit::HideRun { run, forget } => self.hide_run(*run, forget),
             Edit::ShowClustering { clustering } => {
@@ -254,12 +281,57 @@ impl Document {
         Ok(())
     }
 
-    fn set_key(&mut self, track: TrackId, frame: u32, key: Key) -> Result<Edit, EditError> {
+    /// Refuses a range of frames that is empty or not in the clip.
+    fn within(&self, frames: std::ops::Range<u64>) -> Result<(), EditError> {
         let n_frames = self.n_frames;
-        let known = self.live(track)?;
-        if frame >= n_frames {
-            return Err(EditError::BeyondClip { frame, n_frames });
+        match frames {
+            _ if frames.is_empty() => Err(EditError::NoFrames),
+            _ if frames.end > u64::from(n_frames) => {
+                let frame = u32::try_from(frames.end - 1).unwrap_or(u32::MAX);
+                Err(EditError::BeyondClip { frame, n_frames })
+            }
+            _ => Ok(()),
         }
+    }
+
+    fn lay(&mut self, track: TrackId, first_frame: u32, over: &[Option<Over>]) -> Result<Edit, EditError> {
+        let first = u64::from(first_frame);
+        self.within(first..first + over.len() as u64)?;
+        let known = self.live(track)?;
+        for (frame, over) in (first_frame..).zip(over) {
+            let sample = over.as_ref().and_then(Over::sample);
+            if sample.is_some_and(|sample| !(sample.x.is_finite() && sample.y.is_finite())) {
+                return Err(EditError::NotFinite { track, frame });
+            }
+        }
+        let lay = |(frame, over): (u32, &Option<Over>)| match over {
+            Some(over) => known.over.insert(frame, *over),
+            None => known.over.remove(&frame),
+        };
+        let over = (first_frame..).zip(over).map(lay).collect();
+        Ok(Edit::Lay { track, first_frame, over })
+    }
+
+    fn judge(
+        &mut self,
+        track: TrackId,
+        first_frame: u32,
+        judgement: Option<&Judgement>,
+    ) -> Result<Edit, EditError> {
+        if let Some(judgement) = judgement {
+            self.within(first_frame.into()..judgement.end_frame.into())?;
+        }
+        let judgements = &mut self.live(track)?.judgements;
+        let old = match judgement {
+            Some(judgement) => judgements.insert(first_frame, judgement.clone()),
+            None => judgements.remove(&first_frame),
+        };
+        Ok(Edit::Judge { track, first_frame, judgement: old })
+    }
+
+    fn set_key(&mut self, track: TrackId, frame: u32, key: Key) -> Result<Edit, EditError> {
+        self.within(frame.into()..u64::from(frame) + 1)?;
+        let known = self.live(track)?;
         if !(key.x.is_finite() && key.y.is_finite()) {
             return Err(EditError::NotFinite { track, frame });
         }

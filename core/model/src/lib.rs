@@ -10,6 +10,8 @@ pub mod document;
 pub mod edit;
 pub mod hierarchy;
 pub mod history;
+pub mod judgement;
+pub mod over;
 pub mod picture;
 pub mod provenance;
 pub mod track;

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use honami_model::compose::compose;
 use honami_model::document::RunId;
+use honami_model::over::Over;
 use honami_model::track::{Source, Span, TrackId, TrackSet};
 
 use crate::error::StoreError;
@@ -69,7 +70,8 @@ impl Project {
             .collect()
     }
 
-    /// The run that each sample of the shown track comes from; `None` for hand work and interpolation.
+    /// The run that each sample of the shown track comes from, also where a correction has laid it there;
+    /// `None` for hand work and interpolation.
     ///
     /// # Errors
     /// What SQLite met.
@@ -82,9 +84,19 @@ impl Project {
             let mut rows = statement.query([run.0, track.0])?;
             while let Some(row) = rows.next()? {
                 let (first_frame, n_frames): (u32, u32) = (row.get(0)?, row.get(1)?);
-                // A run may go on beyond the clip's last frame, never before the shown span's first.
-                let from = (first_frame - span.first_frame) as usize;
-                runs.iter_mut().skip(from).take(n_frames as usize).for_each(|of| *of = Some(run));
+                let end = first_frame.saturating_add(n_frames);
+                for (frame, of) in span.frames().zip(&mut runs) {
+                    if (first_frame..end).contains(&frame) {
+                        *of = Some(run);
+                    }
+                }
+            }
+        }
+        let over = self.document().track(track).into_iter().flat_map(|known| &known.over);
+        for (frame, over) in over {
+            let at = frame.checked_sub(span.first_frame).and_then(|at| runs.get_mut(at as usize));
+            if let (Some(of), Over::Sample(laid)) = (at, over) {
+                *of = laid.run;
             }
         }
         for (of, sample) in runs.iter_mut().zip(&span.samples) {

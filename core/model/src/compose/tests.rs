@@ -5,7 +5,8 @@ use proptest::prelude::*;
 
 use super::compose;
 use crate::clip::FrameTimes;
-use crate::document::{Key, Made, Origin, RunId, Track};
+use crate::document::{Key, Origin, RunId, Track};
+use crate::over::{Laid, Over};
 use crate::track::{Quality, Sample, Source, Span, Status};
 
 fn times(n: u32) -> FrameTimes {
@@ -32,7 +33,7 @@ fn span(first_frame: u32, y: f32, letters: &str) -> Span {
 
 fn track(keys: &[(u32, f32, f32)]) -> Track {
     let mut track = Track::new(Origin::Run(RunId(1)));
-    track.keys = keys.iter().map(|&(frame, x, y)| (frame, Key { x, y, made: Made::Set })).collect();
+    track.keys = keys.iter().map(|&(frame, x, y)| (frame, Key::set(x, y))).collect();
     track
 }
 
@@ -124,5 +125,58 @@ proptest! {
             prop_assert!(sample.x.is_finite() && sample.y.is_finite());
         }
         prop_assert!(shown.frames().end <= 20);
+    }
+}
+
+/// What corrections lay: letters as in [`span`], `-` for nothing; spaces lay nothing there.
+fn laid(letters: &str) -> std::collections::BTreeMap<u32, Over> {
+    let over = |(frame, letter): (u32, char)| match letter {
+        ' ' => None,
+        '-' => Some((frame, Over::Nothing)),
+        _ => {
+            let sample =
+                Sample { source: Source::Sketch, ..span(frame, 5.0, &letter.to_string()).samples[0] };
+            Some((frame, Over::Sample(Laid { sample, run: None })))
+        }
+    };
+    (0..).zip(letters.chars()).filter_map(over).collect()
+}
+
+#[test]
+fn corrections_over_runs() {
+    let below = || vec![span(0, 1.0, "ttttxxxxxx")];
+    type Case<'a> = (&'a str, &'a [u32], &'a str, Vec<Span>, u32, &'a str);
+    let cases: [Case<'_>; 8] = [
+        ("over a run", &[], "  tto", below(), 0, "ttttoxxxxx"),
+        ("a key over all", &[3], "  ttt", below(), 0, "tttKtxxxxx"),
+        ("no curve over a correction", &[2, 8], "     xx", below(), 0, "ttKtixxiKx"),
+        ("nothing inside is lost", &[], " --", below(), 0, "t..txxxxxx"),
+        ("nothing at the ends shortens", &[], "--      --", below(), 2, "ttxxxx"),
+        ("nothing at all", &[], "----------", below(), 0, ""),
+        ("longer than the run", &[], "            tt", vec![span(0, 1.0, "tt")], 0, "tt..........tt"),
+        ("alone, within the clip", &[], "   ttttttttttttttttttttttttt", vec![], 3, "ttttttttttttttttt"),
+    ];
+    for (what, keys, over, runs, first_frame, expect) in cases {
+        let keys: Vec<_> = keys.iter().map(|&frame| (frame, 0.0, 0.0)).collect();
+        let track = Track { over: laid(over), ..track(&keys) };
+        let runs: Vec<&Span> = runs.iter().collect();
+        let shown = compose(&track, &runs, &times(20));
+        assert_eq!((shown.first_frame, letters(&shown).as_str()), (first_frame, expect), "{what}");
+    }
+}
+
+#[test]
+fn no_curve_through_a_key_that_says_lost_or_outside() {
+    for (status, expect) in [
+        (Status::Tracked, "KiKiK"),
+        (Status::Occluded, "KiKiK"),
+        (Status::Outside, "K.K.K"),
+        (Status::Lost, "K.K.K"),
+    ] {
+        let mut track = track(&[(0, 0.0, 0.0), (2, 1.0, 0.0), (4, 2.0, 0.0)]);
+        track.keys.get_mut(&2).expect("placed above").status = status;
+        let shown = compose(&track, &[], &times(20));
+        assert_eq!(letters(&shown), expect, "{status:?}");
+        assert_eq!(shown.samples[2].status, status);
     }
 }

@@ -30,6 +30,9 @@ pub enum EditError {
         /// Frames of the clip.
         n_frames: u32,
     },
+    /// A range without frames.
+    #[error("a range of frames is wanted; this one is empty")]
+    NoFrames,
     /// A position is NaN or infinite.
     #[error("track {track}: the position at frame {frame} is not finite")]
     NotFinite {

@@ -1,7 +1,7 @@
 //! Transactions with their line: what happened, in the user's words, with numbers.
 
 use super::{Edit, Transaction};
-use crate::document::{ClusteringId, Key, Made, RunId, ShownClustering};
+use crate::document::{ClusteringId, Key, RunId, ShownClustering};
 use crate::track::{TrackId, TrackSet};
 
 impl Transaction {
@@ -14,7 +14,7 @@ impl Transaction {
     /// A person places a new track, with its first key-frame.
     #[must_use]
     pub fn add_track(track: TrackId, frame: u32, x: f32, y: f32) -> Self {
-        let key = Key { x, y, made: Made::Set };
+        let key = Key::set(x, y);
         let edits = vec![Edit::AddTrack { track }, Edit::SetKey { track, frame, key }];
         Self::new(format!("track {track}: placed at frame {frame} ({x:.1}, {y:.1})"), edits)
     }
@@ -27,7 +27,7 @@ impl Transaction {
             || format!("placed at {x:.1}, {y:.1}"),
             |was| format!("moved {:.1} px", (x - was[0]).hypot(y - was[1])),
         );
-        let key = Key { x, y, made: Made::Set };
+        let key = Key::set(x, y);
         Self::new(
             format!("track {track}: key-frame at {frame} ({how})"),
             vec![Edit::SetKey { track, frame, key }],
@@ -37,7 +37,7 @@ impl Transaction {
     /// A person finds the sample shown there right.
     #[must_use]
     pub fn confirm_key(track: TrackId, frame: u32, at: [f32; 2]) -> Self {
-        let key = Key { x: at[0], y: at[1], made: Made::Confirmed };
+        let key = Key::confirmed(at[0], at[1]);
         Self::new(
             format!("track {track}: key-frame at {frame} (confirmed)"),
             vec![Edit::SetKey { track, frame, key }],

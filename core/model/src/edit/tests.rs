@@ -4,7 +4,9 @@ use proptest::prelude::*;
 
 use super::{Edit, EditError, Transaction, apply};
 use crate::document::{ClusteringId, Document, Key, Made, Origin, RunId, ShownClustering};
-use crate::track::{TrackId, TrackSet};
+use crate::judgement::{Effort, Judgement, Verdict};
+use crate::over::{Laid, Over};
+use crate::track::{Quality, Sample, Source, Status, TrackId, TrackSet};
 
 const N_FRAMES: u32 = 8;
 
@@ -29,7 +31,7 @@ fn any_edit() -> impl Strategy<Value = Edit> {
     let name = || prop::option::of("[a-b]{0,2}");
     let made = prop_oneof![Just(Made::Set), Just(Made::Confirmed)];
     let x = prop_oneof![9 => -9.0_f32..99.0, 1 => Just(f32::NAN)];
-    let key = (x, 0.0_f32..99.0, made).prop_map(|(x, y, made)| Key { x, y, made });
+    let key = (x, 0.0_f32..99.0, made).prop_map(|(x, y, made)| Key { made, ..Key::set(x, y) });
     let shown = (1_u32..3, 0_u32..4).prop_map(|(id, k)| ShownClustering { id: ClusteringId(id), k });
     prop_oneof![
         track().prop_map(|track| Edit::AddTrack { track }),
@@ -39,6 +41,11 @@ fn any_edit() -> impl Strategy<Value = Edit> {
         (track(), name()).prop_map(|(track, name)| Edit::NameTrack { track, name }),
         (track(), 0..N_FRAMES + 1, key).prop_map(|(track, frame, key)| Edit::SetKey { track, frame, key }),
         (track(), 0..N_FRAMES).prop_map(|(track, frame)| Edit::ClearKey { track, frame }),
+        (track(), 0..N_FRAMES, prop::collection::vec(any_over(), 0..4))
+            .prop_map(|(track, first_frame, over)| Edit::Lay { track, first_frame, over }),
+        (track(), 0..N_FRAMES, prop::option::of(0_u32..N_FRAMES + 2)).prop_map(
+            |(track, first_frame, end)| { Edit::Judge { track, first_frame, judgement: end.map(judgement) } }
+        ),
         (run(), tracks(), prop::option::of(0_u32..3)).prop_map(|(run, tracks, above)| Edit::ShowRun {
             run,
             tracks,
@@ -54,6 +61,27 @@ fn any_edit() -> impl Strategy<Value = Edit> {
             name
         }),
     ]
+}
+
+fn any_over() -> impl Strategy<Value = Option<Over>> {
+    let x = prop_oneof![9 => -9.0_f32..99.0, 1 => Just(f32::NAN)];
+    let laid = x.prop_map(|x| {
+        let (status, source) = (Status::Tracked, Source::Sketch);
+        let sample = Sample { x, y: 0.0, status, source, quality: Quality::default() };
+        Some(Over::Sample(Laid { sample, run: None }))
+    });
+    prop_oneof![2 => laid, 1 => Just(Some(Over::Nothing)), 1 => Just(None)]
+}
+
+fn judgement(end_frame: u32) -> Judgement {
+    Judgement {
+        end_frame,
+        verdict: Verdict::Fixed,
+        reasons: vec!["FB".to_owned()],
+        reviewer: "ana".to_owned(),
+        time: "2026-11-22T00:00:00Z".to_owned(),
+        effort: Effort::default(),
+    }
 }
 
 proptest! {
@@ -92,7 +120,7 @@ proptest! {
 
 #[test]
 fn refuses_and_says_why() {
-    let key = |x| Key { x, y: 0.0, made: Made::Set };
+    let key = |x| Key::set(x, 0.0);
     let cases = [
         (Edit::AddTrack { track: TrackId(3) }, "track 3 exists already; reserve a new number"),
         (Edit::RemoveTrack { track: TrackId(0) }, "track 0 has hand work; delete it instead"),
@@ -108,6 +136,18 @@ fn refuses_and_says_why() {
             "track 1: the position at frame 3 is not finite",
         ),
         (Edit::ClearKey { track: TrackId(1), frame: 3 }, "track 1 has no key-frame at 3"),
+        (
+            Edit::Lay { track: TrackId(1), first_frame: 3, over: vec![] },
+            "a range of frames is wanted; this one is empty",
+        ),
+        (
+            Edit::Lay { track: TrackId(1), first_frame: N_FRAMES - 1, over: vec![None, None] },
+            "frame 8 is beyond the clip, whose last frame is 7",
+        ),
+        (
+            Edit::Judge { track: TrackId(1), first_frame: 3, judgement: Some(judgement(3)) },
+            "a range of frames is wanted; this one is empty",
+        ),
         (Edit::ShowRun { run: RunId(1), tracks: set(1..2), above: None }, "run 1 is shown already"),
         (Edit::HideRun { run: RunId(2), forget: TrackSet::default() }, "run 2 is not shown"),
         (
