@@ -13,7 +13,7 @@ use super::state::{Link, Notice, State};
 use super::update::{Effect, Fact, Msg, update};
 use super::view;
 use crate::term::encode::Frame;
-use crate::term::input::Event;
+use crate::term::input::{Event, Reply};
 use crate::term::screen::Screen;
 use crate::term::signals;
 
@@ -85,7 +85,12 @@ impl App {
                     Event::Key(key) => Msg::Key(key),
                     Event::Mouse(mouse) => Msg::Mouse(mouse),
                     Event::Paste(text) => Msg::Paste(text),
-                    Event::Reply(_) => continue,
+                    Event::Reply(Reply::Ready) => continue,
+                    // What was learnt may show the same frame differently.
+                    Event::Reply(_) => {
+                        self.is_exact = false;
+                        continue;
+                    }
                 };
                 self.frame = None;
                 is_leaving = self.tell(msg, screen, world)?;

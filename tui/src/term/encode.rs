@@ -38,7 +38,7 @@ impl Frame {
 const DEAD_BAND: u8 = 6;
 /// While the picture moves, a colour already set is taken for a wanted one within this, channel by channel.
 const REUSE_BAND: u8 = 3;
-/// From dark to bright, where there are no colours.
+/// From dark to bright, where there are no colours and the background is dark.
 const RAMP: &[u8] = b" .:-=+*#%@";
 /// In place of cells of which nothing is known: a private character that nobody wants.
 const UNKNOWN: Cell = Cell::new("\u{10fffd}");
@@ -47,6 +47,8 @@ const UNKNOWN: Cell = Cell::new("\u{10fffd}");
 #[derive(Debug)]
 pub struct Encoder {
     depth: Depth,
+    /// The terminal's background is bright: where there are no colours, a blank is bright.
+    is_light: bool,
     columns: usize,
     shown: Vec<Cell>,
     pen: Pen,
@@ -64,13 +66,18 @@ impl Encoder {
     /// An encoder for a terminal of which nothing is known.
     #[must_use]
     pub fn new(depth: Depth) -> Self {
-        Self { depth, columns: 0, shown: Vec::new(), pen: Pen::default(), thrift: 1.0 }
+        Self { depth, is_light: false, columns: 0, shown: Vec::new(), pen: Pen::default(), thrift: 1.0 }
     }
 
     /// The colours it paints in.
     #[must_use]
     pub fn depth(&self) -> Depth {
         self.depth
+    }
+
+    /// Says whether the terminal's background is bright.
+    pub fn set_light(&mut self, is_light: bool) {
+        self.is_light = is_light;
     }
 
     /// Forgets what the terminal shows: the next frame paints every cell.
@@ -122,6 +129,7 @@ impl Encoder {
             if self.depth == Depth::Mono && cell.symbol() == HALF_BLOCK {
                 let sum: u32 = [cell.fg, cell.bg].into_iter().flat_map(rgb).map(u32::from).sum();
                 let step = sum as usize * (RAMP.len() - 1) / (6 * 255);
+                let step = if self.is_light { RAMP.len() - 1 - step } else { step };
                 cell.set_char(char::from(RAMP[step]));
             }
             cell.fg = self.depth.nearest(cell.fg);

@@ -1,10 +1,12 @@
 //! Decoder of what a terminal sends: keys, mouse, paste, and replies to queries.
 //!
-//! Incremental: bytes may be split anywhere. Time decides only two things: whether an `ESC` at the end of what has
-//! come is the Esc key or the beginning of more, and whether a paste goes on. The caller waits as long as it likes
-//! while there is something [`Decoder::unfinished`], then calls [`Decoder::flush`].
+//! Incremental: bytes may be split anywhere. Time decides only three things: whether an `ESC` at the end of what
+//! has come is the Esc key or the beginning of more, whether a paste goes on, and whether a sequence was cut off.
+//! The caller waits as long as it likes while there is something [`Decoder::unfinished`], then calls
+//! [`Decoder::flush`].
 
 mod csi;
+mod string;
 
 use super::key::{Code, Key};
 
@@ -59,6 +61,31 @@ pub enum Reply {
     },
     /// `DCS > | text ST` (XTVERSION): name and version.
     Version(String),
+    /// `CSI ? class ; features c` (DA1).
+    Attributes(Vec<u16>),
+    /// `APC G i = number ; word ST` (kitty's protocol): whether a picture would have been taken.
+    Graphics {
+        /// The word is `OK`.
+        is_ok: bool,
+    },
+    /// `DCS 1 + r 544E = hex ST` (XTGETTCAP): name of the terminfo entry.
+    Entry(String),
+    /// `CSI 6 ; height ; width t`: pixels of a cell.
+    CellSize {
+        /// Pixels across.
+        width: u16,
+        /// Pixels down.
+        height: u16,
+    },
+    /// `CSI 4 ; height ; width t`: pixels of all cells.
+    TextSize {
+        /// Pixels across.
+        width: u16,
+        /// Pixels down.
+        height: u16,
+    },
+    /// `OSC 11 ; rgb : r / g / b ST`: colour of the background.
+    Background([u8; 3]),
 }
 
 /// What ends only when nothing more comes.
@@ -68,6 +95,9 @@ pub enum Unfinished {
     Escape,
     /// A paste whose end has not come.
     Paste,
+    /// A sequence whose end has not come, the n-th of all that was decoded: it says whether time has run out for
+    /// this one or for an earlier one.
+    Sequence(u64),
 }
 
 /// Longest control sequence, bytes; a longer one is garbage.
@@ -83,6 +113,8 @@ const PASTE_END: &[u8] = b"\x1b[201~";
 pub struct Decoder {
     pending: Vec<u8>,
     mode: Mode,
+    /// How much has been decoded so far, in steps.
+    n_steps: u64,
 }
 
 #[derive(Debug, Default)]
@@ -117,6 +149,8 @@ impl Decoder {
             if used == 0 {
                 break;
             }
+            // A string too long to keep is still the same one.
+            self.n_steps += u64::from(!matches!(self.mode, Mode::Drop));
             start += used;
         }
         self.pending.drain(..start);
@@ -128,23 +162,26 @@ impl Decoder {
         match (&self.mode, &self.pending[..]) {
             (Mode::Ground, [0x1b] | [0x1b, _]) => Some(Unfinished::Escape),
             (Mode::Paste(_), _) => Some(Unfinished::Paste),
-            _ => None,
+            (Mode::Drop, _) | (Mode::Ground, [0x1b, _, ..]) => Some(Unfinished::Sequence(self.n_steps)),
+            (Mode::Ground, _) => None,
         }
     }
 
-    /// Says that nothing follows: a lone `ESC` is the Esc key, a paste is over.
+    /// Says that nothing follows: a lone `ESC` is the Esc key, a paste is over, half a sequence is nothing.
     pub fn flush(&mut self, events: &mut Vec<Event>) {
         let event = match (&self.mode, &self.pending[..]) {
             (Mode::Ground, [0x1b, c @ 0x20..=0x7e]) => {
-                Event::Key(Key { alt: true, ..Key::plain(Code::Char(char::from(*c))) })
+                Some(Event::Key(Key { alt: true, ..Key::plain(Code::Char(char::from(*c))) }))
             }
-            (Mode::Ground, [0x1b] | [0x1b, _]) => Event::Key(Key::plain(Code::Esc)),
-            (Mode::Paste(text), _) => pasted(text),
-            _ => return,
+            (Mode::Ground, [0x1b] | [0x1b, _]) => Some(Event::Key(Key::plain(Code::Esc))),
+            (Mode::Paste(text), _) => Some(pasted(text)),
+            (Mode::Drop, _) | (Mode::Ground, [0x1b, ..]) => None,
+            (Mode::Ground, _) => return,
         };
         self.pending.clear();
         self.mode = Mode::Ground;
-        events.push(event);
+        self.n_steps += 1;
+        events.extend(event);
     }
 
     /// Handles the pending bytes from `start` on; returns how many it has used, 0 when it needs more.
@@ -163,7 +200,7 @@ impl Decoder {
                 self.mode = Mode::Ground;
                 n + PASTE_END.len()
             }
-            Mode::Drop => match string_end(rest) {
+            Mode::Drop => match string::end(rest) {
                 Some((_, n)) => {
                     self.mode = Mode::Ground;
                     n
@@ -201,19 +238,6 @@ fn find(hay: &[u8], needle: &[u8]) -> Option<usize> {
 /// Length of the longest end of `hay` that is a beginning of `needle`.
 fn partial_suffix(hay: &[u8], needle: &[u8]) -> usize {
     (1..needle.len().min(hay.len() + 1)).rev().find(|&n| hay.ends_with(&needle[..n])).unwrap_or(0)
-}
-
-/// Where the text of a control string ends and where what follows begins.
-fn string_end(bytes: &[u8]) -> Option<(usize, usize)> {
-    bytes.iter().enumerate().find_map(|(i, &b)| match b {
-        0x07 => Some((i, i + 1)),
-        0x1b => match bytes.get(i + 1) {
-            Some(b'\\') => Some((i, i + 2)),
-            Some(_) => Some((i, i)), // another sequence begins: this one was cut off
-            None => None,
-        },
-        _ => None,
-    })
 }
 
 fn head(bytes: &[u8]) -> Head {
@@ -269,7 +293,7 @@ fn escape(bytes: &[u8]) -> Head {
                 None => Head::Whole(Some(Event::Key(Key { alt: true, ..Key::plain(Code::Char('O')) })), 2),
             },
         },
-        Some(b']' | b'P' | b'_' | b'^' | b'X') => control_string(bytes),
+        Some(b']' | b'P' | b'_' | b'^' | b'X') => string::head(bytes),
         Some(0x1b) => Head::Whole(Some(Event::Key(Key::plain(Code::Esc))), 1),
         Some(_) => match head(&bytes[1..]) {
             Head::Whole(Some(Event::Key(key)), n) => {
@@ -279,17 +303,6 @@ fn escape(bytes: &[u8]) -> Head {
             other => other,
         },
     }
-}
-
-fn control_string(bytes: &[u8]) -> Head {
-    let scanned = bytes.len().min(STRING_MAX);
-    let Some((end, next)) = string_end(&bytes[2..scanned]) else {
-        return if scanned == STRING_MAX { Head::TooLong(STRING_MAX - 1) } else { Head::Part };
-    };
-    let text = &bytes[2..2 + end];
-    let version = text.strip_prefix(b">|").filter(|_| bytes[1] == b'P');
-    let reply = version.map(|v| Event::Reply(Reply::Version(String::from_utf8_lossy(v).into_owned())));
-    Head::Whole(reply, 2 + next)
 }
 
 #[cfg(test)]

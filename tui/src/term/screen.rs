@@ -8,6 +8,7 @@ use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::Errno;
 use signal_hook::consts::{SIGCONT, SIGHUP, SIGTSTP, SIGWINCH};
 
+use super::capabilities::{Around, Capabilities};
 use super::colour::Depth;
 use super::encode::Frame;
 use super::input::{Decoder, Event, Unfinished};
@@ -18,6 +19,9 @@ use super::writer::Writer;
 
 /// How long an `ESC` may be the beginning of more: on this machine, and over ssh.
 const ESC_DELAY: [Duration; 2] = [Duration::from_millis(10), Duration::from_millis(60)];
+/// A sequence of which nothing more has come for so long was cut off. Long enough for a link that stalls: the rest
+/// of an answer must not be taken for keys.
+const SEQUENCE_PATIENCE: Duration = Duration::from_secs(3);
 /// A paste of which nothing more has come for so long is over: its end was lost.
 const PASTE_PATIENCE: Duration = Duration::from_secs(1);
 /// How long answers still on their way are awaited before the terminal is given back.
@@ -32,8 +36,8 @@ pub struct Screen {
     decoder: Decoder,
     writer: Writer,
     esc_delay: Duration,
-    /// Until when more may come of what is unfinished.
-    more_until: Option<Duration>,
+    /// What is unfinished, and until when more may come of it.
+    unfinished: Option<(Unfinished, Duration)>,
     start: Instant,
 }
 
@@ -68,16 +72,15 @@ impl Screen {
         let var = |name: &str| std::env::var(name).ok();
         // Catch signals before anything needs to be undone.
         let signals = Signals::catch()?;
-        let in_multiplexer = var("TMUX").is_some()
-            || var("TERM").is_some_and(|t| t.starts_with("tmux") || t.starts_with("screen"));
+        let capabilities = Capabilities::new(Around::from_env(var));
         let mut screen = Self {
             tty: None,
             log: log.to_owned(),
             signals,
             decoder: Decoder::default(),
-            writer: Writer::new(Depth::from_env(var), !in_multiplexer),
+            writer: Writer::new(Depth::from_env(var), capabilities),
             esc_delay: ESC_DELAY[usize::from(var("SSH_CONNECTION").is_some())],
-            more_until: None,
+            unfinished: None,
             start: Instant::now(),
         };
         screen.enter()?;
@@ -112,6 +115,12 @@ impl Screen {
     #[must_use]
     pub fn is_mono(&self) -> bool {
         self.writer.depth() == Depth::Mono
+    }
+
+    /// What is known of the terminal.
+    #[must_use]
+    pub fn capabilities(&self) -> &Capabilities {
+        self.writer.capabilities()
     }
 
     /// What is known of the link.
@@ -153,7 +162,8 @@ impl Screen {
         let now = self.now();
         let slot = if for_slot { self.writer.next_slot(now) } else { None };
         let deadline = self.writer.check(now);
-        let until = [until, slot, deadline, self.more_until].into_iter().flatten().min();
+        let more = self.unfinished.map(|(_, until)| until);
+        let until = [until, slot, deadline, more].into_iter().flatten().min();
         let mut happened = Happened::default();
         let has_read = self.poll(until.map(|t| t.saturating_sub(now)), &mut happened)?;
         for signal in self.signals.take() {
@@ -169,12 +179,9 @@ impl Screen {
         let now = self.now();
         self.writer.check(now);
         if has_read {
-            self.more_until = self.decoder.unfinished().map(|unfinished| match unfinished {
-                Unfinished::Escape => now + self.esc_delay,
-                Unfinished::Paste => now + PASTE_PATIENCE,
-            });
-        } else if self.more_until.is_some_and(|t| t <= now) {
-            self.more_until = None;
+            self.await_more(now);
+        } else if self.unfinished.is_some_and(|(_, until)| until <= now) {
+            self.unfinished = None;
             self.decoder.flush(&mut happened.events);
         }
         for event in &happened.events {
@@ -183,6 +190,18 @@ impl Screen {
             }
         }
         Ok(happened)
+    }
+
+    /// Something was read: what is unfinished now may wait for more.
+    fn await_more(&mut self, now: Duration) {
+        let before = self.unfinished;
+        self.unfinished = self.decoder.unfinished().map(|unfinished| match (unfinished, before) {
+            // Whatever is typed into half a sequence gives it no more time.
+            (Unfinished::Sequence(_), Some((same, until))) if same == unfinished => (unfinished, until),
+            (Unfinished::Sequence(_), _) => (unfinished, now + SEQUENCE_PATIENCE),
+            (Unfinished::Escape, _) => (unfinished, now + self.esc_delay),
+            (Unfinished::Paste, _) => (unfinished, now + PASTE_PATIENCE),
+        });
     }
 
     /// Waits for the devices; returns whether bytes were read.

@@ -6,13 +6,12 @@ use std::time::Duration;
 
 use rustix::io::Errno;
 
+use super::capabilities::Capabilities;
 use super::colour::Depth;
 use super::encode::{Encoder, Frame};
 use super::input::Reply;
 use super::link::Link;
 
-/// Asks who the terminal is and whether it knows synchronized output; ends with the status query.
-const PROBE: &[u8] = b"\x1b[>q\x1b[?2026$p\x1b[5n";
 /// The query at the end of a frame. Its answer, `CSI 0 n`, is no key.
 const QUERY: &[u8] = b"\x1b[5n";
 const BEGIN: &[u8] = b"\x1b[?2026h";
@@ -26,23 +25,26 @@ pub struct Writer {
     /// The frame being written, and how much of it is.
     bytes: Vec<u8>,
     n_written: usize,
-    synchronized: bool,
-    /// Synchronized output makes this terminal redraw everything: never use it.
-    never_synchronized: bool,
+    capabilities: Capabilities,
 }
 
 impl Writer {
-    /// A writer that assumes synchronized output (terminals without it ignore it) unless told otherwise.
+    /// A writer to a terminal of which no more is known than this.
     #[must_use]
-    pub fn new(depth: Depth, synchronized: bool) -> Self {
+    pub fn new(depth: Depth, capabilities: Capabilities) -> Self {
         Self {
             encoder: Encoder::new(depth),
             link: Link::default(),
             bytes: Vec::new(),
             n_written: 0,
-            synchronized,
-            never_synchronized: false,
+            capabilities,
         }
+    }
+
+    /// What is known of the terminal.
+    #[must_use]
+    pub fn capabilities(&self) -> &Capabilities {
+        &self.capabilities
     }
 
     /// The colours that frames are painted in.
@@ -64,7 +66,8 @@ impl Writer {
     pub fn begin(&mut self, terminal: impl AsFd, bytes: &[u8], now: Duration) -> io::Result<()> {
         self.encoder.forget();
         self.bytes.extend_from_slice(bytes);
-        self.bytes.extend_from_slice(PROBE);
+        self.bytes.extend_from_slice(&self.capabilities.questions());
+        self.bytes.extend_from_slice(QUERY);
         self.link.sent(now, self.bytes.len());
         self.flush(terminal)
     }
@@ -105,8 +108,9 @@ impl Writer {
         moving: bool,
         now: Duration,
     ) -> io::Result<usize> {
-        let frills = QUERY.len() + if self.synchronized { BEGIN.len() + END.len() } else { 0 };
-        if self.synchronized {
+        let synchronizes = self.capabilities.synchronizes();
+        let frills = QUERY.len() + if synchronizes { BEGIN.len() + END.len() } else { 0 };
+        if synchronizes {
             self.bytes.extend_from_slice(BEGIN);
         }
         let begin = self.bytes.len();
@@ -116,7 +120,7 @@ impl Writer {
             self.bytes.clear();
             return Ok(n_wrong);
         }
-        if self.synchronized {
+        if synchronizes {
             self.bytes.extend_from_slice(END);
         }
         self.bytes.extend_from_slice(QUERY);
@@ -145,46 +149,10 @@ impl Writer {
 
     /// Takes notice of an answer.
     pub fn answered(&mut self, reply: &Reply, now: Duration) {
-        match reply {
-            Reply::Ready => self.link.answered(now),
-            Reply::Mode { mode: 2026, state } => {
-                self.synchronized = matches!(state, 1..=3) && !self.never_synchronized;
-            }
-            Reply::Version(version) if redraws_on_sync(version) => {
-                self.never_synchronized = true;
-                self.synchronized = false;
-            }
-            _ => {}
-        }
-    }
-}
-
-/// tmux 3.7 to 3.7c redraw the whole pane at the end of every synchronized update (tmux PR 5612).
-fn redraws_on_sync(version: &str) -> bool {
-    matches!(version.strip_prefix("tmux 3.7"), Some("" | "a" | "b" | "c"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn who_gets_synchronized_output() {
-        let mode = |state| Reply::Mode { mode: 2026, state };
-        let version = |v: &str| Reply::Version(v.to_owned());
-        for (replies, expect) in [
-            (vec![], true),
-            (vec![mode(0)], false),
-            (vec![mode(2)], true),
-            (vec![version("tmux 3.7b"), mode(2)], false),
-            (vec![mode(2), version("tmux 3.7")], false),
-            (vec![version("tmux 3.8"), mode(1)], true),
-        ] {
-            let mut writer = Writer::new(Depth::True, true);
-            for reply in &replies {
-                writer.answered(reply, Duration::ZERO);
-            }
-            assert_eq!(writer.synchronized, expect, "{replies:?}");
+        self.capabilities.learn(reply);
+        self.encoder.set_light(self.capabilities.is_light());
+        if *reply == Reply::Ready {
+            self.link.answered(now);
         }
     }
 }

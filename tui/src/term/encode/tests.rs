@@ -201,6 +201,21 @@ fn poor_terminals_get_what_they_can_show() {
 }
 
 #[test]
+fn without_colours_a_blank_is_as_bright_as_the_background() {
+    let mut frame = Frame::new(2, 1);
+    for (x, v) in [(0, 0), (1, 255)] {
+        let colour = Color::Rgb(v, v, v);
+        frame.cells[(x, 0)].set_symbol(HALF_BLOCK).set_fg(colour).set_bg(colour);
+    }
+    for (is_light, expect) in [(false, " @"), (true, "@ ")] {
+        let mut encoder = Encoder::new(Depth::Mono);
+        encoder.set_light(is_light);
+        let symbols: String = encoder.wanted(&frame).iter().map(Cell::symbol).collect();
+        assert_eq!(symbols, expect);
+    }
+}
+
+#[test]
 fn one_changed_letter_costs_a_few_bytes() {
     let mut encoder = Encoder::new(Depth::True);
     let mut frame = Frame::new(80, 24);

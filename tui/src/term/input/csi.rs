@@ -12,6 +12,9 @@ pub(super) fn head(bytes: &[u8]) -> Head {
                 let body = std::str::from_utf8(&bytes[2..i]).unwrap_or_default();
                 return match (body, b) {
                     ("200", b'~') => Head::PasteBegins(i + 1),
+                    // Three bytes of a mouse that knows no numbers; a letter of the Linux console's F1 to F5.
+                    ("", b'M') => after(bytes, i + 4),
+                    ("", b'[') => after(bytes, i + 2),
                     _ => Head::Whole(event(body, b), i + 1),
                 };
             }
@@ -20,6 +23,11 @@ pub(super) fn head(bytes: &[u8]) -> Head {
         }
     }
     if bytes.len() >= CSI_MAX { Head::Whole(None, CSI_MAX) } else { Head::Part }
+}
+
+/// A sequence of `n` bytes that says nothing to anybody.
+fn after(bytes: &[u8], n: usize) -> Head {
+    if bytes.len() < n { Head::Part } else { Head::Whole(None, n) }
 }
 
 /// Keys whose sequence ends in a letter (`CSI A`, `SS3 P`).
@@ -43,6 +51,9 @@ pub(super) fn letter_key(final_byte: u8) -> Option<Code> {
 fn event(body: &str, final_byte: u8) -> Option<Event> {
     let key = |code, modifiers| Some(Event::Key(Key::with_modifiers(code, modifiers)));
     if let Some(private) = body.strip_prefix('?') {
+        if final_byte == b'c' {
+            return Some(Event::Reply(Reply::Attributes(numbers(private))));
+        }
         return match numbers(private.strip_suffix('$').filter(|_| final_byte == b'y')?)[..] {
             [mode, state] => Some(Event::Reply(Reply::Mode { mode, state })),
             _ => None,
@@ -55,6 +66,11 @@ fn event(body: &str, final_byte: u8) -> Option<Event> {
     let modifiers = p.get(1).copied().unwrap_or(1);
     match final_byte {
         b'n' => (p == [0]).then_some(Event::Reply(Reply::Ready)),
+        b't' => match p[..] {
+            [6, height, width] => Some(Event::Reply(Reply::CellSize { width, height })),
+            [4, height, width] => Some(Event::Reply(Reply::TextSize { width, height })),
+            _ => None,
+        },
         b'Z' => key(Code::Tab, 2),
         b'~' if p.len() == 3 && p[0] == 27 => key(unicode_key(p[2])?, p[1]),
         b'~' => key(tilde_key(*p.first()?)?, modifiers),
