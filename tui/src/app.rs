@@ -14,6 +14,7 @@ mod jobs;
 pub mod keymap;
 pub mod layout;
 pub mod menu;
+pub mod panel;
 mod pictures;
 mod run;
 pub mod state;

@@ -6,8 +6,10 @@ use super::state::State;
 
 /// Width of the column, cells.
 const COLUMN: u16 = 36;
-/// The column needs this much beside it, cells.
+/// With so much left beside it, cells, the picture stands there, smaller.
 const BESIDE_COLUMN: u16 = 40;
+/// With so much left, cells, a part of the picture is still worth seeing.
+const OVER_COLUMN: u16 = 12;
 
 /// The parts of the screen; a part without room is empty.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,7 +18,7 @@ pub struct Layout {
     pub title: Rect,
     /// The picture: what the rest leaves.
     pub picture: Rect,
-    /// Tracks and groups.
+    /// The panel, its edge included.
     pub column: Rect,
     /// The selected track.
     pub track: Rect,
@@ -35,14 +37,20 @@ impl Layout {
         // On low screens the picture gives way last but one: the hints stay.
         let n_lines = if rows >= 8 { 3 } else { 1 };
         let below = rows.saturating_sub(n_lines).max(1);
-        let has_column = state.column && columns >= COLUMN + BESIDE_COLUMN;
-        let width = if has_column { columns - COLUMN - 1 } else { columns };
+        // Beside the picture where both have room, else over its right part; on the narrowest screens over all of it.
+        let taken = match state.panel {
+            None => 0,
+            Some(_) if columns > COLUMN + OVER_COLUMN => COLUMN + 1,
+            Some(_) => columns,
+        };
+        let is_beside = columns >= taken + BESIDE_COLUMN;
+        let width = if is_beside { columns - taken } else { columns };
         let height = below.saturating_sub(1);
         let nothing = Rect::new(0, 0, 0, 0);
         Self {
             title: line(0),
             picture: Rect::new(0, 1.min(rows), width, height),
-            column: if has_column { Rect::new(width + 1, 1, COLUMN, height) } else { nothing },
+            column: Rect { x: columns - taken, width: taken, ..Rect::new(0, 1.min(rows), columns, height) },
             track: if n_lines == 3 { line(below) } else { nothing },
             time: if n_lines == 3 { line(below + 1) } else { nothing },
             hints: line(rows.saturating_sub(1)),

@@ -9,6 +9,7 @@ use super::action::Context;
 use super::form::{Form, Plugin};
 use super::keymap::KeyMap;
 use super::menu::Menu;
+use super::panel::Panel;
 use super::tracks::{Groups, TrackRow};
 use crate::term::key::Key;
 
@@ -47,8 +48,8 @@ pub struct State {
     pub count: Option<u32>,
     /// Whether all tracks are marked in the picture, not only the selected one.
     pub marks_all: bool,
-    /// Whether the column is wanted.
-    pub column: bool,
+    /// What the column shows; `None` hides it.
+    pub panel: Option<Panel>,
     /// Magnification, a power of two: 0 shows all of the picture.
     pub zoom: u8,
     /// Image point in the middle when magnified, pixels.
@@ -181,7 +182,7 @@ impl State {
             pending: Vec::new(),
             count: None,
             marks_all: true,
-            column: false,
+            panel: None,
             zoom: 0,
             centre,
             follow: false,

@@ -6,6 +6,7 @@ use honami_workbench::cluster::ClusterRequest;
 use honami_workbench::track::{Area, PointSource, TrackRequest};
 
 use crate::app::form::{Features, Form, Task};
+use crate::app::panel::Panel;
 
 /// Deepest magnification, as a power of two.
 const ZOOM_MAX: u8 = 5;
@@ -60,7 +61,10 @@ pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {
         Action::ZoomOut => zoom(state, -1),
         Action::Follow => follow(state),
         Action::Marks => state.marks_all = !state.marks_all,
-        Action::Column => state.column = !state.column,
+        Action::Column => state.panel = Panel::after(state.panel),
+        Action::PanelTracks => show_panel(state, Panel::Tracks),
+        Action::PanelGroups => show_panel(state, Panel::Groups),
+        Action::PanelKeyFrames => show_panel(state, Panel::KeyFrames),
         Action::Palette => open_menu(state, "actions"),
         Action::Help => open_menu(state, "what works here"),
         Action::Redraw => return vec![Effect::Redraw],
@@ -200,6 +204,11 @@ fn open_form(state: &mut State, task: Task) {
             complain(state, format!("no {word} was found; `honami doctor` says where {plugin} is looked for"))
         }
     }
+}
+
+/// Shows a panel; the one that is shown goes.
+fn show_panel(state: &mut State, panel: Panel) {
+    state.panel = Some(panel).filter(|panel| state.panel != Some(*panel));
 }
 
 fn zoom(state: &mut State, by: i8) {

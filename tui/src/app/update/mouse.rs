@@ -2,7 +2,7 @@
 
 use super::{Effect, Mode, State, time};
 use crate::app::layout::{Layout, Lens, bar, frame_at};
-use crate::app::view::column;
+use crate::app::view::column::{self, Pick};
 use crate::term::input::{Mouse, MouseKind};
 
 /// A click farther than so many cells from a track selects nothing.
@@ -18,7 +18,7 @@ pub(super) fn on_mouse(state: &mut State, mouse: Mouse) -> Vec<Effect> {
             match &mut state.mode {
                 Mode::Menu(menu) => menu.step(by),
                 Mode::Form(form) => form.step(by),
-                Mode::Review if layout.column.contains(here) => time::step_track(state, by),
+                Mode::Review if layout.column.contains(here) => pick(state, column::pick_beside(state, by)),
                 Mode::Review => time::step(state, by),
                 _ => {}
             }
@@ -30,9 +30,7 @@ pub(super) fn on_mouse(state: &mut State, mouse: Mouse) -> Vec<Effect> {
             }
         }
         MouseKind::Press(0) if layout.column.contains(here) => {
-            if let Some(track) = column::track_at(state, layout.column, mouse.row) {
-                time::select(state, track);
-            }
+            pick(state, column::pick_at(state, layout.column, mouse.row));
         }
         MouseKind::Press(0) | MouseKind::Drag(0) => {
             if let Some(point) = lens.point_of(mouse.column, mouse.row) {
@@ -46,6 +44,16 @@ pub(super) fn on_mouse(state: &mut State, mouse: Mouse) -> Vec<Effect> {
         _ => {}
     }
     Vec::new()
+}
+
+/// Takes what was picked in the column.
+fn pick(state: &mut State, picked: Option<Pick>) {
+    match picked {
+        Some(Pick::Panel(panel)) => state.panel = panel,
+        Some(Pick::Track(track)) => time::select(state, track),
+        Some(Pick::Frame(frame)) => time::go(state, frame),
+        None => {}
+    }
 }
 
 /// Selects the track nearest to a point.

@@ -1,81 +1,125 @@
-//! The column beside the picture: tracks with their quality, and groups.
+//! The column: a panel beside the picture, or over it where the screen is narrow.
+//!
+//! A panel is one file here. Most are lists: they say what a row shows and what a click on it picks, and the
+//! column scrolls them so that the current row is seen.
+
+mod groups;
+mod key_frames;
+mod tracks;
 
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 
 use honami_model::track::TrackId;
 
-use super::lines::sparkline;
-use super::{put, style};
+use super::{fill, put, style};
+use crate::app::panel::Panel;
 use crate::app::state::State;
-use crate::app::tracks::TrackRow;
 use crate::term::encode::Frame;
 
-/// Most rows that groups take.
-const GROUP_ROWS: u16 = 14;
-
-/// Rows of the tracks' list, and of the groups' below it, headings included.
-fn split(state: &State, area: Rect) -> (Rect, Rect) {
-    let wanted =
-        state.groups.as_ref().map_or(0, |g| 2 + u16::try_from(g.k).unwrap_or(u16::MAX).min(GROUP_ROWS));
-    let below = wanted.min(area.height / 2);
-    (Rect { height: area.height - below, ..area }, Rect { y: area.bottom() - below, height: below, ..area })
+/// What a click or the wheel in the column picks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pick {
+    /// This panel is to be shown, or none.
+    Panel(Option<Panel>),
+    /// A track.
+    Track(TrackId),
+    /// A frame of the clip.
+    Frame(u32),
 }
 
-/// First listed track: the selected one stays near the middle.
-fn first_listed(state: &State, n_rows: usize) -> usize {
-    let listed = state.listed();
-    let at = state.selected.and_then(|id| listed.iter().position(|row| row.id == id)).unwrap_or(0);
-    at.saturating_sub(n_rows / 2).min(state.tracks.len().saturating_sub(n_rows))
+/// A panel that lists something.
+trait List {
+    /// What its columns mean.
+    fn heading(&self) -> String;
+    /// What it says instead of rows when there are none.
+    fn nothing(&self) -> &'static str;
+    /// Number of rows.
+    fn len(&self) -> usize;
+    /// The current row, which stays in sight.
+    fn current(&self) -> Option<usize>;
+    /// What a row shows.
+    fn row(&self, i: usize) -> Line<'static>;
+    /// What choosing a row picks.
+    fn pick(&self, i: usize) -> Option<Pick>;
 }
 
-/// The track listed on a row of the screen.
-#[must_use]
-pub fn track_at(state: &State, area: Rect, row: u16) -> Option<TrackId> {
-    let (list, _) = split(state, area);
-    let n_rows = usize::from(list.height.saturating_sub(1));
-    let at = usize::from(row.checked_sub(list.y + 1)?);
-    (at < n_rows).then(|| state.listed().get(first_listed(state, n_rows) + at).map(|row| row.id))?
+fn list<'a>(state: &'a State, panel: Panel) -> Box<dyn List + 'a> {
+    match panel {
+        Panel::Tracks => Box::new(tracks::Tracks::of(state)),
+        Panel::Groups => Box::new(groups::GroupList::of(state)),
+        Panel::KeyFrames => Box::new(key_frames::KeyFrames::of(state)),
+    }
+}
+
+/// Rows of the list, and the first of them that is seen.
+fn window(list: &dyn List, area: Rect) -> (usize, usize) {
+    let n_rows = usize::from(area.height.saturating_sub(2));
+    let at = list.current().unwrap_or(0);
+    (n_rows, at.saturating_sub(n_rows / 2).min(list.len().saturating_sub(n_rows)))
 }
 
 pub(super) fn draw(state: &State, area: Rect, frame: &mut Frame) {
-    for y in area.top()..area.bottom() {
-        frame.cells.set_string(area.x - 1, y, "│", style::DIM);
+    let Some(panel) = state.panel.filter(|_| !area.is_empty()) else { return };
+    fill(frame, area, ratatui::style::Style::new());
+    let inside = if area.x > 0 {
+        for y in area.top()..area.bottom() {
+            frame.cells.set_string(area.x, y, "│", style::DIM);
+        }
+        Rect { x: area.x + 1, width: area.width - 1, ..area }
+    } else {
+        area
+    };
+    put(frame, inside, 0, &title(panel, inside.width));
+    let list = list(state, panel);
+    if list.len() == 0 {
+        put(frame, inside, 1, &Line::styled(list.nothing(), style::DIM));
+        return;
     }
-    let (list, below) = split(state, area);
-    let n_rows = usize::from(list.height.saturating_sub(1));
-    let order = if state.by_doubt { "by doubt" } else { "by number" };
-    let heading = format!("tracks  {order:<20}worst at");
-    put(frame, list, 0, &Line::styled(heading, style::DIM));
-    let first = first_listed(state, n_rows);
-    for (y, row) in (1..).zip(state.listed().into_iter().skip(first).take(n_rows)) {
-        put(frame, list, y, &track_line(state, row));
+    put(frame, inside, 1, &Line::styled(list.heading(), style::DIM));
+    let (n_rows, first) = window(&*list, inside);
+    for (y, i) in (2..).zip(first..list.len().min(first + n_rows)) {
+        let is_current = list.current() == Some(i);
+        let mark = Span::raw(if is_current { "▸" } else { " " });
+        let mut line = list.row(i);
+        line.spans.insert(0, mark);
+        put(frame, inside, y, &if is_current { line.style(style::BOLD) } else { line });
     }
-    groups(state, below, frame);
 }
 
-fn track_line(state: &State, row: &TrackRow) -> Line<'static> {
-    let is_selected = state.selected == Some(row.id);
-    let group = state.groups.as_ref().and_then(|g| g.of(row.id));
-    let name: String = row.name.as_deref().unwrap_or_default().chars().take(8).collect();
-    let n = state.clip.n_frames();
-    let worst = row.worst.first().map_or_else(String::new, u32::to_string);
-    let line = Line::from(vec![
-        Span::raw(if is_selected { "▸" } else { " " }),
-        Span::styled("●", style::group_text(group)),
-        Span::raw(format!("{:>5} {name:<8} ", row.id.to_string())),
-        Span::styled(sparkline(row, n, 12), style::DIM),
-        Span::styled(format!(" {worst:>6}"), style::DIM),
-    ]);
-    if is_selected { line.style(style::BOLD) } else { line }
+/// The panel's name, then those that follow it, as far as there is room.
+fn title(panel: Panel, width: u16) -> Line<'static> {
+    let mut line = Line::styled(panel.name(), style::ACCENT.patch(style::BOLD));
+    let mut next = Panel::after(Some(panel));
+    while next != Some(panel) {
+        let name = Span::styled(format!("  {}", next.map_or("hide", Panel::name)), style::DIM);
+        if line.width() + name.width() > usize::from(width) {
+            break;
+        }
+        line.spans.push(name);
+        next = Panel::after(next);
+    }
+    line
 }
 
-fn groups(state: &State, area: Rect, frame: &mut Frame) {
-    let Some(groups) = &state.groups else { return };
-    put(frame, area, 1, &Line::styled(format!("groups  {}   - + cut", groups.what), style::DIM));
-    for (y, (group, n)) in (2..).zip((0_u32..).zip(groups.sizes())) {
-        let text = format!(" {:<4} {n} {}", group + 1, if n == 1 { "track" } else { "tracks" });
-        let line = Line::from(vec![Span::styled(" ●", style::group_text(Some(group))), Span::raw(text)]);
-        put(frame, area, y, &line);
-    }
+/// What a click at this row of the screen picks.
+#[must_use]
+pub fn pick_at(state: &State, area: Rect, row: u16) -> Option<Pick> {
+    let panel = state.panel?;
+    let list = list(state, panel);
+    let Some(at) = row.checked_sub(area.y + 2) else {
+        return (row == area.y).then(|| Pick::Panel(Panel::after(Some(panel))));
+    };
+    let (n_rows, first) = window(&*list, area);
+    let i = first + usize::from(at);
+    (usize::from(at) < n_rows && i < list.len()).then(|| list.pick(i)).flatten()
+}
+
+/// What lies so many rows after the current one, within the list.
+#[must_use]
+pub fn pick_beside(state: &State, by: i64) -> Option<Pick> {
+    let list = list(state, state.panel?);
+    let last = list.len().checked_sub(1)?;
+    let by = isize::try_from(by).ok()?;
+    list.pick(list.current().map_or(0, |at| at.saturating_add_signed(by)).min(last))
 }

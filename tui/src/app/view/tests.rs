@@ -87,6 +87,10 @@ fn screens() {
     check("review_80x24", small, "", |_| {});
     check("review_120x40", large, "", |_| {});
     check("column_120x40", large, "n Tab", |_| {});
+    check("groups_80x24", small, "n P g", |_| {});
+    check("key_frames_80x24", small, "P k", |_| {});
+    check("panel_60x16", (60, 16), "Tab", fixture::crowd);
+    check("panel_40x12", (40, 12), "Tab", |_| {});
     check("playing_80x24", small, "space", |_| {});
     check("empty_80x24", small, "", |state| {
         state.tracks.clear();

@@ -1,0 +1,34 @@
+//! The panels of the column: one is shown at a time, or none.
+
+/// What the column shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Panel {
+    /// The tracks, with their doubt over the clip.
+    Tracks,
+    /// The groups of the shown clustering.
+    Groups,
+    /// The key-frames of the selected track.
+    KeyFrames,
+}
+
+impl Panel {
+    /// All of them, in the order in which they follow each other.
+    pub const ALL: &[Self] = &[Self::Tracks, Self::Groups, Self::KeyFrames];
+
+    /// What its title calls it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Tracks => "tracks",
+            Self::Groups => "groups",
+            Self::KeyFrames => "key-frames",
+        }
+    }
+
+    /// What follows: from nothing the first, after the last nothing.
+    #[must_use]
+    pub fn after(shown: Option<Self>) -> Option<Self> {
+        let next = shown.and_then(|shown| Self::ALL.iter().position(|p| *p == shown)).map_or(0, |at| at + 1);
+        Self::ALL.get(next).copied()
+    }
+}
