@@ -1,9 +1,10 @@
-//! Developer commands of honami: `cargo xtask demo|test|lint|bench`.
+//! Developer commands of honami: `cargo xtask demo|test|lint|bench|wan`.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a command-line tool speaks to a person")]
 
 mod bench;
 mod shell;
 mod system;
+mod wan;
 
 use std::process::ExitCode;
 
@@ -15,7 +16,8 @@ cargo xtask <command>
   demo [--headless]   build what the demo needs (release) and run it
   test [args…]        install what the tests need where it may, then run every test
   lint                formatting, clippy and documentation, warnings denied
-  bench [name]        measure; without a name, list the benchmarks";
+  bench [name]        measure; without a name, list the benchmarks
+  wan [--json] [case…]  measure over slow links (as root); `wan list` lists the cases";
 
 /// How they are built to be used.
 const BUILD: &[&str] = &["build", "--release"];
@@ -31,6 +33,7 @@ fn main() -> ExitCode {
         Some((&"test", rest)) => test(rest),
         Some((&"lint", [])) => lint(),
         Some((&"bench", rest)) => bench::run(rest),
+        Some((&"wan", rest)) => wan::run(rest),
         Some((&("help" | "--help" | "-h"), _)) => {
             println!("{HELP}");
             return ExitCode::SUCCESS;

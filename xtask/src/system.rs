@@ -22,6 +22,12 @@ pub(crate) fn want_ffmpeg() {
     }
 }
 
+/// Whether a program is there, by its path or on the search path.
+pub(crate) fn is_there(program: &str) -> bool {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    std::env::split_paths(&path).any(|folder| folder.join(program).is_file())
+}
+
 fn answers(program: &str) -> bool {
     let quiet = |flag: &str| {
         Command::new(program)
