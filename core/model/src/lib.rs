@@ -5,6 +5,7 @@
 
 pub mod clip;
 pub mod compose;
+pub mod correct;
 pub mod curve;
 pub mod document;
 pub mod edit;

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use honami_model::compose::compose;
+use honami_model::correct::Layers;
 use honami_model::document::RunId;
 use honami_model::over::Over;
 use honami_model::track::{Source, Span, TrackId, TrackSet};
@@ -48,6 +49,20 @@ impl Project {
         let span = Arc::new(compose(known, &spans.iter().collect::<Vec<_>>(), &self.clip().clip.times));
         self.shown.0.borrow_mut().insert(track, Arc::clone(&span));
         Ok(Some(span).filter(|span| !span.samples.is_empty()))
+    }
+
+    /// A track with the runs below its hand work, for corrections; `None` when it is not shown.
+    ///
+    /// # Errors
+    /// What SQLite met.
+    pub fn layers(&self, track: TrackId) -> Result<Option<Layers>, StoreError> {
+        let document = self.document();
+        let Some(known) = document.track(track).filter(|_| document.shows(track)) else { return Ok(None) };
+        let mut runs = Vec::new();
+        for run in document.runs_of(track) {
+            runs.extend(self.run_spans(run, track)?.into_iter().map(|span| (run, span)));
+        }
+        Ok(Some(Layers { id: track, track: known.clone(), runs }))
     }
 
     /// All tracks as a person sees them, in order of their numbers. Composed once, then kept until edits

@@ -163,10 +163,13 @@ fn hand_work_lies_over_runs_and_stays() {
     assert_eq!((at(45).y, at(50).y, at(50).source), (77.0, 9.0, Source::Key));
     let runs = project.sample_runs(track).unwrap();
     assert_eq!([39, 45, 50].map(|frame| runs[frame].map(|run| run.0)), [Some(1), Some(2), None]);
+    let layers = project.layers(track).unwrap().unwrap();
+    assert_eq!(layers.shown(&project.clip().clip.times).span(), &*shown, "the layers make what is shown");
     project.commit(Transaction::hide_run(run)).unwrap();
     assert_eq!(project.shown(track).unwrap().unwrap().get(50).unwrap().source, Source::Key);
     project.commit(Transaction::delete_tracks(tracks(1..2))).unwrap();
     assert_eq!((project.shown(track).unwrap(), project.shown_all().unwrap().len()), (None, 1));
+    assert!(project.layers(track).unwrap().is_none());
 }
 
 #[test]
