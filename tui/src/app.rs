@@ -5,6 +5,7 @@
 //! the plugins; `run` turns the wheel.
 
 pub mod action;
+pub mod clock;
 mod effects;
 #[cfg(test)]
 mod fixture;
@@ -18,6 +19,7 @@ pub mod panel;
 mod pictures;
 mod run;
 pub mod state;
+mod tally;
 pub mod tracks;
 pub mod update;
 pub mod view;

@@ -87,8 +87,11 @@ table! {
     Back "back" ["Esc" "Ctrl-c"] [Place "back" Move "back" Form "back" Menu "back" Prompt "back" Review ""]
         "back: leave what is open, undone; while reviewing, stop the job or the clip"
     // Time.
-    PlayPause "play" ["space"] [Review "play"] "play or pause"
+    PlayPause "play" ["space"] [Review "play"] "play or pause; 200 space: at 200 %, from now on"
     PlayBackwards "play-backwards" ["B"] [Review ""] "play backwards, or pause"
+    SlowForward "play-slow" [";"] [Review ""] "play slowly or pause; 25 ; : at 25 %, from now on"
+    SlowBackward "play-slow-backwards" ["'"] [Review ""] "play slowly backwards, or pause"
+    Loop "loop" ["b"] [Review ""] "loop round this frame, or stop; 12 b: 12 frames to both sides"
     NextTrack "next-track" ["n"] [Review "next"] "select the next track"
     PreviousTrack "previous-track" ["p"] [Review ""] "select the previous track"
     WorstFrame "worst-frame" ["w"] [Review "worst"]

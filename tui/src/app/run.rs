@@ -10,6 +10,7 @@ use super::effects::World;
 use super::layout::{Layout, Lens};
 use super::pictures::Pictures;
 use super::state::{Link, Notice, State};
+use super::tally::Tally;
 use super::update::{Effect, Fact, Msg, update};
 use super::view;
 use crate::term::encode::Frame;
@@ -34,6 +35,7 @@ pub fn run(session: Session) -> anyhow::Result<()> {
         pictures: Pictures::new(world.media(), screen.waker())?,
         frame: None,
         is_exact: false,
+        tally: Tally::default(),
         link_seen: Duration::ZERO,
     };
     app.state.mono = screen.is_mono();
@@ -59,6 +61,8 @@ struct App {
     /// What the screen should show; `None` when the state has changed since.
     frame: Option<Frame>,
     is_exact: bool,
+    /// Pictures dropped while playing.
+    tally: Tally,
     /// When the figures of the link were last looked at.
     link_seen: Duration,
 }
@@ -117,7 +121,7 @@ impl App {
 
     /// Updates the state and does what it wants; returns whether it wants to leave.
     fn tell(&mut self, msg: Msg, screen: &mut Screen, world: &mut World) -> anyhow::Result<bool> {
-        let before = self.state.frame;
+        let before = self.state.shown_frame();
         for effect in update(&mut self.state, msg) {
             match effect {
                 Effect::Leave => return Ok(true),
@@ -133,7 +137,7 @@ impl App {
                 }
             }
         }
-        if self.state.frame != before {
+        if self.state.shown_frame() != before {
             self.frame = None;
         }
         Ok(false)
@@ -146,8 +150,14 @@ impl App {
             update(&mut self.state, Msg::Fact(Fact::Ready(n_ready)));
             self.frame = None;
         }
+        let times_s = self.state.clip.times.as_slice();
+        let dropped = self.tally.dropped(self.state.play, times_s, screen.now());
+        if dropped != self.state.dropped {
+            update(&mut self.state, Msg::Fact(Fact::Dropped(dropped)));
+            self.frame = None;
+        }
         let lens = Lens::of(&self.state, Layout::of(&self.state).picture);
-        match self.pictures.look(self.state.frame, lens) {
+        match self.pictures.look(self.state.shown_frame(), lens) {
             Ok(true) => self.frame = None,
             Ok(false) => {}
             Err(error) => {
@@ -167,6 +177,7 @@ impl App {
         let (state, shot) = (&self.state, self.pictures.shot());
         let frame = self.frame.get_or_insert_with(|| view::draw(state, shot));
         self.is_exact = screen.paint(frame, state.play.is_some())?;
+        shot.iter().for_each(|shot| self.tally.painted(shot.frame));
         Ok(())
     }
 

@@ -6,6 +6,7 @@ use honami_model::clip::Clip;
 use honami_model::track::TrackId;
 
 use super::action::Context;
+use super::clock::Play;
 use super::form::{Form, Plugin};
 use super::keymap::KeyMap;
 use super::menu::Menu;
@@ -24,6 +25,12 @@ pub struct State {
     pub frame: u32,
     /// Playing, or not.
     pub play: Option<Play>,
+    /// Rates of the two ways to play, percent of real time: as it was, and slow.
+    pub rates: [u32; 2],
+    /// A loop reaches this many frames to both sides.
+    pub loop_frames: u32,
+    /// Pictures per second that were shown and that were due, where some were dropped.
+    pub dropped: Option<[u32; 2]>,
     /// The shown tracks, in order of their numbers.
     pub tracks: Vec<TrackRow>,
     /// The track that keys work on.
@@ -112,17 +119,6 @@ impl Mode {
     }
 }
 
-/// Playing: the clock decides the frame, pictures that come late are dropped.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Play {
-    /// Seconds of the clip per second, negative backwards.
-    pub rate: f64,
-    /// When it began.
-    pub since: Duration,
-    /// Frame from which it began.
-    pub from: u32,
-}
-
 /// One line that says what happened.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Notice {
@@ -170,6 +166,9 @@ impl State {
             clip,
             frame: 0,
             play: None,
+            rates: [100, 50],
+            loop_frames: 8,
+            dropped: None,
             tracks: Vec::new(),
             selected: None,
             corrected: None,
@@ -231,27 +230,18 @@ impl State {
         self.selected_row()?.at(self.frame)
     }
 
-    /// The frame that playing has come to.
+    /// The frame to be shown: in a loop not the current one, which stays where it is.
     #[must_use]
-    pub fn frame_of_clock(&self, play: &Play) -> u32 {
-        let times = self.clip.times.as_slice();
-        let elapsed = self.now.saturating_sub(play.since).as_secs_f64();
-        let t_s = times[play.from as usize] + elapsed * play.rate;
-        // The frame on screen at a time is the last that has begun; backwards, the first still to end.
-        let begun = times.partition_point(|&t| t <= t_s + 1e-9);
-        let ahead = times.partition_point(|&t| t < t_s - 1e-9);
-        let frame = if play.rate >= 0.0 { begun.saturating_sub(1) } else { ahead };
-        u32::try_from(frame).unwrap_or(u32::MAX).min(self.last_frame())
+    pub fn shown_frame(&self) -> u32 {
+        match self.play {
+            Some(play) if play.around.is_some() => play.frame(self.clip.times.as_slice(), self.now),
+            _ => self.frame,
+        }
     }
 
-    /// When playing comes to the next frame; `None` when nothing plays.
+    /// When the next frame is due while playing; `None` at the end.
     #[must_use]
     pub fn next_tick(&self) -> Option<Duration> {
-        let play = self.play?;
-        let times = self.clip.times.as_slice();
-        let next = if play.rate >= 0.0 { self.frame + 1 } else { self.frame.checked_sub(1)? };
-        let t_s = *times.get(next as usize)?;
-        let wait = (t_s - times[play.from as usize]) / play.rate;
-        Some(play.since + Duration::from_secs_f64(wait.max(0.0)))
+        self.play?.next(self.clip.times.as_slice(), self.now)
     }
 }

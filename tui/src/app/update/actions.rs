@@ -5,6 +5,7 @@ use honami_model::track::TrackSet;
 use honami_workbench::cluster::ClusterRequest;
 use honami_workbench::track::{Area, PointSource, TrackRequest};
 
+use super::time::Pace;
 use crate::app::form::{Features, Form, Task};
 use crate::app::panel::Panel;
 
@@ -28,8 +29,11 @@ pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {
         Action::Quit => return back(state),
         Action::Leave => return vec![Effect::Leave],
         Action::Erase => return erase(state),
-        Action::PlayPause => time::play(state, 1.0),
-        Action::PlayBackwards => time::play(state, -1.0),
+        Action::PlayPause => time::play(state, Pace::Real, 1.0),
+        Action::PlayBackwards => time::play(state, Pace::Real, -1.0),
+        Action::SlowForward => time::play(state, Pace::Slow, 1.0),
+        Action::SlowBackward => time::play(state, Pace::Slow, -1.0),
+        Action::Loop => time::repeat(state),
         Action::StepForward => time::step(state, count(state)),
         Action::StepBack => time::step(state, -count(state)),
         Action::LeapForward => time::step(state, 10 * count(state)),
@@ -146,7 +150,7 @@ fn run(state: &mut State) -> Vec<Effect> {
 /// Leaves what is open; while reviewing, stops what runs: first the clip, then the job.
 fn back(state: &mut State) -> Vec<Effect> {
     match &mut state.mode {
-        Mode::Review if state.play.is_some() => state.play = None,
+        Mode::Review if state.play.is_some() => time::stop(state),
         Mode::Review => {
             if let Some(job) = state.job.as_mut().filter(|job| !job.is_stopping) {
                 job.is_stopping = true;

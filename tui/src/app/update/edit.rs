@@ -26,7 +26,7 @@ pub(super) fn within(clip: &Clip, [x, y]: [f32; 2]) -> [f32; 2] {
 
 pub(super) fn begin_place(state: &mut State) {
     if is_writable(state) {
-        state.play = None;
+        super::time::stop(state);
         let from = state.selected_at().filter(|_| state.zoom > 0).unwrap_or(state.centre);
         state.mode = Mode::Place(within(&state.clip, from.map(f32::round)));
     }
@@ -48,7 +48,7 @@ pub(super) fn begin_move(state: &mut State) {
     let frames = row.span.frames();
     let nearest = state.frame.clamp(frames.start, frames.end.saturating_sub(1).max(frames.start));
     if let Some(at) = row.at(nearest) {
-        state.play = None;
+        super::time::stop(state);
         state.mode = Mode::Move { from: at, to: at };
     }
 }

@@ -21,6 +21,8 @@ pub enum Fact {
     Said(Notice),
     /// What is known of the link.
     Link(Link),
+    /// Pictures per second that were shown and that were due, where some were dropped.
+    Dropped(Option<[u32; 2]>),
     /// So many frames can be shown without waiting.
     Ready(u32),
 }
@@ -49,6 +51,7 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
         }
         Fact::Said(notice) => state.notice = Some(notice),
         Fact::Link(link) => state.link = link,
+        Fact::Dropped(dropped) => state.dropped = dropped.filter(|_| state.play.is_some()),
         Fact::Ready(n) => state.n_ready = n,
     }
 }

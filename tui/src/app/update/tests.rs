@@ -2,8 +2,9 @@
 
 use super::*;
 use crate::app::action::TABLE;
+use crate::app::clock::Play;
 use crate::app::fixture;
-use crate::app::state::{Job, Play};
+use crate::app::state::Job;
 use crate::app::update::Fact;
 use crate::term::input::MouseKind;
 use honami_model::track::{TrackId, TrackSet};
@@ -25,7 +26,9 @@ fn start(words: &str) -> State {
                 state.groups = None;
             }
             "locked" => state.read_only = Some("ada on lab2".to_owned()),
-            "playing" => state.play = Some(Play { rate: 1.0, since: state.now, from: state.frame }),
+            "playing" => {
+                state.play = Some(Play { rate: 1.0, since: state.now, from: state.frame, around: None })
+            }
             "job" => {
                 let (what, plugin) = ("frame".to_owned(), "klt".to_owned());
                 let since = Duration::ZERO;
@@ -63,6 +66,7 @@ fn line(state: &State, effects: &[Effect]) -> String {
     ));
     words.extend(state.count.map(|n| format!("count {n}")));
     words.extend(state.play.map(|play| format!("play {}", play.rate)));
+    words.extend(state.play.and_then(|play| play.around).map(|around| format!("loop {around}")));
     words.extend(
         state.notice.as_ref().map(|n| format!("{} {}", if n.is_error { "error" } else { "said" }, n.text)),
     );
@@ -128,6 +132,22 @@ fn playing() {
     check("playing", "Esc", "review | frame 0 track 1");
     check("playing", ".", "review | frame 1 track 1");
     check("frame=99", "space", "review | frame 0 track 1 | play 1");
+    for (keys, expect) in [
+        (";", "play 0.5"),
+        ("'", "play -0.5"),
+        ("; ;", ""),
+        ("; '", "play -0.5"),
+        ("space B", "play -1"),
+        ("B B", ""),
+        ("2 5 ; ; ;", "play 0.25"),
+        ("2 5 ; '", "play -0.25"),
+        ("2 5 ; space", "play 1"),
+        ("2 0 0 space", "play 2"),
+        ("2 0 0 space space B", "play -2"),
+        ("5 0 0 0 space", "play 16 | error a rate is 1 to 1600 %, got 5000"),
+    ] {
+        check("frame=9", keys, format!("review | frame 9 track 1 | {expect}").trim_end_matches(" | "));
+    }
     let mut state = start("frame=10");
     press(&mut state, "space");
     for (ms, frame) in [(39, 10), (41, 11), (400, 20), (10_000, 99)] {
@@ -143,8 +163,37 @@ fn playing() {
 }
 
 #[test]
+fn looping() {
+    for (keys, expect) in [
+        ("b", "frame 20 track 1 | play 1 | loop 8"),
+        ("b b", "frame 20 track 1"),
+        ("b Esc", "frame 20 track 1"),
+        ("1 2 b", "frame 20 track 1 | play 1 | loop 12"),
+        ("1 2 b b b", "frame 20 track 1 | play 1 | loop 12"),
+        ("b 3 b", "frame 20 track 1 | play 1 | loop 3"),
+        ("b ;", "frame 20 track 1 | play 0.5 | loop 8"),
+        ("; b", "frame 20 track 1 | play 0.5 | loop 8"),
+        ("b . .", "frame 22 track 1 | play 1 | loop 8"),
+        ("b g e", "frame 99 track 1 | play 1 | loop 8"),
+    ] {
+        check("frame=20", keys, &format!("review | {expect}"));
+    }
+    let mut state = start("frame=20");
+    press(&mut state, "b");
+    for (ms, shown) in [(0, 20), (41, 21), (321, 28), (361, 27), (950, 13), (990, 12), (1001, 13)] {
+        update(&mut state, Msg::Clock(Duration::from_millis(ms)));
+        assert_eq!((state.frame, state.shown_frame()), (20, shown), "after {ms} ms");
+    }
+    // Edits are of the frame round which it goes, and the work goes on there.
+    let effects = press(&mut state, "Enter");
+    assert!(line(&state, &effects).contains("commit track 1: key-frame at 20 (confirmed)"));
+    press(&mut state, "m");
+    assert_eq!((state.frame, state.shown_frame(), state.play), (20, 20, None));
+}
+
+#[test]
 fn the_next_tick_shows_the_next_frame() {
-    for keys in ["space", "B"] {
+    for keys in ["space", "B", "3 0 0 space", "3 3 B"] {
         let mut state = start("frame=50");
         press(&mut state, keys);
         let mut seen = vec![state.frame];
@@ -153,7 +202,7 @@ fn the_next_tick_shows_the_next_frame() {
             assert_ne!(seen.last(), Some(&state.frame), "{keys}: a tick without a frame");
             seen.push(state.frame);
         }
-        assert_eq!(seen.len(), if keys == "B" { 51 } else { 50 }, "{keys}: every frame once");
+        assert_eq!(seen.len(), if keys.contains('B') { 51 } else { 50 }, "{keys}: every frame once");
     }
 }
 

@@ -5,40 +5,93 @@ use std::time::Duration;
 use honami_model::track::TrackId;
 
 use super::{Mode, State, complain, say};
+use crate::app::clock::Play;
 use crate::app::menu::Menu;
-use crate::app::state::Play;
+
+/// Slowest and fastest that a clip is played, percent of real time.
+const RATES: (u32, u32) = (1, 1600);
+/// Widest loop, frames to both sides.
+const LOOP_MAX: u32 = 10_000;
+
+/// The two rates at which a clip is played: thesis 3.3.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Pace {
+    /// As it was, unless set otherwise.
+    Real,
+    /// Half as fast, unless set otherwise.
+    Slow,
+}
 
 pub(super) fn on_clock(state: &mut State, now: Duration) {
     state.now = now;
     let Some(play) = state.play else { return };
-    state.frame = state.frame_of_clock(&play);
-    let end = if play.rate >= 0.0 { state.last_frame() } else { 0 };
-    if state.frame == end {
-        state.play = None;
+    if play.around.is_none() {
+        state.frame = play.frame(state.clip.times.as_slice(), now);
+        let end = if play.rate >= 0.0 { state.last_frame() } else { 0 };
+        if state.frame == end {
+            stop(state);
+        }
     }
     keep_in_view(state);
 }
 
-/// Plays at a rate, or pauses what plays.
-pub(super) fn play(state: &mut State, rate: f64) {
-    if state.play.take().is_some() {
-        return;
-    }
-    let end = if rate >= 0.0 { state.last_frame() } else { 0 };
-    if state.frame == end {
-        state.frame = state.last_frame() - end;
-    }
-    state.play = Some(Play { rate, since: state.now, from: state.frame });
+/// Stops playing; a loop goes back to the frame round which it went.
+pub(super) fn stop(state: &mut State) {
+    state.play = None;
+    state.dropped = None;
+    keep_in_view(state);
 }
 
-/// Goes to a frame, the last one at most; stops playing.
+/// Plays forward or backward at one of the rates, or pauses what plays so. A count sets the rate and keeps it.
+pub(super) fn play(state: &mut State, pace: Pace, direction: f64) {
+    if let Some(percent) = state.count {
+        let rate = percent.clamp(RATES.0, RATES.1);
+        state.rates[pace as usize] = rate;
+        if rate != percent {
+            complain(state, format!("a rate is {} to {} %, got {percent}", RATES.0, RATES.1));
+        }
+    }
+    let rate = direction * f64::from(state.rates[pace as usize]) / 100.0;
+    let around = state.play.and_then(|play| play.around);
+    let is_same = state.play.is_some_and(|play| (play.rate - rate).abs() < 1e-9);
+    if is_same && state.count.is_none() {
+        return stop(state);
+    }
+    let end = if rate >= 0.0 { state.last_frame() } else { 0 };
+    if state.frame == end && around.is_none() {
+        state.frame = state.last_frame() - end;
+    }
+    begin(state, rate, around);
+}
+
+/// Loops round the current frame, or stops the loop. A count sets the width.
+pub(super) fn repeat(state: &mut State) {
+    if let Some(count) = state.count {
+        state.loop_frames = count.clamp(1, LOOP_MAX);
+    } else if state.play.is_some_and(|play| play.around.is_some()) {
+        return stop(state);
+    }
+    let rate = state.play.map_or(f64::from(state.rates[0]) / 100.0, |play| play.rate);
+    begin(state, rate, Some(state.loop_frames));
+}
+
+fn begin(state: &mut State, rate: f64, around: Option<u32>) {
+    state.dropped = None;
+    state.play = Some(Play { rate, since: state.now, from: state.frame, around });
+}
+
+/// Goes to a frame, the last one at most; stops playing. A loop goes on round that frame.
 pub(super) fn go(state: &mut State, frame: u32) {
     if frame > state.last_frame() {
         let line = format!("there is no frame {frame}: this is the last one, {}", state.last_frame());
         say(state, line);
     }
-    state.play = None;
     state.frame = frame.min(state.last_frame());
+    match state.play {
+        Some(Play { rate, around: Some(around), .. }) => begin(state, rate, Some(around)),
+        _ => state.play = None,
+    }
+    state.dropped = None;
     if let Mode::Move { .. } = state.mode {
         state.mode = Mode::Review;
     }
@@ -137,7 +190,7 @@ pub(super) fn go_key(state: &mut State, by: i64) {
 /// Following, the selected track stays in the middle.
 pub(super) fn keep_in_view(state: &mut State) {
     if state.follow
-        && let Some(at) = state.selected_at()
+        && let Some(at) = state.selected_row().and_then(|row| row.at(state.shown_frame()))
     {
         state.centre = at;
     }

@@ -8,6 +8,7 @@ use honami_model::track::{Source, Status};
 use super::picture::marks_nth;
 use super::{fill, put, style};
 use crate::app::action::{Action, TABLE};
+use crate::app::clock::rate_words;
 use crate::app::keymap::shown;
 use crate::app::layout::{Layout, Lens, bar, column_of, frame_at};
 use crate::app::state::{Job, Mode, State};
@@ -27,7 +28,7 @@ pub(super) fn title(state: &State, area: Rect, frame: &mut Frame) {
         1 => "1 group".to_owned(),
         k => format!("{k} groups"),
     }));
-    let nth = marks_nth(state, &Lens::of(state, Layout::of(state).picture), state.frame);
+    let nth = marks_nth(state, &Lens::of(state, Layout::of(state).picture), state.shown_frame());
     facts.extend((state.marks_all && nth > 1).then(|| format!("1 in {nth} marked")));
     facts.extend(state.read_only.is_some().then(|| "read only".to_owned()));
     if state.zoom > 0 {
@@ -131,6 +132,7 @@ pub(super) fn time(state: &State, area: Rect, frame: &mut Frame) {
     frame.cells.set_string(bar.right(), area.y, state.last_frame().to_string(), style::DIM);
     let row = state.selected_row();
     let outliers = state.groups.as_ref().map_or(&[][..], |g| &g.outlier_frames);
+    let looped = state.play.and_then(|play| play.loop_frames(n));
     for x in bar.left()..bar.right() {
         let frames = frame_at(bar, n, x)..=frame_at(bar, n, x + 1).max(frame_at(bar, n, x) + 1) - 1;
         let lost = row.is_some_and(|row| {
@@ -138,8 +140,11 @@ pub(super) fn time(state: &State, area: Rect, frame: &mut Frame) {
                 .clone()
                 .any(|f| row.span.get(f).is_some_and(|s| matches!(s.status, Status::Lost | Status::Rejected)))
         });
+        let is_looped =
+            looped.as_ref().is_some_and(|l| l.contains(frames.start()) || frames.contains(l.start()));
         let outlier = outliers.iter().any(|f| frames.contains(f));
         let (glyph, style) = match () {
+            () if is_looped => (if lost { "░" } else { "═" }, style::ACCENT),
             () if lost => ("░", style::ERROR),
             () if *frames.start() >= state.n_ready.max(1) => ("·", style::DIM),
             () if outlier => ("╌", style::DIM),
@@ -164,9 +169,7 @@ pub(super) fn hints(state: &State, area: Rect, frame: &mut Frame) {
             format!("{}/{}  {t_s:.2} s", state.frame, state.last_frame())
         }
     };
-    if let Some(play) = state.play {
-        left.push_str(if play.rate < 0.0 { "  ◀" } else { "  ▶" });
-    }
+    left.push_str(&play_words(state));
     if let (Mode::Move { from, to }, Some(row)) = (&state.mode, state.selected_row()) {
         let moved = (to[0] - from[0]).hypot(to[1] - from[1]);
         left.push_str(&format!("  track {} moved {moved:.2} px", row.id));
@@ -182,6 +185,17 @@ pub(super) fn hints(state: &State, area: Rect, frame: &mut Frame) {
     put(frame, area, 0, &left);
     let room = usize::from(area.width).saturating_sub(left.width() + 2);
     put_right(frame, area, &hint_line(state, room), left.width());
+}
+
+/// How the clip plays, and what it loses: `  ▶ ½x  loop ±8  12 of 25 pictures/s`.
+fn play_words(state: &State) -> String {
+    let Some(play) = state.play else { return String::new() };
+    let mut words = vec![if play.rate < 0.0 { "  ◀" } else { "  ▶" }.to_owned()];
+    let rate = rate_words((play.rate.abs() * 100.0).round() as u32);
+    words.extend(Some(rate).filter(|rate| !rate.is_empty()).map(|rate| format!(" {rate}")));
+    words.extend(play.around.map(|around| format!("  loop ±{around}")));
+    words.extend(state.dropped.map(|[shown, due]| format!("  {shown} of {due} pictures/s")));
+    words.concat()
 }
 
 /// As many hints as there is room for; the help is always one of them.

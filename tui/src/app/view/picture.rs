@@ -101,7 +101,7 @@ pub(super) fn draw(state: &State, layout: &Layout, shot: Option<&Shot>, frame: &
     let here = Lens::of(state, layout.picture);
     let fits = |shot: &&Shot| shot.lens.area == here.area;
     let Some(shot) = shot.filter(fits) else {
-        let line = format!("decoding frame {} …", state.frame);
+        let line = format!("decoding frame {} …", state.shown_frame());
         put(frame, layout.picture, layout.picture.height / 2, &Line::styled(line, style::DIM).centered());
         return;
     };

@@ -50,6 +50,12 @@ fn words(fg: Color, bg: Color, modifier: Modifier) -> String {
     words.join(" ")
 }
 
+fn press(state: &mut State, keys: &str) {
+    for key in keys.split_whitespace() {
+        update(state, Msg::Key(key.parse().unwrap()));
+    }
+}
+
 /// The one door: the fixture at a size, changed, after some keys, looks as in the file.
 #[track_caller]
 fn check(name: &str, size: (u16, u16), keys: &str, change: impl FnOnce(&mut State)) {
@@ -58,9 +64,7 @@ fn check(name: &str, size: (u16, u16), keys: &str, change: impl FnOnce(&mut Stat
     state.link = Link { delay_ms: Some(84), rate_kbs: Some(230), is_silent: false };
     state.frame = 40;
     change(&mut state);
-    for key in keys.split_whitespace() {
-        update(&mut state, Msg::Key(key.parse().unwrap()));
-    }
+    press(&mut state, keys);
     let shot = fixture::shot(&state, Layout::of(&state).picture);
     let seen = dump(&draw(&state, Some(&shot)));
     let file =
@@ -92,6 +96,10 @@ fn screens() {
     check("panel_60x16", (60, 16), "Tab", fixture::crowd);
     check("panel_40x12", (40, 12), "Tab", |_| {});
     check("playing_80x24", small, "space", |_| {});
+    check("loop_80x24", small, "", |state| {
+        press(state, "; b");
+        state.dropped = Some([5, 13]);
+    });
     check("empty_80x24", small, "", |state| {
         state.tracks.clear();
         state.selected = None;
@@ -135,9 +143,7 @@ fn no_size_panics() {
             for keys in ["", "t", ":", "g", "m", "Tab", "z"] {
                 let mut state = fixture::state();
                 state.size = (columns, rows);
-                for key in keys.split_whitespace() {
-                    update(&mut state, Msg::Key(key.parse().unwrap()));
-                }
+                press(&mut state, keys);
                 let frame = draw(&state, None);
                 assert_eq!(frame.softness.len(), usize::from(columns) * usize::from(rows));
                 let area = Layout::of(&state).picture;
