@@ -15,13 +15,16 @@ mod jobs;
 pub mod keymap;
 pub mod layout;
 pub mod menu;
+pub mod opening;
 pub mod panel;
 mod pictures;
 mod run;
+mod seat;
 pub mod state;
 mod tally;
 pub mod tracks;
 pub mod update;
 pub mod view;
 
+pub use opening::Plan;
 pub use run::run;

@@ -20,9 +20,11 @@ use clap::{CommandFactory as _, Parser as _};
 use honami_workbench::WorkbenchError;
 use honami_workbench::plugins::{HostError, ValueError};
 use honami_workbench::session::{Session, SessionOptions};
-use honami_workbench::store::{Access, Project, StoreError};
+use honami_workbench::store::{Access, Project};
 
 use self::args::{Cli, Command, Common};
+use crate::app::Plan;
+use crate::app::opening::where_is_the_clip;
 
 /// What a command has to say, in two forms.
 struct Answer {
@@ -32,6 +34,14 @@ struct Answer {
     text: String,
     /// Whether all was done that was asked for.
     done: bool,
+}
+
+/// What a command has come to.
+enum Outcome {
+    /// It has something to say.
+    Answer(Answer),
+    /// It has said it all, or ended like this.
+    Exit(ExitCode),
 }
 
 /// The command line was wrong in a way that its grammar does not catch.
@@ -63,15 +73,17 @@ pub fn main() -> ExitCode {
             Err(Usage(format!("{} stands before a command", project.display())).into())
         }
         (Some(command), None) => run(command, &cli.common),
-        (None, project) => open(project.as_deref(), &cli.common).map(|()| None),
+        (None, project) => open(project.as_deref(), &cli.common).map(Outcome::Exit),
     };
-    let printed = result.and_then(|answer| match answer {
-        Some(answer) => answer.print(cli.common.json).map(|()| answer.done),
-        None => Ok(true),
+    let printed = result.and_then(|outcome| match outcome {
+        Outcome::Answer(answer) => {
+            let status = if answer.done { ExitCode::SUCCESS } else { ExitCode::FAILURE };
+            answer.print(cli.common.json).map(|()| status)
+        }
+        Outcome::Exit(status) => Ok(status),
     });
     match printed {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::FAILURE,
+        Ok(status) => status,
         Err(error) if broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
             report::complain(&error);
@@ -133,13 +145,15 @@ fn broken_pipe(error: &anyhow::Error) -> bool {
     })
 }
 
-fn run(command: Command, common: &Common) -> anyhow::Result<Option<Answer>> {
+fn run(command: Command, common: &Common) -> anyhow::Result<Outcome> {
     let answer = match command {
         Command::New(args) => project::new(&args, common)?,
         Command::Relink(args) => project::relink(&args)?,
         Command::Track(args) => track::track(&args, common)?,
         Command::Cluster(args) => groups::cluster(&args, common)?,
-        Command::Edit(args) => return edit::edit(&args.project, common).map(|()| None),
+        Command::Edit(args) => {
+            return edit::edit(&args.project, common).map(|()| Outcome::Exit(ExitCode::SUCCESS));
+        }
         Command::Compare(args) => compare::compare(&args, common)?,
         Command::Spectrum(args) => spectrum::spectrum(&args)?,
         Command::Export(args) => project::export(&args)?,
@@ -151,11 +165,11 @@ fn run(command: Command, common: &Common) -> anyhow::Result<Option<Answer>> {
         Command::Completions { shell } => help::completions(shell),
         Command::Man { folder } => help::manual(&folder)?,
     };
-    Ok(Some(answer))
+    Ok(Outcome::Answer(answer))
 }
 
 /// Opens the terminal UI on a project, or on a new project made from a clip.
-fn open(path: Option<&Path>, common: &Common) -> anyhow::Result<()> {
+fn open(path: Option<&Path>, common: &Common) -> anyhow::Result<ExitCode> {
     let Some(path) = path else {
         let wanted = "a project or a clip is wanted: `honami CLIP` opens a clip, `honami demo` makes one";
         return Err(Usage(wanted.to_owned()).into());
@@ -166,35 +180,13 @@ fn open(path: Option<&Path>, common: &Common) -> anyhow::Result<()> {
             path.display()
         )
     })?;
-    let is_project = path.extension().is_some_and(|e| e == "honami");
-    let project = if is_project { path.to_owned() } else { project::name_for(path) };
-    let session = if is_project || project.exists() {
-        let opened = Session::open_or_look(&project, &options(common));
-        opened.map_err(|error| where_is_the_clip(error, &project))?
-    } else {
-        project::make(&project, path, None, common)?
-    };
-    if !is_project && session.media.source().canonicalize().ok() != path.canonicalize().ok() {
-        let (project, clip) = (project.display(), path.display());
-        anyhow::bail!(
-            "{project} belongs to another clip: `honami new NAME.honami {clip}` makes one of its own"
-        );
-    }
-    crate::app::run(session)
+    show(Plan::of(path, &options(common)))
 }
 
-/// Adds how to say where a clip is that is no longer found.
-fn where_is_the_clip(error: WorkbenchError, project: &Path) -> anyhow::Error {
-    let lost = matches!(
-        error,
-        WorkbenchError::Store(StoreError::MediaMissing { .. } | StoreError::MediaDiffers { .. })
-    );
-    let error = anyhow::Error::from(error);
-    if lost {
-        error.context(format!("`honami relink {} CLIP` says where it is", project.display()))
-    } else {
-        error
-    }
+/// Shows a session in the terminal until it ends; returns the status that says how.
+fn show(plan: Plan) -> anyhow::Result<ExitCode> {
+    let end = crate::app::run(plan)?;
+    Ok(end.map_or(ExitCode::SUCCESS, |end| ExitCode::from(end.status())))
 }
 
 fn options(common: &Common) -> SessionOptions {

@@ -133,12 +133,18 @@ impl Terminal {
     /// Waits for the end; returns the exit status's success.
     #[track_caller]
     fn wait_for_end(&mut self) -> bool {
+        self.wait_for_status() == 0
+    }
+
+    /// Waits for the end; returns the exit status.
+    #[track_caller]
+    fn wait_for_status(&mut self) -> u32 {
         let until = Instant::now() + PATIENCE;
         loop {
             self.listen(Duration::from_millis(20));
             if let Some(status) = self.child.try_wait().unwrap() {
                 while self.listen(Duration::from_millis(20)).0 {}
-                return status.success();
+                return status.exit_code();
             }
             assert!(Instant::now() < until, "it does not end:\n{}", self.emulator.screen().contents());
         }
@@ -234,9 +240,58 @@ fn signals_end_it_and_the_terminal_is_restored() {
         let mut terminal = Terminal::honami(folder.path(), (80, 24), true);
         terminal.wait_for_text("0/11");
         terminal.signal(signal);
-        assert!(terminal.wait_for_end(), "{signal:?}: all is saved, nothing has failed");
+        let status = i32::try_from(terminal.wait_for_status()).unwrap();
+        assert_eq!(status, 128 + signal.as_raw(), "as shells count it");
         terminal.assert_restored();
     }
+}
+
+#[test]
+fn after_a_dropped_connection_everything_is_where_it_was() {
+    for signal in [Signal::HUP, Signal::TERM] {
+        let folder = folder();
+        let mut terminal = Terminal::honami(folder.path(), (80, 24), true);
+        terminal.wait_for_text("0/11");
+        terminal.press("7.a\r");
+        terminal.wait_for_text("placed at frame 7");
+        terminal.press("z,");
+        terminal
+            .wait_for("frame 6, closer", |s| s.contents().contains("6/11") && s.contents().contains("2x"));
+        terminal.signal(signal);
+        terminal.wait_for_status();
+        let mut terminal = Terminal::honami(folder.path(), (80, 24), true);
+        terminal.wait_for("the same place", |s| {
+            let screen = s.contents();
+            screen.contains("6/11") && screen.contains("2x") && screen.contains("track 0")
+        });
+        terminal.press("q");
+        assert!(terminal.wait_for_end());
+    }
+}
+
+#[test]
+fn what_cannot_be_opened_is_said_after_the_screen_is_given_back() {
+    let folder = folder();
+    std::fs::write(folder.path().join("no.honami"), "no project").unwrap();
+    let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_honami"));
+    command.arg("no.honami");
+    let mut terminal = Terminal::start(command, folder.path(), (80, 24), true);
+    assert_eq!(terminal.wait_for_status(), 1);
+    terminal.assert_restored();
+    let screen = terminal.emulator.screen().contents();
+    assert!(screen.contains("no.honami"), "{screen}");
+}
+
+#[test]
+fn what_is_typed_before_the_project_is_there_is_done_when_it_is() {
+    let folder = folder();
+    let mut terminal = Terminal::honami(folder.path(), (80, 24), true);
+    terminal.wait_for("the screen taken over", vt100::Screen::alternate_screen);
+    terminal.press("4.a\r");
+    terminal.wait_for_text("placed at frame 4");
+    terminal.press("q");
+    assert!(terminal.wait_for_end());
+    terminal.assert_restored();
 }
 
 #[test]

@@ -109,15 +109,20 @@ pub(crate) fn holder_of(project: &Path) -> Option<Holder> {
     }
 }
 
+/// The log-in name, where the environment says it.
+pub(crate) fn user_name() -> Option<String> {
+    let named = ["USER", "LOGNAME"].iter().find_map(|name| std::env::var(name).ok());
+    named.filter(|name| !name.is_empty())
+}
+
 impl Holder {
     fn me(file: &File) -> Self {
-        let user = ["USER", "LOGNAME"].iter().find_map(|name| std::env::var(name).ok());
         let uid =
             || file.metadata().map_or_else(|_| "unknown".to_owned(), |meta| format!("uid {}", meta.uid()));
         let host = std::fs::read_to_string("/proc/sys/kernel/hostname")
             .or_else(|_| std::fs::read_to_string("/etc/hostname"));
         Self {
-            user: user.filter(|name| !name.is_empty()).unwrap_or_else(uid),
+            user: user_name().unwrap_or_else(uid),
             host: host.map_or_else(|_| "localhost".to_owned(), |name| name.trim().to_owned()),
             pid: std::process::id(),
             since: crate::now(),

@@ -17,6 +17,7 @@ use crate::shown::Shown;
 use crate::{journal, run, schema};
 
 mod make;
+mod seat;
 
 /// What a session may do with a project.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -14,7 +14,8 @@ const APPLICATION_ID: u32 = 0x484F_4E41;
 pub(crate) const BUSY_TIMEOUT: Duration = Duration::from_secs(20);
 
 /// Step n brings schema n to n + 1; a step is never changed once it was released.
-const MIGRATIONS: [&str; 1] = ["
+const MIGRATIONS: [&str; 2] = [
+    "
     CREATE TABLE state (            -- one row: what changes with every edit
         id          INTEGER PRIMARY KEY CHECK (id = 1),
         head        INTEGER NOT NULL REFERENCES entry,
@@ -72,7 +73,15 @@ const MIGRATIONS: [&str; 1] = ["
         notes       TEXT NOT NULL,  -- JSON
         provenance  TEXT NOT NULL   -- JSON
     );
-"];
+",
+    "
+    CREATE TABLE seat (             -- where each user was when they left
+        user        TEXT PRIMARY KEY,
+        state       TEXT NOT NULL,  -- JSON of the program's that wrote it
+        time        TEXT NOT NULL
+    );
+",
+];
 
 /// The schema this program writes.
 pub(crate) const SCHEMA: u32 = MIGRATIONS.len() as u32;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use honami_host::Registry;
-use honami_media::{Media, OpenOptions};
+use honami_media::{Media, OpenOptions, Step};
 use honami_model::edit::Transaction;
 use honami_store::{Access, ClipRecord, Project, StoreError};
 
@@ -38,22 +38,39 @@ impl Session {
     /// # Errors
     /// When the project is locked by another session, is none, or its clip is missing or has changed.
     pub fn open(path: &Path, options: &SessionOptions) -> Result<Self, WorkbenchError> {
+        Self::open_with(path, options, &mut |_, _| {})
+    }
+
+    /// [`open`](Self::open), telling which step is taken with which clip: a long one takes seconds to read.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open).
+    pub fn open_with(
+        path: &Path,
+        options: &SessionOptions,
+        on_step: &mut dyn FnMut(&Path, Step),
+    ) -> Result<Self, WorkbenchError> {
         let access = if options.read_only { Access::Read } else { Access::Write };
         let mut project = Project::open(path, access)?;
         // Before the clip, which may be missing.
         let notes = if options.read_only { Vec::new() } else { show_interrupted(&mut project)? };
-        let media = Arc::new(open_clip_of(&project)?);
+        let media = Arc::new(open_clip_of(&project, on_step)?);
         Ok(Self { project, media, registry: Arc::new(Registry::scan(&options.plugin_paths)), notes })
     }
 
-    /// Opens a project to write, or to look where another session writes.
+    /// Opens a project to write, or to look where another session writes; tells its steps as
+    /// [`open_with`](Self::open_with).
     ///
     /// # Errors
     /// As [`open`](Self::open), but never because of a lock.
-    pub fn open_or_look(path: &Path, options: &SessionOptions) -> Result<Self, WorkbenchError> {
-        match Self::open(path, options) {
+    pub fn open_or_look(
+        path: &Path,
+        options: &SessionOptions,
+        on_step: &mut dyn FnMut(&Path, Step),
+    ) -> Result<Self, WorkbenchError> {
+        match Self::open_with(path, options, on_step) {
             Err(WorkbenchError::Store(StoreError::Locked { .. })) => {
-                Self::open(path, &SessionOptions { read_only: true, ..options.clone() })
+                Self::open_with(path, &SessionOptions { read_only: true, ..options.clone() }, on_step)
             }
             other => other,
         }
@@ -69,10 +86,25 @@ impl Session {
         fps: Option<f64>,
         options: &SessionOptions,
     ) -> Result<Self, WorkbenchError> {
+        Self::create_with(project, clip, fps, options, &mut |_, _| {})
+    }
+
+    /// [`create`](Self::create), telling which step is taken.
+    ///
+    /// # Errors
+    /// As [`create`](Self::create).
+    pub fn create_with(
+        project: &Path,
+        clip: &Path,
+        fps: Option<f64>,
+        options: &SessionOptions,
+        on_step: &mut dyn FnMut(&Path, Step),
+    ) -> Result<Self, WorkbenchError> {
         if project.exists() {
             return Err(StoreError::Exists(project.to_owned()).into());
         }
-        let media = honami_media::open(clip, &OpenOptions { fps, ..OpenOptions::default() })?;
+        let open = OpenOptions { fps, ..OpenOptions::default() };
+        let media = honami_media::open_with(clip, &open, &mut |step| on_step(clip, step))?;
         let record = ClipRecord {
             path: clip.to_owned(),
             sha256: media.sha256(),
@@ -102,10 +134,10 @@ fn show_interrupted(project: &mut Project) -> Result<Vec<String>, WorkbenchError
 }
 
 /// Opens the clip of a project, wherever it has moved to within reach.
-fn open_clip_of(project: &Project) -> Result<Media, WorkbenchError> {
+fn open_clip_of(project: &Project, on_step: &mut dyn FnMut(&Path, Step)) -> Result<Media, WorkbenchError> {
     let record = project.clip();
     let options = OpenOptions { fps: record.fps_override, ..OpenOptions::default() };
-    let open = |path: &Path| honami_media::open(path, &options);
+    let mut open = |path: &Path| honami_media::open_with(path, &options, &mut |step| on_step(path, step));
     // The usual case first: it is where it was, and opening it gives its hash.
     let expected = project.media_path();
     let tried = match open(&expected) {

@@ -17,6 +17,7 @@ use honami_workbench::track::{self, TrackRequest};
 
 use super::form::{Plugin, Task};
 use super::jobs::{Done, Running, Work};
+use super::seat::Seat;
 use super::state::{Job, Notice, State};
 use super::tracks::{Groups, TrackRow};
 use super::update::{Effect, Fact, Hint};
@@ -28,6 +29,8 @@ pub(super) struct World {
     waker: Waker,
     running: Option<(Running, Job)>,
     rows: BTreeMap<TrackId, TrackRow>,
+    /// Where the user was when it was last kept.
+    seat: Seat,
 }
 
 /// Facts, or the line that says why there are none.
@@ -35,14 +38,14 @@ type Facts = Result<Vec<Fact>, WorkbenchError>;
 
 impl World {
     pub(super) fn new(session: Session, waker: Waker) -> Self {
-        Self { session, waker, running: None, rows: BTreeMap::new() }
+        Self { session, waker, running: None, rows: BTreeMap::new(), seat: Seat::default() }
     }
 
-    /// The state to begin with.
-    pub(super) fn state(&mut self, size: (u16, u16)) -> Result<State, WorkbenchError> {
+    /// The state to begin with, of the usual size.
+    pub(super) fn state(&mut self) -> Result<State, WorkbenchError> {
         let project = &self.session.project;
         let name = project.path().file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-        let mut state = State::new(name, self.session.media.clip().clone(), size);
+        let mut state = State::new(name, self.session.media.clip().clone(), (80, 24));
         if project.access() == honami_workbench::store::Access::Read {
             let holder = project.holder();
             state.read_only = Some(holder.map_or_else(|| "somebody else".to_owned(), |h| h.to_string()));
@@ -58,7 +61,27 @@ impl World {
         for fact in self.shown()? {
             super::update::update(&mut state, super::update::Msg::Fact(fact));
         }
+        // A seat that another version has left in another shape is as good as none.
+        if let Some(seat) = self.session.project.seat()?.and_then(|seat| serde_json::from_str(&seat).ok()) {
+            Seat::take(&seat, &mut state);
+        }
+        self.seat = Seat::of(&state);
         Ok(state)
+    }
+
+    /// Keeps where the user is, unless it is kept already, or cannot be because others write.
+    pub(super) fn keep(&mut self, seat: Seat) -> Result<(), WorkbenchError> {
+        let is_writer = self.session.project.access() == honami_workbench::store::Access::Write;
+        if is_writer && self.running.is_none() && seat != self.seat {
+            self.session.project.set_seat(&serde_json::to_string(&seat).unwrap_or_default())?;
+            self.seat = seat;
+        }
+        Ok(())
+    }
+
+    /// Whether the user is elsewhere than was kept.
+    pub(super) fn has_moved(&self, seat: &Seat) -> bool {
+        *seat != self.seat
     }
 
     /// Frames decoded so far.
@@ -196,8 +219,9 @@ impl World {
         self.shown_and(Fact::Said(notice))
     }
 
-    /// Stops what runs and keeps what it has found; says so on standard error, for it may take a while.
-    pub(super) fn close(mut self) -> Result<(), WorkbenchError> {
+    /// Stops what runs and keeps what it has found, and where the user is; says so on standard error, for it may
+    /// take a while.
+    pub(super) fn close(mut self, seat: Seat) -> Result<(), WorkbenchError> {
         if let Some((running, job)) = &self.running {
             running.stop();
             let kept = if job.keeps_frames { ", keeping its frames" } else { "" };
@@ -205,7 +229,7 @@ impl World {
             writeln!(std::io::stderr(), "stopping {}{kept} …", job.plugin).unwrap_or_default();
             self.finish()?;
         }
-        Ok(())
+        self.keep(seat)
     }
 
     fn shown_and(&mut self, fact: Fact) -> Facts {

@@ -44,6 +44,7 @@ pub(super) struct Running {
 struct Shared {
     step: Mutex<(Step, Option<Instant>)>,
     stop: AtomicBool,
+    ended: Arc<AtomicBool>,
     waker: Waker,
 }
 
@@ -61,11 +62,16 @@ impl Progress for Shared {
 
 impl Running {
     pub(super) fn start(work: Work, waker: Waker) -> std::io::Result<Self> {
-        let shared = Arc::new(Shared { step: Mutex::default(), stop: AtomicBool::new(false), waker });
+        let shared = Arc::new(Shared {
+            step: Mutex::default(),
+            stop: AtomicBool::new(false),
+            ended: Arc::default(),
+            waker,
+        });
         let progress = Arc::clone(&shared);
         let thread = std::thread::Builder::new().name("job".to_owned()).spawn(move || {
             // Woken also when the job panics: the thread has ended, however.
-            let _wake = WakeAtEnd(progress.waker.clone());
+            let _end = progress.waker.at_end(&progress.ended);
             match work {
                 Work::Track(job) => Done::Track(job.run(&*progress)),
                 Work::Cluster(job) => Done::Cluster(Box::new(job.run(&*progress))),
@@ -83,19 +89,11 @@ impl Running {
     }
 
     pub(super) fn is_finished(&self) -> bool {
-        self.thread.is_finished()
+        self.shared.ended.load(Ordering::Acquire)
     }
 
     /// Waits for the end; `None` when the job panicked.
     pub(super) fn join(self) -> Option<Done> {
         self.thread.join().ok()
-    }
-}
-
-struct WakeAtEnd(Waker);
-
-impl Drop for WakeAtEnd {
-    fn drop(&mut self) {
-        self.0.wake();
     }
 }

@@ -11,6 +11,9 @@ const BESIDE_COLUMN: u16 = 40;
 /// With so much left, cells, a part of the picture is still worth seeing.
 const OVER_COLUMN: u16 = 12;
 
+/// Deepest magnification, as a power of two.
+pub const ZOOM_MAX: u8 = 5;
+
 /// The parts of the screen; a part without room is empty.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout {

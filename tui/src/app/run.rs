@@ -4,48 +4,54 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use anyhow::Context as _;
-use honami_workbench::session::Session;
 
 use super::effects::World;
 use super::layout::{Layout, Lens};
+use super::opening::{Opened, Opening, Plan};
 use super::pictures::Pictures;
+use super::seat::Seat;
 use super::state::{Link, Notice, State};
 use super::tally::Tally;
 use super::update::{Effect, Fact, Msg, update};
 use super::view;
 use crate::term::encode::Frame;
 use crate::term::input::{Event, Reply};
-use crate::term::screen::Screen;
+use crate::term::screen::{End, Screen};
 use crate::term::signals;
 
 /// While the clip is being decoded, the time line is looked after this often.
 const DECODING_TICK: Duration = Duration::from_millis(250);
+/// Where the user is is kept so long after they have gone there.
+const SEAT_TICK: Duration = Duration::from_secs(5);
 /// Figures of the link change this often at most.
 const LINK_TICK: Duration = Duration::from_secs(1);
 
-/// Shows a project in the terminal until its user leaves, or the terminal does.
+/// Shows a project in the terminal until its user leaves, or the terminal does; returns what ended it against its
+/// user's wish.
 ///
 /// # Errors
 /// When there is no terminal, or the project cannot be read.
-pub fn run(session: Session) -> anyhow::Result<()> {
+pub fn run(plan: Plan) -> anyhow::Result<Option<End>> {
     let mut screen = Screen::open(&log_path()).context("the terminal UI cannot start")?;
-    let mut world = World::new(session, screen.waker());
-    let mut app = App {
-        state: world.state(screen.size())?,
-        pictures: Pictures::new(world.media(), screen.waker())?,
-        frame: None,
-        is_exact: false,
-        tally: Tally::default(),
-        link_seen: Duration::ZERO,
+    let opened = Opening::start(plan, screen.waker()).context("no thread for opening");
+    let (left, outcome) = match opened.and_then(|opening| opening.watch(&mut screen)) {
+        Ok(Opened::Ready(ready, typed)) => {
+            let (mut world, state) = *ready;
+            let mut app = App::new(state, &world, &screen)?;
+            let outcome = app.turn(&mut screen, &mut world, typed);
+            (Some((world, Seat::of(&app.state))), outcome)
+        }
+        Ok(Opened::Left(end)) => (None, Ok(end)),
+        Err(error) => (None, Err(error)),
     };
-    app.state.mono = screen.is_mono();
-    let outcome = app.turn(&mut screen, &mut world);
     let closed = screen.close();
     signals::end_as_usual()?;
-    drop(app);
-    world.close()?;
-    outcome?;
-    Ok(closed?)
+    if let Some((world, seat)) = left {
+        world.close(seat)?;
+    }
+    let end = outcome?;
+    closed?;
+    Ok(end)
 }
 
 /// Where output goes that would tear the screen: `$XDG_STATE_HOME/honami/session.log`.
@@ -65,13 +71,43 @@ struct App {
     tally: Tally,
     /// When the figures of the link were last looked at.
     link_seen: Duration,
+    /// When to keep where the user is.
+    seat_due: Option<Duration>,
 }
 
 impl App {
-    fn turn(&mut self, screen: &mut Screen, world: &mut World) -> anyhow::Result<()> {
+    fn new(state: State, world: &World, screen: &Screen) -> anyhow::Result<Self> {
+        let pictures = Pictures::new(world.media(), screen.waker())?;
+        let mut app = Self {
+            state,
+            pictures,
+            frame: None,
+            is_exact: false,
+            tally: Tally::default(),
+            link_seen: Duration::ZERO,
+            seat_due: None,
+        };
+        app.state.mono = screen.is_mono();
+        app.state.size = screen.size();
+        Ok(app)
+    }
+
+    /// Begins with what was typed while the project was opened; returns what ended it against its user's wish.
+    fn turn(
+        &mut self,
+        screen: &mut Screen,
+        world: &mut World,
+        typed: Vec<Event>,
+    ) -> anyhow::Result<Option<End>> {
+        self.tell(Msg::Clock(screen.now()), screen, world)?;
+        if self.hear(typed, screen, world)? {
+            return Ok(None);
+        }
         loop {
-            let until =
-                [self.state.next_tick(), self.decoding_tick(screen, world)].into_iter().flatten().min();
+            let until = [self.state.next_tick(), self.decoding_tick(screen, world), self.seat_due]
+                .into_iter()
+                .flatten()
+                .min();
             let happened = screen.wait(until, self.frame.is_none() || !self.is_exact)?;
             self.tell(Msg::Clock(screen.now()), screen, world)?;
             let mut is_leaving = happened.end.is_some();
@@ -81,37 +117,61 @@ impl App {
                 self.tell(Msg::Resize(columns, rows), screen, world)?;
                 self.frame = None;
             }
-            for event in happened.events {
-                if is_leaving {
-                    break;
-                }
-                let msg = match event {
-                    Event::Key(key) => Msg::Key(key),
-                    Event::Mouse(mouse) => Msg::Mouse(mouse),
-                    Event::Paste(text) => Msg::Paste(text),
-                    Event::Reply(Reply::Ready) => continue,
-                    // What was learnt may show the same frame differently.
-                    Event::Reply(_) => {
-                        self.is_exact = false;
-                        continue;
-                    }
-                };
-                self.frame = None;
-                is_leaving = self.tell(msg, screen, world)?;
-            }
+            is_leaving = is_leaving || self.hear(happened.events, screen, world)?;
             for fact in world.news() {
                 self.frame = None;
                 self.tell(Msg::Fact(fact), screen, world)?;
             }
             if is_leaving {
-                return Ok(());
+                return Ok(happened.end);
             }
             if happened.suspend {
                 screen.suspend()?;
                 self.frame = None;
             }
+            self.sit(screen, world);
             self.show(screen, world)?;
         }
+    }
+
+    /// Keeps where the user is, now and then, and not while something moves: it costs a write to the disk.
+    fn sit(&mut self, screen: &Screen, world: &mut World) {
+        let seat = Seat::of(&self.state);
+        let now = screen.now();
+        if !world.has_moved(&seat) || self.state.play.is_some() || self.state.job.is_some() {
+            self.seat_due = None;
+        } else if self.seat_due.is_some_and(|due| due <= now) {
+            self.seat_due = None;
+            if let Err(error) = world.keep(seat) {
+                let text = format!("where you are is not kept: {error}");
+                self.state.notice = Some(Notice { text, is_error: true });
+                self.frame = None;
+            }
+        } else {
+            self.seat_due = self.seat_due.or(Some(now + SEAT_TICK));
+        }
+    }
+
+    /// Takes in what the terminal has sent; returns whether its user leaves.
+    fn hear(&mut self, events: Vec<Event>, screen: &mut Screen, world: &mut World) -> anyhow::Result<bool> {
+        for event in events {
+            let msg = match event {
+                Event::Key(key) => Msg::Key(key),
+                Event::Mouse(mouse) => Msg::Mouse(mouse),
+                Event::Paste(text) => Msg::Paste(text),
+                Event::Reply(Reply::Ready) => continue,
+                // What was learnt may show the same frame differently.
+                Event::Reply(_) => {
+                    self.is_exact = false;
+                    continue;
+                }
+            };
+            self.frame = None;
+            if self.tell(msg, screen, world)? {
+                return Ok(true);
+            }
+        }
+        Ok(false)
     }
 
     fn decoding_tick(&self, screen: &Screen, world: &World) -> Option<Duration> {

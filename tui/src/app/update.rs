@@ -20,6 +20,7 @@ use crate::term::input::Mouse;
 use crate::term::key::Key;
 
 pub use facts::Fact;
+pub(super) use time::RATES;
 
 /// Something that happens to the state.
 #[derive(Debug)]

@@ -4,6 +4,7 @@ pub mod column;
 mod form;
 mod lines;
 mod menu;
+mod opening;
 pub mod picture;
 pub mod style;
 
@@ -14,6 +15,7 @@ use ratatui::text::Line;
 use super::layout::Layout;
 use super::state::{Mode, State};
 use crate::term::encode::Frame;
+pub use opening::opening;
 pub use picture::Shot;
 
 /// The whole screen.

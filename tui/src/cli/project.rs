@@ -1,6 +1,6 @@
 //! `new` and `export`: a project's beginning, and what leaves it.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use honami_workbench::export;
 use honami_workbench::media::{self, OpenOptions};
@@ -27,14 +27,6 @@ pub(super) fn make(
     common: &Common,
 ) -> anyhow::Result<Session> {
     Ok(Session::create(project, clip, fps, &options(common))?)
-}
-
-/// The project that belongs to a clip opened without one: beside it, under its name.
-pub(super) fn name_for(clip: &Path) -> PathBuf {
-    let stem = if clip.is_dir() { clip.file_name() } else { clip.file_stem() };
-    let name = stem.unwrap_or_default().to_string_lossy().replace(['%', '*', '?'], "");
-    let name = if name.is_empty() { "clip".to_owned() } else { name };
-    clip.with_file_name(format!("{name}.honami"))
 }
 
 /// Size, length and rate of a project's clip.

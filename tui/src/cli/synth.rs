@@ -11,7 +11,8 @@ use honami_workbench::track::PointSource;
 use serde_json::json;
 
 use super::args::{Common, Demo, Synth, Wind};
-use super::{Answer, groups, options, project, report, track};
+use super::{Answer, Outcome, groups, options, project, report, show, track};
+use crate::app::Plan;
 
 /// Renders a clip and its truth.
 pub(super) fn synth(args: &Synth) -> anyhow::Result<Answer> {
@@ -56,7 +57,7 @@ fn describe(made: &Generated) -> Answer {
 }
 
 /// The whole job on a generated clip, with its truth beside it; then the terminal UI.
-pub(super) fn demo(args: &Demo, common: &Common) -> anyhow::Result<Option<Answer>> {
+pub(super) fn demo(args: &Demo, common: &Common) -> anyhow::Result<Outcome> {
     fs::create_dir_all(&args.folder).with_context(|| format!("cannot make {}", args.folder.display()))?;
     let (clip, file) = (args.folder.join("shrub.y4m"), args.folder.join("shrub.honami"));
     if !clip.exists() {
@@ -91,8 +92,7 @@ pub(super) fn demo(args: &Demo, common: &Common) -> anyhow::Result<Option<Answer
         let n_groups = session.project.grouping()?.map_or(0, |grouping| grouping.nodes.len());
         let json =
             json!({ "project": file, "clip": clip, "truth": truth, "tracks": n_tracks, "groups": n_groups });
-        return Ok(Some(Answer { json, text, done: true }));
+        return Ok(Outcome::Answer(Answer { json, text, done: true }));
     }
-    crate::app::run(session)?;
-    Ok(None)
+    show(Plan::new("shrub.honami", move |_tell| Ok(session))).map(Outcome::Exit)
 }

@@ -63,6 +63,18 @@ pub enum End {
     Hangup,
 }
 
+impl End {
+    /// The exit status of a program that this has ended, as shells count it: 128 and the signal.
+    #[must_use]
+    pub fn status(self) -> u8 {
+        let signal = match self {
+            Self::Signal(signal) => signal,
+            Self::Hangup => SIGHUP,
+        };
+        u8::try_from(128 + signal).unwrap_or(u8::MAX)
+    }
+}
+
 impl Screen {
     /// Takes the terminal over and asks it what it can do, without waiting for answers.
     ///

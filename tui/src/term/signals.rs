@@ -18,6 +18,25 @@ impl Waker {
         // A full pipe wakes as well as one more byte; a closed one has nobody to wake.
         drop((&*self.0).write(&[0]));
     }
+
+    /// Something for a thread to hold: when it is dropped, also by a panic, `ended` is set and the screen woken.
+    ///
+    /// A thread counts as finished only a moment after it has woken anybody: whoever is woken asks `ended`.
+    #[must_use]
+    pub fn at_end(&self, ended: &Arc<AtomicBool>) -> WakeAtEnd {
+        WakeAtEnd(self.clone(), Arc::clone(ended))
+    }
+}
+
+/// Sets its flag and wakes when it is dropped.
+#[derive(Debug)]
+pub struct WakeAtEnd(Waker, Arc<AtomicBool>);
+
+impl Drop for WakeAtEnd {
+    fn drop(&mut self) {
+        self.1.store(true, Ordering::Release);
+        self.0.wake();
+    }
 }
 
 /// From now on SIGINT and SIGTERM end the program at once, as they do without [`Signals`].

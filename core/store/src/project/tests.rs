@@ -67,7 +67,7 @@ fn what_is_no_project_is_told_apart() {
         (other, "not a honami project"),
         (bench.folder.path().to_owned(), "not a honami project"),
         (bench.folder.path().join("gone.honami"), "cannot open the project"),
-        (newer, "schema 9, this honami knows up to 1; update honami"),
+        (newer, "schema 9, this honami knows up to 2; update honami"),
         (damaged, "damaged"),
         (rootless, "damaged"),
     ];
@@ -351,4 +351,26 @@ fn the_log_tells_causes_before_effects() {
         });
         assert_eq!(words.collect::<Vec<_>>().join(" "), want, "{name}");
     }
+}
+
+#[test]
+fn a_seat_is_kept_without_an_edit_and_a_project_of_before_gets_one() {
+    let bench = Bench::new();
+    drop(bench.create());
+    // As the first schema was.
+    let conn = Connection::open(bench.path()).unwrap();
+    conn.execute_batch("DROP TABLE seat; PRAGMA user_version = 1").unwrap();
+    drop(conn);
+    let mut project = Project::open(&bench.path(), Access::Write).unwrap();
+    assert_eq!(project.seat().unwrap(), None);
+    for state in ["{}", r#"{"frame":12}"#] {
+        project.set_seat(state).unwrap();
+        assert_eq!(project.seat().unwrap().as_deref(), Some(state));
+    }
+    assert_eq!(project.history().entries().len(), 1, "being somewhere is no edit");
+    let mut reader = Project::open(&bench.path(), Access::Read).unwrap();
+    assert!(matches!(reader.set_seat("{}"), Err(StoreError::ReadOnly)));
+    drop(project);
+    let project = Project::open(&bench.path(), Access::Write).unwrap();
+    assert_eq!(project.seat().unwrap().as_deref(), Some(r#"{"frame":12}"#));
 }

@@ -7,10 +7,8 @@ use honami_workbench::track::{Area, PointSource, TrackRequest};
 
 use super::time::Pace;
 use crate::app::form::{Features, Form, Task};
+use crate::app::layout::ZOOM_MAX;
 use crate::app::panel::Panel;
-
-/// Deepest magnification, as a power of two.
-const ZOOM_MAX: u8 = 5;
 
 /// Does an action. The count, if one was typed, is still in the state.
 pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {

@@ -9,7 +9,7 @@ use crate::app::clock::Play;
 use crate::app::menu::Menu;
 
 /// Slowest and fastest that a clip is played, percent of real time.
-const RATES: (u32, u32) = (1, 1600);
+pub(in crate::app) const RATES: (u32, u32) = (1, 1600);
 /// Widest loop, frames to both sides.
 const LOOP_MAX: u32 = 10_000;
 

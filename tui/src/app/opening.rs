@@ -1,0 +1,185 @@
+//! Opening a project or a clip: the screen is there at once, the project when it has been read.
+//!
+//! A thread of its own opens the session. Keys typed meanwhile are kept for the project; those that leave, leave.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+
+use anyhow::Context as _;
+use honami_workbench::WorkbenchError;
+use honami_workbench::media::Step;
+use honami_workbench::session::{Session, SessionOptions};
+use honami_workbench::store::StoreError;
+
+use super::action::{Action, Context};
+use super::effects::World;
+use super::keymap::{Found, KeyMap};
+use super::state::State;
+use super::view;
+use crate::term::input::Event;
+use crate::term::screen::{End, Screen};
+use crate::term::signals::Waker;
+
+/// So much typed ahead is kept.
+const KEPT_MAX: usize = 4096;
+
+/// How a session is made, telling what it is busy with.
+type Open = Box<dyn FnOnce(&dyn Fn(String)) -> anyhow::Result<Session> + Send>;
+
+/// A session that is to be opened.
+pub struct Plan {
+    /// What the title calls it meanwhile.
+    pub name: String,
+    open: Open,
+}
+
+impl Plan {
+    /// Whatever opens a session.
+    pub fn new(
+        name: impl Into<String>,
+        open: impl FnOnce(&dyn Fn(String)) -> anyhow::Result<Session> + Send + 'static,
+    ) -> Self {
+        Self { name: name.into(), open: Box::new(open) }
+    }
+
+    /// A project, or the project that belongs to a clip; made where there is none yet.
+    #[must_use]
+    pub fn of(path: &Path, options: &SessionOptions) -> Self {
+        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+        let (path, options) = (path.to_owned(), options.clone());
+        Self::new(name, move |tell| open(&path, &options, tell))
+    }
+}
+
+fn open(path: &Path, options: &SessionOptions, tell: &dyn Fn(String)) -> anyhow::Result<Session> {
+    let is_project = path.extension().is_some_and(|e| e == "honami");
+    let project = if is_project { path.to_owned() } else { project_of(path) };
+    let mut on_step = |clip: &Path, step: Step| {
+        let clip = clip.file_name().unwrap_or(clip.as_os_str()).to_string_lossy().into_owned();
+        tell(match step {
+            Step::Hashing => format!("reading {clip}"),
+            Step::Indexing => format!("finding the frames of {clip}"),
+        });
+    };
+    let session = if is_project || project.exists() {
+        Session::open_or_look(&project, options, &mut on_step)
+            .map_err(|error| where_is_the_clip(error, &project))?
+    } else {
+        Session::create_with(&project, path, None, options, &mut on_step)?
+    };
+    if !is_project && session.media.source().canonicalize().ok() != path.canonicalize().ok() {
+        let (project, clip) = (project.display(), path.display());
+        anyhow::bail!(
+            "{project} belongs to another clip: `honami new NAME.honami {clip}` makes one of its own"
+        );
+    }
+    Ok(session)
+}
+
+/// The project that belongs to a clip opened without one: beside it, under its name.
+#[must_use]
+pub fn project_of(clip: &Path) -> PathBuf {
+    let stem = if clip.is_dir() { clip.file_name() } else { clip.file_stem() };
+    let name = stem.unwrap_or_default().to_string_lossy().replace(['%', '*', '?'], "");
+    let name = if name.is_empty() { "clip".to_owned() } else { name };
+    clip.with_file_name(format!("{name}.honami"))
+}
+
+/// Adds how to say where a clip is that is no longer found.
+#[must_use]
+pub fn where_is_the_clip(error: WorkbenchError, project: &Path) -> anyhow::Error {
+    let lost = matches!(
+        error,
+        WorkbenchError::Store(StoreError::MediaMissing { .. } | StoreError::MediaDiffers { .. })
+    );
+    let error = anyhow::Error::from(error);
+    if lost {
+        error.context(format!("`honami relink {} CLIP` says where it is", project.display()))
+    } else {
+        error
+    }
+}
+
+/// A session being opened.
+pub(super) struct Opening {
+    name: String,
+    step: Arc<Mutex<String>>,
+    ended: Arc<AtomicBool>,
+    thread: JoinHandle<anyhow::Result<(World, State)>>,
+}
+
+/// What opening has come to.
+pub(super) enum Opened {
+    /// The project is there; these were typed meanwhile.
+    Ready(Box<(World, State)>, Vec<Event>),
+    /// Its user, or the terminal, has left.
+    Left(Option<End>),
+}
+
+impl Opening {
+    /// Begins to open.
+    pub(super) fn start(plan: Plan, waker: Waker) -> std::io::Result<Self> {
+        let step = Arc::new(Mutex::new(String::new()));
+        let told = Arc::clone(&step);
+        let (ended, Plan { name, open }) = (Arc::new(AtomicBool::new(false)), plan);
+        let flag = Arc::clone(&ended);
+        let thread = std::thread::Builder::new().name("opening".to_owned()).spawn(move || {
+            // Woken also when opening panics.
+            let _end = waker.at_end(&flag);
+            let session = open(&|what| {
+                *told.lock().unwrap_or_else(PoisonError::into_inner) = what;
+                waker.wake();
+            })?;
+            let mut world = World::new(session, waker);
+            let state = world.state()?;
+            Ok((world, state))
+        })?;
+        Ok(Self { name, step, ended, thread })
+    }
+
+    /// Shows that something is being opened until it is, or until somebody leaves.
+    ///
+    /// # Errors
+    /// When it cannot be opened.
+    pub(super) fn watch(self, screen: &mut Screen) -> anyhow::Result<Opened> {
+        let keys = KeyMap::default();
+        let mut kept = Vec::new();
+        // What the screen shows, once it does.
+        let mut shown = None;
+        while !self.ended.load(Ordering::Acquire) {
+            let what = self.step.lock().unwrap_or_else(PoisonError::into_inner).clone();
+            let wanted = (what, screen.size());
+            if screen.has_slot() && shown.as_ref() != Some(&wanted) {
+                let frame = view::opening(&self.name, &wanted.0, &keys, wanted.1);
+                if screen.paint(&frame, false)? {
+                    shown = Some(wanted.clone());
+                }
+            }
+            let happened = screen.wait(None, shown.as_ref() != Some(&wanted))?;
+            if happened.end.is_some() || happened.events.iter().any(|event| leaves(&keys, event)) {
+                return Ok(Opened::Left(happened.end));
+            }
+            kept.extend(happened.events.into_iter().filter(|event| !matches!(event, Event::Reply(_))));
+            kept.truncate(KEPT_MAX);
+            if happened.suspend {
+                screen.suspend()?;
+            }
+            if happened.resized || happened.suspend {
+                screen.forget();
+                shown = None;
+            }
+        }
+        let ready = self.thread.join().ok().context("opening stopped by a fault of its own")??;
+        Ok(Opened::Ready(Box::new(ready), kept))
+    }
+}
+
+/// Whether something typed while opening leaves at once.
+fn leaves(keys: &KeyMap, event: &Event) -> bool {
+    let Event::Key(key) = event else { return false };
+    let found = keys.find(Context::Review, &[*key]);
+    let leaving = [Action::Quit, Action::Leave, Action::Back].map(Found::Action);
+    leaving.contains(&found)
+}
