@@ -128,6 +128,8 @@ table! {
     PanelTracks "panel-tracks" ["P t"] [Review ""] "show or hide the tracks"
     PanelGroups "panel-groups" ["P g"] [Review ""] "show or hide the groups"
     PanelKeyFrames "panel-key-frames" ["P k"] [Review ""] "show or hide the key-frames of the selected track"
+    Glyphs "glyphs" ["v q"] [Review ""] "show the picture in half blocks, quadrants, sextants or octants (what the font has)"
+    Stills "stills" ["v s"] [Review ""] "show a picture that stays in the terminal's own pixels, or not"
     Palette "palette" [":"] [Review "" Place "" Move "" Form ""] "find any action by name, key or what it does"
     Help "help" ["?"] [Review "help" Place "" Move "" Form "help"] "list what works here; Enter does it"
     Redraw "redraw" ["Ctrl-l"] [Review "" Place "" Move "" Form "" Menu "" Prompt ""] "paint the screen anew"

@@ -61,7 +61,7 @@ impl Layout {
     }
 }
 
-/// The part of the picture that is seen, and the cells that show it. A cell holds two pixels, one above the other.
+/// The part of the picture that is seen, and the cells that show it, each of so many pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lens {
     /// Left edge in the image, pixels; the centre of the first pixel is 0, its edge -0.5.
@@ -74,6 +74,8 @@ pub struct Lens {
     pub height: f64,
     /// The cells.
     pub area: Rect,
+    /// Pixels of a cell, across and down.
+    pub grid: (u32, u32),
 }
 
 impl Lens {
@@ -105,22 +107,30 @@ impl Lens {
                 width: n_columns.min(area.width),
                 height: n_rows.min(area.height),
             },
+            grid: state.shown_glyphs().grid(),
         }
     }
 
     /// Screen pixels across and down.
     #[must_use]
     pub fn size(&self) -> (u32, u32) {
-        (u32::from(self.area.width), 2 * u32::from(self.area.height))
+        (self.grid.0 * u32::from(self.area.width), self.grid.1 * u32::from(self.area.height))
     }
 
     /// The screen pixel that shows an image point, from the lens's upper left; `None` outside.
     #[must_use]
-    pub fn pixel_of(&self, [x, y]: [f32; 2]) -> Option<(u32, u32)> {
-        let (columns, rows) = self.size();
-        let across = (f64::from(x) - self.x) / self.width * f64::from(columns);
-        let down = (f64::from(y) - self.y) / self.height * f64::from(rows);
-        let inside = (0.0..f64::from(columns)).contains(&across) && (0.0..f64::from(rows)).contains(&down);
+    pub fn pixel_of(&self, at: [f32; 2]) -> Option<(u32, u32)> {
+        self.place_of(at, self.grid)
+    }
+
+    /// Where an image point is shown when a cell has so many places, across and down; `None` outside.
+    #[must_use]
+    pub fn place_of(&self, [x, y]: [f32; 2], grid: (u32, u32)) -> Option<(u32, u32)> {
+        let columns = f64::from(grid.0) * f64::from(self.area.width);
+        let rows = f64::from(grid.1) * f64::from(self.area.height);
+        let across = (f64::from(x) - self.x) / self.width * columns;
+        let down = (f64::from(y) - self.y) / self.height * rows;
+        let inside = (0.0..columns).contains(&across) && (0.0..rows).contains(&down);
         inside.then_some((across as u32, down as u32))
     }
 

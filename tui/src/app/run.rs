@@ -10,11 +10,12 @@ use super::layout::{Layout, Lens};
 use super::opening::{Opened, Opening, Plan};
 use super::pictures::Pictures;
 use super::seat::Seat;
-use super::state::{Link, Notice, State};
+use super::state::{Display, Link, Notice, State};
 use super::tally::Tally;
 use super::update::{Effect, Fact, Msg, update};
 use super::view;
 use crate::term::encode::Frame;
+use crate::term::glyph::Glyphs;
 use crate::term::input::{Event, Reply};
 use crate::term::screen::{End, Screen};
 use crate::term::signals;
@@ -89,6 +90,8 @@ impl App {
         };
         app.state.mono = screen.is_mono();
         app.state.size = screen.size();
+        app.state.glyphs = Glyphs::from_env(|name| std::env::var(name).ok());
+        app.look_at_display(screen);
         Ok(app)
     }
 
@@ -163,6 +166,7 @@ impl App {
                 // What was learnt may show the same frame differently.
                 Event::Reply(_) => {
                     self.is_exact = false;
+                    self.look_at_display(screen);
                     continue;
                 }
             };
@@ -239,6 +243,12 @@ impl App {
         self.is_exact = screen.paint(frame, state.play.is_some())?;
         shot.iter().for_each(|shot| self.tally.painted(shot.frame));
         Ok(())
+    }
+
+    /// Takes what is known of the terminal into the state.
+    fn look_at_display(&mut self, screen: &Screen) {
+        let display = Display { depth: screen.depth(), pixels: screen.pixels() };
+        update(&mut self.state, Msg::Fact(Fact::Display(display)));
     }
 
     /// Takes the figures of the link into the state, in round numbers and not too often: they cost bytes.

@@ -12,6 +12,9 @@ use super::keymap::KeyMap;
 use super::menu::Menu;
 use super::panel::Panel;
 use super::tracks::{Groups, TrackRow};
+use crate::term::capabilities::Pixels;
+use crate::term::colour::Depth;
+use crate::term::glyph::Glyphs;
 use crate::term::key::Key;
 
 /// The state of the terminal UI.
@@ -79,6 +82,12 @@ pub struct State {
     pub n_ready: u32,
     /// The terminal has no colours: marks are letters.
     pub mono: bool,
+    /// Which characters the user wants for the picture.
+    pub glyphs: Glyphs,
+    /// Whether a picture that stays is shown in the terminal's own pixels, where it has such.
+    pub stills: bool,
+    /// What is known of the terminal.
+    pub display: Display,
 }
 
 /// What keys mean.
@@ -145,6 +154,15 @@ pub struct Job {
     pub is_stopping: bool,
 }
 
+/// What is known of the terminal.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Display {
+    /// How many colours it shows.
+    pub depth: Depth,
+    /// How pixels get to it, if they do.
+    pub pixels: Option<Pixels>,
+}
+
 /// What is known of the link to the terminal.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Link {
@@ -193,6 +211,9 @@ impl State {
             now: Duration::ZERO,
             n_ready: 0,
             mono: false,
+            glyphs: Glyphs::default(),
+            stills: true,
+            display: Display::default(),
         }
     }
 
@@ -206,6 +227,12 @@ impl State {
     #[must_use]
     pub fn selected_row(&self) -> Option<&TrackRow> {
         self.row(self.selected?)
+    }
+
+    /// The characters that show the picture: without colours, one brightness a cell.
+    #[must_use]
+    pub fn shown_glyphs(&self) -> Glyphs {
+        if self.mono { Glyphs::Halves } else { self.glyphs }
     }
 
     /// The shown tracks, in the order of lists.

@@ -3,7 +3,7 @@
 use ratatui::style::Color;
 
 /// How many colours the terminal shows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Depth {
     /// None: brightness becomes characters.
     Mono,
@@ -12,6 +12,7 @@ pub enum Depth {
     /// xterm's 256.
     Ansi256,
     /// 24 bits.
+    #[default]
     True,
 }
 

@@ -10,11 +10,11 @@ use ratatui::buffer::{Buffer, Cell, CellWidth};
 use ratatui::layout::Rect;
 use ratatui::style::Color;
 
-use super::colour::{Depth, distance, rgb};
+use super::colour::{Depth, rgb};
+use super::glyph;
 use pen::Pen;
 
-/// The upper half block: its foreground is the upper pixel of the cell, its background the lower one.
-pub const HALF_BLOCK: &str = "▀";
+pub use super::glyph::HALF_BLOCK;
 
 /// What the screen should show.
 #[derive(Clone, Debug)]
@@ -23,6 +23,8 @@ pub struct Frame {
     pub cells: Buffer,
     /// How much a wrong cell matters: 0 for exact cells, otherwise a factor on its error. Row-major.
     pub softness: Vec<u8>,
+    /// Stands for what the soft cells show, finer than cells do: another number, another picture.
+    pub scene: u64,
 }
 
 impl Frame {
@@ -30,7 +32,7 @@ impl Frame {
     #[must_use]
     pub fn new(columns: u16, rows: u16) -> Self {
         let cells = Buffer::empty(Rect::new(0, 0, columns, rows));
-        Self { softness: vec![0; cells.content.len()], cells }
+        Self { softness: vec![0; cells.content.len()], cells, scene: 0 }
     }
 }
 
@@ -144,13 +146,11 @@ impl Encoder {
         if shown == cell {
             return None;
         }
-        if shown.symbol() != cell.symbol() || shown.modifier != cell.modifier {
-            return Some(1 << 20);
-        }
-        if moving && near(shown.fg, cell.fg, DEAD_BAND) && near(shown.bg, cell.bg, DEAD_BAND) {
+        let Some(difference) = glyph::difference(shown, cell) else { return Some(1 << 20) };
+        if moving && difference.most <= DEAD_BAND {
             return None;
         }
-        Some(distance(rgb(shown.fg), rgb(cell.fg)) + distance(rgb(shown.bg), rgb(cell.bg)))
+        Some(difference.squares)
     }
 
     /// Paints the worst cells, row by row, within `budget` bytes; returns how many stay wrong.

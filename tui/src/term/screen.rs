@@ -8,7 +8,7 @@ use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::Errno;
 use signal_hook::consts::{SIGCONT, SIGHUP, SIGTSTP, SIGWINCH};
 
-use super::capabilities::{Around, Capabilities};
+use super::capabilities::{Around, Capabilities, Pixels};
 use super::colour::Depth;
 use super::encode::Frame;
 use super::input::{Decoder, Event, Unfinished};
@@ -129,10 +129,16 @@ impl Screen {
         self.writer.depth() == Depth::Mono
     }
 
-    /// What is known of the terminal.
+    /// The colours that the terminal shows.
     #[must_use]
-    pub fn capabilities(&self) -> &Capabilities {
-        self.writer.capabilities()
+    pub fn depth(&self) -> Depth {
+        self.writer.depth()
+    }
+
+    /// How pixels get to the terminal, if they do.
+    #[must_use]
+    pub fn pixels(&self) -> Option<Pixels> {
+        self.writer.capabilities().pixels(self.size()).filter(|_| !self.is_mono())
     }
 
     /// What is known of the link.

@@ -67,6 +67,8 @@ pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {
         Action::PanelTracks => show_panel(state, Panel::Tracks),
         Action::PanelGroups => show_panel(state, Panel::Groups),
         Action::PanelKeyFrames => show_panel(state, Panel::KeyFrames),
+        Action::Glyphs => turn_glyphs(state),
+        Action::Stills => turn_stills(state),
         Action::Palette => open_menu(state, "actions"),
         Action::Help => open_menu(state, "what works here"),
         Action::Redraw => return vec![Effect::Redraw],
@@ -222,6 +224,29 @@ fn zoom(state: &mut State, by: i8) {
         state.centre = focus;
     }
     state.zoom = state.zoom.saturating_add_signed(by).min(ZOOM_MAX);
+}
+
+fn turn_glyphs(state: &mut State) {
+    if state.mono {
+        return complain(state, "without colours the picture is letters");
+    }
+    state.glyphs = state.glyphs.next();
+    let stills = match state.display.pixels {
+        Some(pixels) if state.stills => format!("stills by {pixels}"),
+        Some(_) => "no stills (v s)".to_owned(),
+        None => "no stills: the terminal offers no pixels".to_owned(),
+    };
+    say(state, format!("{}, {}, {stills}", state.glyphs, state.display.depth));
+}
+
+fn turn_stills(state: &mut State) {
+    state.stills = !state.stills;
+    let line = match (state.stills, state.display.pixels) {
+        (false, _) => "stills off: the picture stays in characters".to_owned(),
+        (true, Some(pixels)) => format!("stills on: a picture that stays is shown by {pixels}"),
+        (true, None) => "stills on, but the terminal offers no pixels".to_owned(),
+    };
+    say(state, line);
 }
 
 fn follow(state: &mut State) {

@@ -1,7 +1,7 @@
 //! What the world tells the state.
 
 use super::{Mode, State};
-use crate::app::state::{Job, Link, Notice};
+use crate::app::state::{Display, Job, Link, Notice};
 use crate::app::tracks::{Groups, TrackRow};
 
 /// Something that has changed in the world.
@@ -23,6 +23,8 @@ pub enum Fact {
     Link(Link),
     /// Pictures per second that were shown and that were due, where some were dropped.
     Dropped(Option<[u32; 2]>),
+    /// What is known of the terminal.
+    Display(Display),
     /// So many frames can be shown without waiting.
     Ready(u32),
 }
@@ -52,6 +54,7 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
         Fact::Said(notice) => state.notice = Some(notice),
         Fact::Link(link) => state.link = link,
         Fact::Dropped(dropped) => state.dropped = dropped.filter(|_| state.play.is_some()),
+        Fact::Display(display) => state.display = display,
         Fact::Ready(n) => state.n_ready = n,
     }
 }

@@ -1,5 +1,9 @@
-//! The picture in half blocks, with the tracks on it.
+//! The picture, with the tracks on it: in characters, and in pixels for stills.
 
+use std::collections::BTreeMap;
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
+
+use ratatui::layout::Rect;
 use ratatui::style::{Color, Style};
 use ratatui::text::Line;
 
@@ -9,7 +13,8 @@ use super::{put, style};
 use crate::app::layout::{Layout, Lens};
 use crate::app::state::{Mode, State};
 use crate::app::tracks::TrackRow;
-use crate::term::encode::{Frame, HALF_BLOCK};
+use crate::term::encode::Frame;
+use crate::term::glyph::Glyphs;
 
 /// A frame of the clip, scaled for a lens.
 #[derive(Clone, Debug)]
@@ -18,7 +23,7 @@ pub struct Shot {
     pub frame: u32,
     /// Which part of it, and for which cells.
     pub lens: Lens,
-    /// Its pixels, `(lens rows * 2, lens columns)`, row-major.
+    /// Its pixels, as many as the lens has, row-major.
     pub pixels: Vec<[u8; 3]>,
 }
 
@@ -79,13 +84,27 @@ const CROSS: [(i64, i64); 4] = [(-2, 0), (2, 0), (0, -2), (0, 2)];
 /// Its outer pixels.
 const CROSS_ENDS: [(i64, i64); 4] = [(-3, 0), (3, 0), (0, -3), (0, 3)];
 
+/// First of the braille patterns, which has no dots.
+const BRAILLE: u32 = 0x2800;
+/// Bits of the dots of a braille pattern, four rows of two.
+const DOTS: [[u8; 2]; 4] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
+
 /// Pixels to be drawn on.
 struct Canvas<'a> {
     lens: &'a Lens,
     pixels: Vec<[u8; 3]>,
     weights: Vec<u8>,
-    /// Marks as letters, where there are no colours: pixel and letter.
-    letters: Option<Vec<(usize, char)>>,
+    /// Marks, where there are no colours.
+    letters: Option<Letters>,
+    /// All that was drawn, and on what: finer than the pixels.
+    scene: DefaultHasher,
+}
+
+/// Marks where there are no colours: cells, counted row by row, and what stands in them.
+#[derive(Default)]
+struct Letters {
+    dots: BTreeMap<usize, u8>,
+    letters: Vec<(usize, char)>,
 }
 
 /// Every so many-th track is marked, a power of two: few enough marks that the picture is seen between them.
@@ -105,19 +124,35 @@ pub(super) fn draw(state: &State, layout: &Layout, shot: Option<&Shot>, frame: &
         put(frame, layout.picture, layout.picture.height / 2, &Line::styled(line, style::DIM).centered());
         return;
     };
-    let mut canvas = Canvas {
-        lens: &shot.lens,
-        pixels: shot.pixels.clone(),
-        weights: vec![PICTURE; shot.pixels.len()],
-        letters: state.mono.then(Vec::new),
-    };
-    // Marks belong to the frame that is shown, which may be a moment behind.
-    canvas.tracks(state, shot.frame);
-    canvas.cursor(state);
-    canvas.paint(frame);
+    Canvas::of(state, shot).paint(frame);
 }
 
-impl Canvas<'_> {
+/// The pixels of a shot with what lies on them.
+#[must_use]
+pub fn compose(state: &State, shot: &Shot) -> Vec<[u8; 3]> {
+    Canvas::of(state, shot).pixels
+}
+
+impl<'a> Canvas<'a> {
+    /// A shot with everything drawn on it.
+    fn of(state: &State, shot: &'a Shot) -> Self {
+        let lens = &shot.lens;
+        let mut scene = DefaultHasher::new();
+        [lens.x, lens.y, lens.width, lens.height].map(f64::to_bits).hash(&mut scene);
+        (shot.frame, lens.area).hash(&mut scene);
+        let mut canvas = Self {
+            lens,
+            pixels: shot.pixels.clone(),
+            weights: vec![PICTURE; shot.pixels.len()],
+            letters: state.mono.then(Letters::default),
+            scene,
+        };
+        // Marks belong to the frame that is shown, which may be a moment behind.
+        canvas.tracks(state, shot.frame);
+        canvas.cursor(state);
+        canvas
+    }
+
     fn tracks(&mut self, state: &State, frame: u32) {
         let selected = state.selected_row();
         if let Some(row) = selected {
@@ -152,8 +187,11 @@ impl Canvas<'_> {
     fn path(&mut self, row: &TrackRow, frame: u32) {
         for f in frame.saturating_sub(PATH_FRAMES)..=frame + PATH_FRAMES {
             let is_key = row.keys.binary_search(&f).is_ok();
-            if let Some(at) = row.at(f) {
-                self.mark(at, &[(0, 0)], if is_key { KEY } else { PATH }, if is_key { '*' } else { '.' });
+            match row.at(f) {
+                Some(at) if is_key => self.mark(at, &[(0, 0)], KEY, '*'),
+                Some(at) if self.letters.is_some() => self.dot(at),
+                Some(at) => self.mark(at, &[(0, 0)], PATH, '.'),
+                None => {}
             }
         }
     }
@@ -176,58 +214,118 @@ impl Canvas<'_> {
 
     /// Colours one pixel, letting the picture through a little: marks by the hundred must not hide it.
     fn tint(&mut self, at: [f32; 2], colour: [u8; 3]) {
-        let Some((x, y)) = self.lens.pixel_of(at) else { return };
-        let i = (y * self.lens.size().0 + x) as usize;
+        self.note(at, colour);
+        let Some(place) = self.lens.pixel_of(at) else { return };
         let mix = |a: u8, b: u8| ((u16::from(a) + 2 * u16::from(b)) / 3) as u8;
-        let [r, g, b] = self.pixels[i];
-        // A second mark on the same pixel changes nothing more.
-        if self.weights[i] == PICTURE {
-            self.pixels[i] = [mix(r, colour[0]), mix(g, colour[1]), mix(b, colour[2])];
-            self.weights[i] = MARK;
-        }
+        self.stamp(place, (0, 0), |[r, g, b], weight| {
+            // A second mark on the same pixel changes nothing more.
+            (weight == PICTURE).then(|| [mix(r, colour[0]), mix(g, colour[1]), mix(b, colour[2])])
+        });
     }
 
     /// Draws pixels about an image point; in letters, one letter at it.
     fn mark(&mut self, at: [f32; 2], shape: &[(i64, i64)], colour: [u8; 3], letter: char) {
-        let Some((x, y)) = self.lens.pixel_of(at) else { return };
-        let (columns, rows) = self.lens.size();
+        self.note(at, colour);
         if let Some(letters) = &mut self.letters {
-            if letter != ' ' {
-                letters.push(((y * columns + x) as usize, letter));
+            if let Some((x, y)) = self.lens.place_of(at, (1, 1)).filter(|_| letter != ' ') {
+                letters.letters.push(((y * u32::from(self.lens.area.width) + x) as usize, letter));
             }
             return;
         }
-        for &(dx, dy) in shape {
-            let (x, y) = (i64::from(x) + dx, i64::from(y) + dy);
-            if (0..i64::from(columns)).contains(&x) && (0..i64::from(rows)).contains(&y) {
+        let Some(place) = self.lens.pixel_of(at) else { return };
+        for &offset in shape {
+            self.stamp(place, offset, |_, _| Some(colour));
+        }
+    }
+
+    /// A dot finer than letters.
+    fn dot(&mut self, at: [f32; 2]) {
+        self.note(at, PATH);
+        let Some((x, y)) = self.lens.place_of(at, (2, 4)) else { return };
+        let cell = (y / 4 * u32::from(self.lens.area.width) + x / 2) as usize;
+        if let Some(letters) = &mut self.letters {
+            *letters.dots.entry(cell).or_default() |= DOTS[y as usize % 4][x as usize % 2];
+        }
+    }
+
+    fn note(&mut self, at: [f32; 2], colour: [u8; 3]) {
+        (at.map(f32::to_bits), colour).hash(&mut self.scene);
+    }
+
+    /// Colours the pixels of one point of a mark, so many points away from a pixel.
+    fn stamp(
+        &mut self,
+        (x, y): (u32, u32),
+        (dx, dy): (i64, i64),
+        colour: impl Fn([u8; 3], u8) -> Option<[u8; 3]>,
+    ) {
+        let (columns, rows) = self.lens.size();
+        let (width, height) = point(self.lens.grid);
+        let left = i64::from(x) - width / 2 + dx * width;
+        let top = i64::from(y) - height / 2 + dy * height;
+        for y in top.max(0)..(top + height).min(rows.into()) {
+            for x in left.max(0)..(left + width).min(columns.into()) {
                 let i = (y * i64::from(columns) + x) as usize;
-                self.pixels[i] = colour;
-                self.weights[i] = MARK;
+                if let Some(colour) = colour(self.pixels[i], self.weights[i]) {
+                    self.pixels[i] = colour;
+                    self.weights[i] = MARK;
+                }
             }
         }
     }
 
-    /// Puts the pixels into cells, two each.
+    /// Puts the pixels into cells.
     fn paint(&self, frame: &mut Frame) {
         let area = self.lens.area;
-        let columns = usize::from(area.width);
+        let (across, down) = self.lens.grid;
+        let columns = self.lens.size().0 as usize;
+        let glyphs = Glyphs::ALL.into_iter().find(|g| g.grid() == self.lens.grid).unwrap_or_default();
         let rgb = |[r, g, b]: [u8; 3]| Color::Rgb(r, g, b);
+        let mut pixels = Vec::with_capacity((across * down) as usize);
         for row in 0..area.height {
             for column in 0..area.width {
-                let above = 2 * usize::from(row) * columns + usize::from(column);
-                let below = above + columns;
+                let first =
+                    usize::from(row) * down as usize * columns + usize::from(column) * across as usize;
+                pixels.clear();
+                for y in 0..down as usize {
+                    let pixel = |x: usize| {
+                        (self.pixels[first + y * columns + x], self.weights[first + y * columns + x])
+                    };
+                    pixels.extend((0..across as usize).map(pixel));
+                }
+                let (symbol, fg, bg) = glyphs.fit(&pixels);
                 let i = frame.cells.index_of(area.x + column, area.y + row);
-                let colours = Style::new().fg(rgb(self.pixels[above])).bg(rgb(self.pixels[below]));
-                frame.cells.content[i].set_symbol(HALF_BLOCK).set_style(colours);
-                frame.softness[i] = self.weights[above].max(self.weights[below]);
+                frame.cells.content[i].set_char(symbol).set_style(Style::new().fg(rgb(fg)).bg(rgb(bg)));
+                frame.softness[i] = pixels.iter().map(|(_, weight)| *weight).max().unwrap_or(PICTURE);
             }
         }
-        for &(pixel, letter) in self.letters.iter().flatten() {
-            let (column, row) = (pixel % columns, pixel / columns / 2);
-            let i = frame.cells.index_of(area.x + column as u16, area.y + row as u16);
+        if let Some(letters) = &self.letters {
+            letters.paint(area, frame);
+        }
+        frame.scene = self.scene.finish();
+    }
+}
+
+impl Letters {
+    fn paint(&self, area: Rect, frame: &mut Frame) {
+        let columns = usize::from(area.width);
+        let dots = self
+            .dots
+            .iter()
+            .filter_map(|(cell, dots)| Some((*cell, char::from_u32(BRAILLE + u32::from(*dots))?)));
+        for (cell, letter) in dots.chain(self.letters.iter().copied()) {
+            let i = frame.cells.index_of(area.x + (cell % columns) as u16, area.y + (cell / columns) as u16);
             frame.cells.content[i].reset();
             frame.cells.content[i].set_char(letter).set_style(style::BOLD);
             frame.softness[i] = 0;
         }
+    }
+}
+
+/// Pixels across and down of one point of a mark: marks have about the same size and shape on every grid.
+fn point((across, down): (u32, u32)) -> (i64, i64) {
+    match (across, down) {
+        (2, 2) => (2, 1),
+        _ => (i64::from(across / 3).max(1), i64::from(down / 6).max(1)),
     }
 }

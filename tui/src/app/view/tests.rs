@@ -10,9 +10,10 @@ use crate::app::update::{Msg, update};
 use honami_model::track::TrackId;
 use ratatui::style::{Color, Modifier};
 
-/// The screen as text, then its styles as runs: `row: columns style`. Cells of the picture are `▒` without a
-/// style: their colours are tested where they are made.
+/// The screen as text, then its styles as runs: `row: columns style`. Cells of the picture in half blocks are `▒`
+/// without a style: their colours are tested where they are made.
 fn dump(frame: &Frame) -> String {
+    let is_fine = frame.cells.content.iter().zip(&frame.softness).any(|(c, s)| *s > 0 && c.symbol() != "▀");
     let area = frame.cells.area;
     let (mut text, mut styles) = (String::new(), String::new());
     for y in 0..area.height {
@@ -21,6 +22,7 @@ fn dump(frame: &Frame) -> String {
             let cell = &frame.cells[(x, y)];
             let softness = frame.softness[frame.cells.index_of(x, y)];
             text.push_str(match softness {
+                _ if is_fine => cell.symbol(),
                 0 => cell.symbol(),
                 1 => "▒",
                 _ => "▓",
@@ -133,6 +135,9 @@ fn screens() {
     check("tiny_40x12", (40, 12), "", |_| {});
     check("least_20x5", (20, 5), "", |_| {});
     check("wide_names_80x24", small, "", |state| state.tracks[0].name = Some("芽の左".to_owned()));
+    check("quadrants_80x24", small, "v q", |_| {});
+    check("octants_120x40", large, "v q v q v q", |_| {});
+    check("view_80x24", small, "v", |_| {});
     check("mono_80x24", small, "m l", |state| state.mono = true);
 }
 
