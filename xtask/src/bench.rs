@@ -11,12 +11,14 @@ use crate::{BUILD, SHIPPED};
 /// Name, what it measures, and how to run it.
 type Bench = (&'static str, &'static str, fn(&[&str]) -> anyhow::Result<()>);
 
-const BENCHES: [Bench; 6] = [
+const BENCHES: [Bench; 8] = [
     ("trackers", "KLT against OpenCV's calcOpticalFlowPyrLK, same frames, alternating", trackers),
     ("accuracy", "δavg of KLT and of OpenCV's on calm, wind and storm: `bench accuracy [SEED]`", accuracy),
     ("cluster", "composite distance + Ward, N = 2000, T = 500, against SciPy's linkage", cluster),
     ("media", "decoding, seeking, stepping back: `bench media CLIP`", media),
     ("store", "opening, editing and appending to a project of 10,000 tracks", store),
+    ("suspicion", "how well suspicion tells bad samples: `bench suspicion [--seed N] [--fit]`", suspicion),
+    ("queue", "the review queue with 100,000 items, an edit among 10,000 tracks", queue),
     ("plugins", "cost of a plugin call, in process", plugins),
 ];
 
@@ -103,4 +105,12 @@ fn store(args: &[&str]) -> anyhow::Result<()> {
 
 fn plugins(args: &[&str]) -> anyhow::Result<()> {
     example("honami-host", "overhead", args).run()
+}
+
+fn suspicion(args: &[&str]) -> anyhow::Result<()> {
+    example("honami-review", "suspicion_bench", args).run()
+}
+
+fn queue(args: &[&str]) -> anyhow::Result<()> {
+    example("honami-review", "queue_bench", args).run()
 }

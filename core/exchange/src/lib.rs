@@ -20,7 +20,9 @@
 pub mod rows;
 pub mod spans;
 pub mod table;
+pub mod verdicts;
 
 pub use rows::{GroupRow, PointRow, TrackRow, TruthRow, trust};
 pub use spans::spans;
 pub use table::{Reader, Row, TableError, Writer, read};
+pub use verdicts::{EffortRow, VerdictRow};

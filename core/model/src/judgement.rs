@@ -66,4 +66,8 @@ pub struct Judgement {
     pub time: String,
     /// What it took.
     pub effort: Effort,
+    /// Seal of the samples that were judged ([`Span::seal`](crate::track::Span::seal)): when theirs is another,
+    /// they have changed since, and the judgement says nothing of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seal: Option<u32>,
 }

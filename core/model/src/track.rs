@@ -129,4 +129,14 @@ impl Span {
         let n_frames = u32::try_from(self.samples.len()).unwrap_or(u32::MAX);
         self.first_frame..self.first_frame.saturating_add(n_frames)
     }
+    /// A number that changes when a position or status in these frames does: FNV-1a (Fowler, Noll, Vo), 32 bits.
+    #[must_use]
+    pub fn seal(&self, frames: std::ops::Range<u32>) -> u32 {
+        let bytes = frames.filter_map(|frame| Some((frame, self.get(frame)?))).flat_map(|(frame, sample)| {
+            let Sample { x, y, status, .. } = sample;
+            let words = [frame, x.to_bits(), y.to_bits(), *status as u32];
+            words.into_iter().flat_map(u32::to_le_bytes)
+        });
+        bytes.fold(0x811c_9dc5, |seal, byte| (seal ^ u32::from(byte)).wrapping_mul(0x0100_0193))
+    }
 }

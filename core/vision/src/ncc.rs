@@ -23,6 +23,34 @@ impl Ncc {
         Self { radius_px, first: Vec::new(), second: Vec::new() }
     }
 
+    /// Cuts a window out of a picture, to be compared with many others.
+    ///
+    /// `None` where it is flat.
+    ///
+    /// # Panics
+    /// When the picture has no pixels.
+    #[must_use]
+    #[track_caller]
+    pub fn template(&mut self, picture: &Gray<'_>, at: Point) -> Option<Template> {
+        sample::patch(picture, at, self.radius_px, &mut self.first);
+        let power = centre(&mut self.first)?;
+        Some(Template { pixels: self.first.clone(), power })
+    }
+
+    /// As [`compare`](Self::compare), with a template that was cut before; the same bits.
+    ///
+    /// # Panics
+    /// When the picture has no pixels, or the template was cut with another radius.
+    #[must_use]
+    #[track_caller]
+    pub fn against(&mut self, template: &Template, picture: &Gray<'_>, to: Point) -> Option<f32> {
+        sample::patch(picture, to, self.radius_px, &mut self.second);
+        assert_eq!(template.pixels.len(), self.second.len(), "a template of another radius");
+        let power = centre(&mut self.second)?;
+        let together = sum(&template.pixels, &self.second, |p, q| p * q);
+        Some((together / (template.power * power).sqrt()).clamp(-1.0, 1.0))
+    }
+
     /// Correlation of the window around `at` in `a` with that around `to` in `b`, -1..=1, 1 for the same pattern
     /// whatever its brightness and contrast: `Σ(p-p̄)(q-q̄) / √(Σ(p-p̄)² Σ(q-q̄)²)`.
     ///
@@ -35,23 +63,28 @@ impl Ncc {
     pub fn compare(&mut self, a: &Gray<'_>, at: Point, b: &Gray<'_>, to: Point) -> Option<f32> {
         sample::patch(a, at, self.radius_px, &mut self.first);
         sample::patch(b, to, self.radius_px, &mut self.second);
-        let n = self.first.len() as f32;
-        let mean_first = sum(&self.first, &self.first, |p, _| p) / n;
-        let mean_second = sum(&self.second, &self.second, |q, _| q) / n;
-        for p in &mut self.first {
-            *p -= mean_first;
-        }
-        for q in &mut self.second {
-            *q -= mean_second;
-        }
-        let power_first = sum(&self.first, &self.first, |p, q| p * q);
-        let power_second = sum(&self.second, &self.second, |p, q| p * q);
-        if power_first.min(power_second) < n * FLAT_GRAY * FLAT_GRAY {
-            return None;
-        }
+        let (power_first, power_second) = (centre(&mut self.first)?, centre(&mut self.second)?);
         let together = sum(&self.first, &self.second, |p, q| p * q);
         Some((together / (power_first * power_second).sqrt()).clamp(-1.0, 1.0))
     }
+}
+
+/// A window with its mean taken off, and the sum of its squares.
+#[derive(Clone, Debug)]
+pub struct Template {
+    pixels: Vec<f32>,
+    power: f32,
+}
+
+/// Takes the mean off and gives the sum of squares; `None` where the window is flat.
+fn centre(pixels: &mut [f32]) -> Option<f32> {
+    let n = pixels.len() as f32;
+    let mean = sum(pixels, pixels, |p, _| p) / n;
+    for p in &mut *pixels {
+        *p -= mean;
+    }
+    let power = sum(pixels, pixels, |p, q| p * q);
+    (power >= n * FLAT_GRAY * FLAT_GRAY).then_some(power)
 }
 
 /// Sum of `f(p, q)` in sixteen fixed lanes: the same order, hence the same bits, however it is compiled.
@@ -117,6 +150,8 @@ mod tests {
             let (a, b) = (Gray::packed(&p, 3, 3), Gray::packed(&q, 3, 3));
             let got = Ncc::new(1).compare(&a, [1.0, 1.0], &b, [1.0, 1.0]);
             assert!(got.is_some_and(|ncc| (ncc - want).abs() < 1e-6), "{p:?} {q:?}: {got:?} not {want}");
+            let cut = Ncc::new(1).template(&a, [1.0, 1.0]);
+            assert_eq!(cut.and_then(|cut| Ncc::new(1).against(&cut, &b, [1.0, 1.0])), got);
         }
     }
 

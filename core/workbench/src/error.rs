@@ -113,6 +113,9 @@ pub enum WorkbenchError {
     /// No clustering is shown.
     #[error("there are no groups yet: cluster the tracks first")]
     NoGroups,
+    /// Nothing was judged.
+    #[error("no segment was judged yet: `honami PROJECT` opens the queue")]
+    NoVerdicts,
     /// No track is seen long enough for a spectrum.
     #[error("no track is seen in enough frames for a spectrum: track longer")]
     TooBrief,

@@ -12,6 +12,7 @@ mod error;
 pub mod export;
 pub mod generate;
 pub mod progress;
+pub mod review;
 pub mod session;
 pub mod spectra;
 mod stamp;

@@ -2,6 +2,7 @@
 
 use super::{Edit, Transaction};
 use crate::document::{ClusteringId, Key, RunId, ShownClustering};
+use crate::judgement::Judgement;
 use crate::track::{TrackId, TrackSet};
 
 impl Transaction {
@@ -51,6 +52,14 @@ impl Transaction {
             format!("track {track}: key-frame at {frame} cleared"),
             vec![Edit::ClearKey { track, frame }],
         )
+    }
+
+    /// A reviewer judges a segment.
+    #[must_use]
+    pub fn judge(track: TrackId, first_frame: u32, judgement: Judgement) -> Self {
+        let last = judgement.end_frame.saturating_sub(1);
+        let label = format!("track {track}: frames {first_frame}-{last} {}", judgement.verdict.word());
+        Self::new(label, vec![Edit::Judge { track, first_frame, judgement: Some(judgement) }])
     }
 
     /// Tracks are deleted.

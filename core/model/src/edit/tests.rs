@@ -81,6 +81,7 @@ fn judgement(end_frame: u32) -> Judgement {
         reviewer: "ana".to_owned(),
         time: "2026-11-22T00:00:00Z".to_owned(),
         effort: Effort::default(),
+        seal: Some(7),
     }
 }
 

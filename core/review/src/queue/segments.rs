@@ -1,0 +1,153 @@
+//! From the suspicion of samples to the segments worth a look.
+
+use std::fmt;
+use std::ops::Range;
+
+use honami_model::judgement::{Judgement, Verdict};
+use honami_model::track::{Sample, Source, Span, TrackId};
+
+use super::{Item, Tally};
+use crate::evidence::Parts;
+use crate::suspicion::{N_PARTS, WEIGHTS, is_lost, of_sample, transformed};
+
+/// A sample is worth a look from this suspicion on: one in five such samples is bad.
+pub const DOUBTFUL: f32 = 0.2;
+/// Segments that are no farther apart are one, frames. Less than this beside a judged segment is not worth an item.
+const NEAR: u32 = 8;
+/// A part is a reason when it is worse than this, which four of five good samples are better than (of the clips that
+/// suspicion was fitted on).
+const ORDINARY: Parts =
+    Parts { fb_px: Some(1.0), ncc: Some(0.34), jump: Some(4.1), nbr_px: Some(4.1), dis_px: Some(2.7) };
+
+/// What speaks against a segment, as short codes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Reasons(u8);
+
+impl Reasons {
+    /// The codes in the order of the evidence's parts: forward-backward error, correlation, jump, neighbours,
+    /// disagreement of trackers; and lost.
+    pub const CODES: [&str; N_PARTS + 1] = ["FB", "NCC", "JMP", "NBR", "DIS", "LOST"];
+    /// The track is lost.
+    pub const LOST: Self = Self(1 << N_PARTS);
+
+    /// The parts that speak against a sample, the strongest at least.
+    #[must_use]
+    pub fn of(parts: &Parts) -> Self {
+        let ((_, shares), (_, ordinary)) = (WEIGHTS.log_odds(parts), WEIGHTS.log_odds(&ORDINARY));
+        let measured = transformed(parts).map(|x| x.is_some());
+        let worse = |k: usize| if measured[k] { shares[k] - ordinary[k] } else { f64::NEG_INFINITY };
+        let notable = (0..N_PARTS).filter(|&k| worse(k) > 0.0).fold(0, |bits, k| bits | 1 << k);
+        let strongest = (0..N_PARTS).filter(|&k| measured[k]).max_by(|&a, &b| worse(a).total_cmp(&worse(b)));
+        Self(if notable == 0 { strongest.map_or(0, |k| 1 << k) } else { notable })
+    }
+
+    /// Both together.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// Its codes.
+    pub fn codes(self) -> impl Iterator<Item = &'static str> {
+        Self::CODES.into_iter().enumerate().filter(move |(k, _)| self.0 >> k & 1 == 1).map(|(_, code)| code)
+    }
+}
+
+impl fmt::Display for Reasons {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(&self.codes().collect::<Vec<_>>().join(" "))
+    }
+}
+
+/// What there is to review in a track.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Segments {
+    /// Its doubtful segments.
+    pub items: Vec<Item>,
+    /// Suspicion of every sample.
+    pub suspicions: Vec<f32>,
+    /// What was found of the judged segments whose samples are still those that were judged.
+    pub judged: Tally,
+}
+
+/// The doubtful segments of a track and the suspicion of every sample; judged segments are left out as long as their
+/// samples are those that were judged.
+///
+/// A segment is a longest range of doubtful or lost samples without key-frames, ranges near each other joined.
+pub fn segments<'a>(
+    track: TrackId,
+    span: &Span,
+    parts: &[Parts],
+    judgements: impl IntoIterator<Item = (u32, &'a Judgement)>,
+) -> Segments {
+    let suspicions: Vec<f32> = span.samples.iter().zip(parts).map(|(s, parts)| of_sample(s, parts)).collect();
+    let standing = standing(span, judgements);
+    let with = |later: bool| {
+        let wanted = standing.iter().filter(move |(_, verdict)| (*verdict == Verdict::Later) == later);
+        wanted.map(|(frames, _)| frames.clone()).collect::<Vec<_>>()
+    };
+    let (done, later) = (with(false), with(true));
+    let is_done = |frame: u32| done.iter().any(|frames| frames.contains(&frame));
+    let mut found: Vec<Range<u32>> = Vec::new();
+    let mut is_open = false;
+    for (frame, (sample, suspicion)) in span.frames().zip(span.samples.iter().zip(&suspicions)) {
+        if is_wall(sample) || is_done(frame) {
+            is_open = false;
+        } else if *suspicion >= DOUBTFUL {
+            match found.last_mut().filter(|last| is_open && frame - last.end <= NEAR) {
+                Some(last) => last.end = frame + 1,
+                None => found.push(frame..frame + 1),
+            }
+            is_open = true;
+        }
+    }
+    // What sticks out of a judged segment by a few frames was looked at with it.
+    let is_rest = |frames: &Range<u32>| {
+        let near = |done: &Range<u32>| frames.start <= done.end + 1 && done.start <= frames.end + 1;
+        frames.end - frames.start <= NEAR && done.iter().any(near)
+    };
+    found.retain(|frames| !is_rest(frames));
+    let item = |frames: Range<u32>| item(track, frames, (span, parts, &suspicions), &later);
+    let items = found.into_iter().map(item).collect();
+    Segments { items, judged: standing.iter().map(|(_, verdict)| *verdict).collect(), suspicions }
+}
+
+/// A person's word between two segments.
+fn is_wall(sample: &Sample) -> bool {
+    sample.source == Source::Key
+}
+
+/// The judged segments whose samples are still those that were judged.
+fn standing<'a>(
+    span: &Span,
+    judgements: impl IntoIterator<Item = (u32, &'a Judgement)>,
+) -> Vec<(Range<u32>, Verdict)> {
+    let segment = |(first_frame, judgement): (u32, &Judgement)| {
+        let frames = first_frame..judgement.end_frame;
+        let stands = judgement.seal.is_none_or(|seal| seal == span.seal(frames.clone()));
+        stands.then_some((frames, judgement.verdict))
+    };
+    judgements.into_iter().filter_map(segment).collect()
+}
+
+fn item(
+    track: TrackId,
+    frames: Range<u32>,
+    (span, parts, suspicions): (&Span, &[Parts], &[f32]),
+    later: &[Range<u32>],
+) -> Item {
+    let at = |frame: u32| (frame - span.first_frame) as usize;
+    let samples = at(frames.start)..at(frames.end);
+    // The first of equally doubtful ones: where it went wrong.
+    let worst = samples.clone().rev().max_by(|&a, &b| suspicions[a].total_cmp(&suspicions[b]));
+    let worst = worst.unwrap_or(samples.start);
+    let lost = samples.clone().any(|at| is_lost(&span.samples[at]));
+    let measured = samples.filter(|&at| !is_lost(&span.samples[at]) && suspicions[at] >= DOUBTFUL);
+    let measured = measured.max_by(|&a, &b| suspicions[a].total_cmp(&suspicions[b])).map(|at| parts[at]);
+    let of_parts = measured.as_ref().map_or(Reasons::default(), Reasons::of);
+    let reasons = if lost { of_parts.and(Reasons::LOST) } else { of_parts };
+    let worst_frame = span.first_frame + u32::try_from(worst).unwrap_or(0);
+    let later = later.iter().any(|put_off| put_off.start < frames.end && frames.start < put_off.end);
+    let (parts, suspicion) = (measured.unwrap_or_default(), suspicions[worst]);
+    Item { track, frames, worst: worst_frame, reasons, parts, suspicion, later }
+}

@@ -1,0 +1,70 @@
+//! The review of all tracks as it stands: the queue, the suspicion of every track, the progress.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use honami_model::judgement::Judgement;
+use honami_model::track::TrackId;
+
+use crate::evidence::Evidence;
+use crate::queue::{Progress, Queue, Segments, Tally, segments};
+use crate::suspicion;
+
+/// What is known of a track.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Standing {
+    /// Suspicion of every sample, from the first of the span.
+    pub suspicions: Arc<[f32]>,
+    /// Suspicion of the track: what is left of it, judged segments aside.
+    pub suspicion: f32,
+    /// What was found of its judged segments.
+    pub judged: Tally,
+}
+
+/// The review of all tracks.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Review {
+    /// Segments to look at.
+    pub queue: Queue,
+    tracks: BTreeMap<TrackId, Standing>,
+    judged: Tally,
+}
+
+impl Review {
+    /// Replaces what is known of a track; `None` when it is no longer shown.
+    pub fn set(&mut self, track: TrackId, segments: Option<Segments>) {
+        if let Some(old) = self.tracks.remove(&track) {
+            self.judged -= old.judged;
+        }
+        let Segments { items, suspicions, judged } = segments.unwrap_or_default();
+        if !suspicions.is_empty() {
+            let open: Vec<f32> = items.iter().map(|item| item.suspicion).collect();
+            let suspicion = suspicion::of_track(&open);
+            self.judged += judged;
+            self.tracks.insert(track, Standing { suspicions: suspicions.into(), suspicion, judged });
+        }
+        self.queue.set(track, items);
+    }
+
+    /// What is known of a track.
+    #[must_use]
+    pub fn track(&self, track: TrackId) -> Option<&Standing> {
+        self.tracks.get(&track)
+    }
+
+    /// How far the review is.
+    #[must_use]
+    pub fn progress(&self) -> Progress {
+        Progress { open: self.queue.len(), judged: self.judged }
+    }
+}
+
+impl Evidence {
+    /// What there is to review in a track, given what reviewers have said of it by first frame; `None` for a track that
+    /// was not measured.
+    #[must_use]
+    pub fn segments(&self, track: TrackId, judgements: &BTreeMap<u32, Judgement>) -> Option<Segments> {
+        let (span, parts) = (self.span(track)?, self.parts(track)?);
+        Some(segments(track, span, &parts, judgements.iter().map(|(&frame, judgement)| (frame, judgement))))
+    }
+}

@@ -1,0 +1,272 @@
+//! Review: the evidence of a project's tracks, measured behind the screen, and the queue that comes of it.
+//!
+//! [`Changes`] are read from the project; a [`Reviewer`] takes them on any thread. What needs no pixels is told at once,
+//! correlations follow a batch of tracks at a time, the most doubtful first, and the ranking with them.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use honami_media::Media;
+use honami_model::document::RunId;
+use honami_model::judgement::Judgement;
+use honami_model::track::{Span, TrackId};
+use honami_store::Project;
+
+pub use honami_review::evidence::Parts;
+pub use honami_review::queue::{
+    Item, Progress as ReviewProgress, Queue, Rank, Reasons, Segments, Tally, effort,
+};
+pub use honami_review::{Review, Standing};
+
+use honami_review::evidence::{Correlator, Evidence, Subject};
+
+use crate::error::WorkbenchError;
+use crate::progress::{Flow, Progress};
+
+pub mod tables;
+
+/// Tracks that a thread correlates before their ranking is told.
+const BATCH: usize = 128;
+/// Changed tracks from which on whole runs are read instead of one track after the other.
+const MANY: usize = 16;
+
+/// What reviewers have said of a track, by the first frame of the segment.
+type Judgements = BTreeMap<u32, Judgement>;
+
+/// What a reviewer has been told of; empty at first.
+#[derive(Clone, Debug, Default)]
+pub struct Known {
+    tracks: BTreeMap<TrackId, (Arc<Span>, Judgements)>,
+    runs: Vec<RunId>,
+}
+
+/// What has changed in a project since a reviewer was told of it last.
+#[derive(Clone, Debug, Default)]
+pub struct Changes {
+    subjects: Vec<Subject>,
+    judgements: Vec<(TrackId, Judgements)>,
+    gone: Vec<TrackId>,
+}
+
+impl Changes {
+    /// What has changed in the project since `known`, which is brought up to date.
+    ///
+    /// # Errors
+    /// What the project met.
+    pub fn since(known: &mut Known, project: &Project) -> Result<Self, WorkbenchError> {
+        let document = project.document();
+        let runs: Vec<RunId> = document.runs().iter().map(|shown| shown.run).collect();
+        let all_anew = runs != known.runs;
+        let mut new = Known { tracks: BTreeMap::new(), runs };
+        let (mut moved, mut changes) = (Vec::new(), Self::default());
+        for (track, span) in project.shown_all()? {
+            let judgements = document.track(track).map(|track| track.judgements.clone()).unwrap_or_default();
+            let old = known.tracks.remove(&track);
+            if all_anew || old.as_ref().is_none_or(|(old, _)| !Arc::ptr_eq(old, &span)) {
+                moved.push((track, Arc::clone(&span)));
+            }
+            if old.is_none_or(|(_, old)| old != judgements) {
+                changes.judgements.push((track, judgements.clone()));
+            }
+            new.tracks.insert(track, (span, judgements));
+        }
+        changes.gone = std::mem::replace(known, new).tracks.into_keys().collect();
+        let mut rivals = rivals(project, &moved.iter().map(|(track, _)| *track).collect())?;
+        let subject =
+            |(track, span)| Subject { track, span, rivals: rivals.remove(&track).unwrap_or_default() };
+        changes.subjects = moved.into_iter().map(subject).collect();
+        Ok(changes)
+    }
+
+    /// Whether nothing has changed.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.subjects.is_empty() && self.judgements.is_empty() && self.gone.is_empty()
+    }
+}
+
+/// What runs of different trackers say of some tracks; of those followed by one only, nothing.
+fn rivals(
+    project: &Project,
+    tracks: &BTreeSet<TrackId>,
+) -> Result<BTreeMap<TrackId, Vec<Arc<Span>>>, WorkbenchError> {
+    let mut tops: Vec<(String, RunId)> = Vec::new();
+    for shown in project.document().runs() {
+        let made = project.run(shown.run)?.head.provenance;
+        let tracker = format!("{} {:?}", made.plugin_id, made.params);
+        // A tracker that was run again has changed its mind: its earlier word does not count.
+        tops.retain(|(other, _)| *other != tracker);
+        tops.push((tracker, shown.run));
+    }
+    let mut rivals = BTreeMap::<TrackId, Vec<Arc<Span>>>::new();
+    if tops.len() < 2 {
+        return Ok(rivals);
+    }
+    for (_, run) in tops {
+        let spans = if tracks.len() > MANY {
+            project.run_tracks(run)?
+        } else {
+            let of = |&track: &TrackId| {
+                Ok(project.run_spans(run, track)?.into_iter().map(move |span| (track, span)))
+            };
+            tracks.iter().map(of).collect::<Result<Vec<_>, WorkbenchError>>()?.into_iter().flatten().collect()
+        };
+        for (track, span) in spans.into_iter().filter(|(track, _)| tracks.contains(track)) {
+            rivals.entry(track).or_default().push(Arc::new(span));
+        }
+    }
+    Ok(rivals)
+}
+
+/// What there is to review in a track now; `None`: it is no longer shown.
+pub type Told = (TrackId, Option<Segments>);
+
+/// Measures the evidence of a project's tracks.
+#[derive(Debug)]
+pub struct Reviewer {
+    media: Arc<Media>,
+    max_threads: usize,
+    evidence: Evidence,
+    judgements: BTreeMap<TrackId, Judgements>,
+    /// Tracks with samples that were not looked at in the pictures: the edited ones, then the most doubtful.
+    pending: Vec<TrackId>,
+}
+
+impl Reviewer {
+    /// Of a project without tracks; its clip is looked at by up to `max_threads` threads at a time.
+    #[must_use]
+    pub fn new(media: Arc<Media>, max_threads: usize) -> Self {
+        let (evidence, judgements, pending) = Default::default();
+        Self { media, max_threads: max_threads.max(1), evidence, judgements, pending }
+    }
+
+    /// Takes changes and measures what needs no pixels. Returns what has changed of the review.
+    pub fn tell(&mut self, changes: Changes) -> Vec<Told> {
+        let Changes { subjects, judgements, gone } = changes;
+        let mut touched: BTreeSet<TrackId> = judgements.iter().map(|(track, _)| *track).collect();
+        self.judgements.extend(judgements);
+        let moved: Vec<TrackId> = subjects.iter().map(|subject| subject.track).collect();
+        let nothing = |track| Subject { track, span: Arc::default(), rivals: Vec::new() };
+        let all = moved.len() + gone.len();
+        if all > MANY && all > self.evidence.tracks().count() / MANY {
+            self.measure_all(subjects, &gone);
+            touched = self.evidence.tracks().chain(gone.iter().copied()).collect();
+        } else {
+            for subject in subjects.into_iter().chain(gone.iter().copied().map(nothing)) {
+                touched.extend(self.evidence.replace(subject));
+            }
+        }
+        gone.iter().for_each(|track| drop(self.judgements.remove(track)));
+        let told: Vec<Told> = touched.into_iter().map(|track| (track, self.segments(track))).collect();
+        self.plan(&moved, &gone, &told);
+        told
+    }
+
+    /// Many tracks have changed: everything is measured anew, but for correlations that still hold.
+    fn measure_all(&mut self, subjects: Vec<Subject>, gone: &[TrackId]) {
+        let mut all: BTreeMap<TrackId, Subject> =
+            self.evidence.subjects().map(|subject| (subject.track, subject.clone())).collect();
+        gone.iter().for_each(|track| drop(all.remove(track)));
+        all.extend(subjects.into_iter().map(|subject| (subject.track, subject)));
+        let mut evidence = Evidence::new(all.into_values().collect(), self.max_threads);
+        evidence.inherit(&self.evidence);
+        self.evidence = evidence;
+    }
+
+    /// Puts changed tracks at the front of those to be correlated: few as they come, many the most doubtful first.
+    fn plan(&mut self, moved: &[TrackId], gone: &[TrackId], told: &[Told]) {
+        let suspicion: BTreeMap<TrackId, f32> = told
+            .iter()
+            .map(|(track, segments)| {
+                (*track, segments.iter().flat_map(|s| &s.items).map(|i| i.suspicion).fold(0.0, f32::max))
+            })
+            .collect();
+        let changed: BTreeSet<TrackId> = moved.iter().chain(gone).copied().collect();
+        let mut first: Vec<TrackId> = moved.to_vec();
+        let of = |track: &TrackId| suspicion.get(track).copied().unwrap_or(0.0);
+        first.sort_by(|a, b| of(b).total_cmp(&of(a)).then(a.cmp(b)));
+        first.extend(self.pending.iter().filter(|track| !changed.contains(track)));
+        self.pending = first;
+    }
+
+    /// Whether there are samples that were not looked at in the pictures.
+    #[must_use]
+    pub fn is_pending(&self) -> bool {
+        !self.pending.is_empty()
+    }
+
+    /// Looks at the pictures for the next tracks, and waits for the frames that are still to be decoded. Returns what
+    /// has changed of the review; nothing when it was stopped, and then these tracks stay to be looked at.
+    ///
+    /// # Errors
+    /// What the clip met.
+    pub fn look(&mut self, progress: &dyn Progress) -> Result<Vec<Told>, WorkbenchError> {
+        let n = self.pending.len().min(BATCH * self.max_threads);
+        let tracks = self.pending[..n].to_vec();
+        let share = n.div_ceil(self.max_threads).max(1);
+        let correlators: Vec<Correlator> =
+            tracks.chunks(share).map(|some| self.evidence.correlator(some)).collect();
+        let media = &*self.media;
+        let looked = std::thread::scope(|scope| {
+            let work = |correlator| scope.spawn(move || correlate(media, correlator, progress));
+            let workers: Vec<_> = correlators.into_iter().map(work).collect();
+            let ends = workers.into_iter().map(|worker| worker.join().unwrap_or(Ok(None)));
+            ends.collect::<Result<Option<Vec<Correlator>>, WorkbenchError>>()
+        })?;
+        let Some(looked) = looked else { return Ok(Vec::new()) };
+        looked.into_iter().for_each(|correlator| self.evidence.correlated(correlator));
+        self.pending.drain(..n);
+        Ok(tracks.into_iter().map(|track| (track, self.segments(track))).collect())
+    }
+
+    fn segments(&self, track: TrackId) -> Option<Segments> {
+        let none = Judgements::new();
+        self.evidence.segments(track, self.judgements.get(&track).unwrap_or(&none))
+    }
+}
+
+/// Shows a correlator its pictures; `None` when it was stopped.
+fn correlate(
+    media: &Media,
+    mut correlator: Correlator,
+    progress: &dyn Progress,
+) -> Result<Option<Correlator>, WorkbenchError> {
+    for frame in correlator.template_frames() {
+        correlator.cut(frame, &media.frame(frame)?.planes().y);
+    }
+    let n_frames = u64::from(media.clip().n_frames());
+    for frame in correlator.sample_frames() {
+        if progress.report(u64::from(frame), n_frames, "frame") == Flow::Stop {
+            return Ok(None);
+        }
+        correlator.look(frame, &media.frame(frame)?.planes().y);
+    }
+    Ok(Some(correlator))
+}
+
+/// The review of a project, measured to the end.
+///
+/// # Errors
+/// [`WorkbenchError::Stopped`], and what the project or the clip met.
+pub fn review(
+    project: &Project,
+    media: Arc<Media>,
+    progress: &dyn Progress,
+) -> Result<Review, WorkbenchError> {
+    let mut reviewer = Reviewer::new(media, crate::track::threads() as usize);
+    let mut review = Review::default();
+    let mut told = reviewer.tell(Changes::since(&mut Known::default(), project)?);
+    loop {
+        told.into_iter().for_each(|(track, segments)| review.set(track, segments));
+        if !reviewer.is_pending() {
+            return Ok(review);
+        }
+        told = reviewer.look(progress)?;
+        if told.is_empty() {
+            return Err(WorkbenchError::Stopped);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,162 @@
+//! The review of a project with one track that goes astray: found, judged, corrected, found again.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use honami_model::document::Key;
+use honami_model::edit::{Edit, Transaction};
+use honami_model::judgement::{Effort, Verdict};
+use honami_model::provenance::Provenance;
+use honami_model::track::{Quality, Sample, Source, Status};
+use honami_store::RunHead;
+use honami_synth::Settings;
+use tempfile::TempDir;
+
+use super::*;
+use crate::generate::{generate, truth_beside};
+use crate::session::Session;
+
+const N_FRAMES: u32 = 24;
+/// From this frame on the straying track is where nothing is.
+const ASTRAY: u32 = 9;
+
+/// A project whose tracks follow the truth, but for one that strays from [`ASTRAY`] on; its number is the last.
+fn project() -> (TempDir, Session, TrackId) {
+    let folder = tempfile::tempdir().unwrap();
+    let clip = folder.path().join("clip.y4m");
+    let settings =
+        Settings { width: 320, height: 240, n_frames: N_FRAMES, n_leaves: 40, ..Settings::default() };
+    generate(&settings, &clip, &()).unwrap();
+    let path = folder.path().join("clip.honami");
+    let mut session = Session::create(&path, &clip, None, &Default::default()).unwrap();
+    let truth = crate::compare::read_truth(&truth_beside(&clip), N_FRAMES).unwrap();
+    let seen: Vec<_> = truth.into_iter().filter(|(_, path)| path.positions.iter().all(|at| at.2)).collect();
+    let astray = seen.last().unwrap().0;
+    let sample = |track, frame: u32, (x, y, _): (f64, f64, bool)| {
+        let is_wrong = track == astray && frame >= ASTRAY;
+        let off = if is_wrong { 6.0 * f64::from(frame - ASTRAY + 1) } else { 0.0 };
+        let fb_px = (frame > 0).then_some(if is_wrong { 2.5 } else { 0.02 });
+        let quality = Quality { fb_px, ncc: None };
+        let (status, source) = (Status::Tracked, Source::Tracked);
+        Sample { x: (x + off) as f32, y: y as f32, status, source, quality }
+    };
+    let rows: Vec<Vec<_>> = (0..N_FRAMES)
+        .map(|frame| {
+            seen.iter().map(|(id, path)| (*id, sample(*id, frame, path.positions[frame as usize]))).collect()
+        })
+        .collect();
+    let tracks: honami_model::track::TrackSet = seen.iter().map(|(id, _)| *id).collect();
+    session.project.claim_tracks(&tracks).unwrap();
+    let head = RunHead { provenance: provenance(), tracks: tracks.clone(), frames: 0..N_FRAMES };
+    let mut writer = session.project.begin_run(&head).unwrap();
+    writer.append(0, &rows).unwrap();
+    let run = writer.finish().unwrap();
+    session.project.commit(Transaction::show_run(run, tracks)).unwrap();
+    (folder, session, astray)
+}
+
+fn provenance() -> Provenance {
+    let word = || "test".to_owned();
+    let (params, date) = Default::default();
+    Provenance {
+        what: word(),
+        plugin_id: word(),
+        plugin_version: word(),
+        plugin_sha256: word(),
+        abi: (1, 0),
+        params,
+        seed: 0,
+        input_revision: 0,
+        sandbox: word(),
+        simd: word(),
+        date,
+        honami_version: word(),
+    }
+}
+
+fn judged(session: &Session, item: &Item, verdict: Verdict) -> Transaction {
+    let span = session.project.shown(item.track).unwrap().unwrap();
+    let judgement = Judgement {
+        end_frame: item.frames.end,
+        verdict,
+        reasons: item.reasons.codes().map(str::to_owned).collect(),
+        reviewer: "ann".to_owned(),
+        time: "2026-01-02T03:04:05Z".to_owned(),
+        effort: Effort { keystrokes: 3, key_frames: 0, seconds: 1.5 },
+        seal: Some(span.seal(item.frames.clone())),
+    };
+    Transaction::judge(item.track, item.frames.start, judgement)
+}
+
+#[test]
+fn the_track_that_goes_astray_is_found_and_leaves_when_judged_until_it_changes() {
+    let (folder, mut session, astray) = project();
+    let found = review(&session.project, Arc::clone(&session.media), &()).unwrap();
+    let first = found.queue.first().unwrap().clone();
+    assert_eq!(first.track, astray, "{:?}", found.queue);
+    assert!(first.frames.start.abs_diff(ASTRAY) <= 3 && first.frames.end == N_FRAMES, "{first:?}");
+    assert!(["FB", "NCC", "NBR"].iter().all(|code| first.reasons.codes().any(|c| c == *code)), "{first:?}");
+    assert!(first.suspicion > 0.8 && found.track(astray).unwrap().suspicion > 0.8, "{first:?}");
+
+    assert!(tables::verdicts(&session.project, &folder.path().join("v.csv")).is_err());
+    let label = session.project.commit(judged(&session, &first, Verdict::Accepted)).unwrap();
+    let line = session.project.history().get(label).unwrap().label.clone();
+    assert_eq!(line, format!("track {astray}: frames {}-23 accepted", first.frames.start));
+    let after = review(&session.project, Arc::clone(&session.media), &()).unwrap();
+    assert_eq!(after.queue.of_track(astray).count(), 0);
+    let progress = after.progress();
+    assert_eq!((progress.open + 1, progress.judged.done()), (found.queue.len(), 1));
+    assert_eq!(tables::verdicts(&session.project, &folder.path().join("v.csv")).unwrap(), 1);
+    assert_eq!(tables::efforts(&session.project, &folder.path().join("e.csv")).unwrap(), 1);
+
+    let key = Edit::SetKey { track: astray, frame: 15, key: Key::set(3.0, 4.0) };
+    session.project.commit(Transaction::new("moved", vec![key])).unwrap();
+    let again = review(&session.project, Arc::clone(&session.media), &()).unwrap();
+    assert!(again.queue.of_track(astray).count() > 0 && again.progress().judged.done() == 0);
+}
+
+/// Everything that a reviewer tells, after it was told of a project and has looked at all pictures.
+fn all(reviewer: &mut Reviewer, known: &mut Known, project: &Project, review: &mut Review) {
+    let mut told = reviewer.tell(Changes::since(known, project).unwrap());
+    while !told.is_empty() || reviewer.is_pending() {
+        told.into_iter().for_each(|(track, segments)| review.set(track, segments));
+        told = if reviewer.is_pending() { reviewer.look(&()).unwrap() } else { Vec::new() };
+    }
+}
+
+#[test]
+fn told_of_edits_it_knows_what_one_that_begins_anew_finds_with_any_number_of_threads() {
+    let (_folder, mut session, astray) = project();
+    let (mut known, mut kept) = (Known::default(), Review::default());
+    let mut reviewer = Reviewer::new(Arc::clone(&session.media), 2);
+    all(&mut reviewer, &mut known, &session.project, &mut kept);
+    let key = Edit::SetKey { track: astray, frame: 15, key: Key::set(30.0, 40.0) };
+    let tracks = session.project.document().tracks().map(|(id, _)| id).take(2).collect();
+    for edits in [vec![key], vec![Edit::DeleteTracks { tracks }]] {
+        session.project.commit(Transaction::new("edit", edits)).unwrap();
+        all(&mut reviewer, &mut known, &session.project, &mut kept);
+        for threads in [1, 3] {
+            let (mut fresh, mut anew) =
+                (Reviewer::new(Arc::clone(&session.media), threads), Review::default());
+            all(&mut fresh, &mut Known::default(), &session.project, &mut anew);
+            assert_eq!(anew, kept);
+        }
+    }
+    assert!(Changes::since(&mut known, &session.project).unwrap().is_empty());
+}
+
+/// Stops after so many reports.
+struct StopAfter(AtomicU64);
+
+impl Progress for StopAfter {
+    fn report(&self, _: u64, _: u64, _: &str) -> Flow {
+        let left = self.0.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |n| n.checked_sub(1));
+        if left.is_ok() { Flow::Continue } else { Flow::Stop }
+    }
+}
+
+#[test]
+fn stopped_it_says_so() {
+    let (_folder, session, _) = project();
+    let stopped = review(&session.project, Arc::clone(&session.media), &StopAfter(AtomicU64::new(5)));
+    assert!(matches!(stopped, Err(WorkbenchError::Stopped)), "{stopped:?}");
+}
