@@ -48,7 +48,7 @@ fn a_script_of_corrections_ends_where_it_goes_wrong() {
         ("add 3 500 10", "(500, 10) in frame 3 is not in the clip"),
         ("add 3 nan 10", "(nan, 10) in frame 3 is not in the clip"),
         ("add 3 a 10", "wanted a position in pixels, got a"),
-        ("delete", "this is no edit"),
+        ("delete", "wanted delete TRACK…"),
         ("delete 0 x", "wanted the track as a whole number, got x"),
         ("clear 0 7", "track 0 has no key-frame at 7"),
         ("restore 0", "track 0 is not deleted"),

@@ -7,6 +7,7 @@ mod home;
 mod journal_kill;
 mod locks;
 mod real_clips;
+mod retrack;
 mod stopped;
 mod tidy;
 mod wrong;

@@ -105,6 +105,13 @@ impl Values {
     }
 }
 
+/// Values as they were kept, of whatever schema they were.
+impl FromIterator<(String, Value)> for Values {
+    fn from_iter<I: IntoIterator<Item = (String, Value)>>(kept: I) -> Self {
+        Self(kept.into_iter().collect())
+    }
+}
+
 fn find<'p>(params: &'p [Param], id: &str) -> Result<&'p Param, ValueError> {
     params.iter().find(|param| param.id == id).ok_or_else(|| {
         let known = params.iter().map(|param| param.id.as_str()).collect::<Vec<_>>().join(", ");

@@ -17,6 +17,7 @@ use crate::{journal, schema};
 
 mod compact;
 mod read;
+mod whole;
 
 /// Frames of a chunk at most: what a kill can cost, and what one transaction writes.
 const CHUNK_FRAMES: usize = 64;
@@ -46,6 +47,18 @@ pub enum RunState {
     },
     /// The program died in the middle; what it had written is kept.
     Interrupted,
+}
+
+impl RunState {
+    /// The word in the database, and why the run was stopped.
+    fn words(&self) -> (&'static str, Option<&str>) {
+        match self {
+            Self::Running => ("running", None),
+            Self::Complete => ("complete", None),
+            Self::Stopped { reason } => ("stopped", Some(reason)),
+            Self::Interrupted => ("interrupted", None),
+        }
+    }
 }
 
 impl std::fmt::Display for RunState {
@@ -150,20 +163,25 @@ impl Project {
     pub fn begin_run(&mut self, head: &RunHead) -> Result<RunWriter, StoreError> {
         let lock = self.lock()?;
         let conn = schema::connect(self.path(), true)?;
-        let json = |what: serde_json::Result<String>| what.map_err(StoreError::corrupt);
-        conn.execute(
-            "INSERT INTO run (state, first_frame, end_frame, seeds, provenance)
-             VALUES ('running', ?1, ?2, ?3, ?4)",
-            params![
-                head.frames.start,
-                head.frames.end,
-                json(serde_json::to_string(&head.tracks))?,
-                json(serde_json::to_string(&head.provenance))?
-            ],
-        )?;
-        let run = RunId(u32::try_from(conn.last_insert_rowid()).map_err(StoreError::corrupt)?);
+        let run = insert(&conn, head, &RunState::Running)?;
         Ok(RunWriter { run, conn, _lock: lock })
     }
+}
+
+/// Writes the head of a new run and returns its number.
+fn insert(conn: &Connection, head: &RunHead, state: &RunState) -> Result<RunId, StoreError> {
+    let json = |what: serde_json::Result<String>| what.map_err(StoreError::corrupt);
+    conn.execute(
+        "INSERT INTO run (state, first_frame, end_frame, seeds, provenance) VALUES (?1, ?2, ?3, ?4, ?5)",
+        params![
+            state.words().0,
+            head.frames.start,
+            head.frames.end,
+            json(serde_json::to_string(&head.tracks))?,
+            json(serde_json::to_string(&head.provenance))?
+        ],
+    )?;
+    Ok(RunId(u32::try_from(conn.last_insert_rowid()).map_err(StoreError::corrupt)?))
 }
 
 /// Marks what dead sessions left running as interrupted and compacts it; the caller holds the lock. Returns

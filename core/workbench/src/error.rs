@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use honami_model::track::TrackId;
+
 /// Why a use-case failed: what was wanted, what came, what to do, in one line.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -142,6 +144,30 @@ pub enum WorkbenchError {
     /// The truth names no point that was tracked.
     #[error("the truth shows none of the tracked points after their first frame")]
     NoTruth,
+    /// No key-frame says where a re-tracking begins.
+    #[error(
+        "track {track} has no key-frame in {first}-{last} to track from: set one where the feature is seen"
+    )]
+    NoAnchor {
+        /// The track.
+        track: TrackId,
+        /// The first frame asked for.
+        first: u32,
+        /// The last.
+        last: u32,
+    },
+    /// The tracker follows a feature into no frame.
+    #[error("track {track}: nothing was found from its key-frames, the track stays as it was")]
+    LostAtOnce {
+        /// The track.
+        track: TrackId,
+    },
+    /// No plugin tracks.
+    #[error("there is no tracker to track with; see honami plugin list")]
+    NoTracker,
+    /// A correction cannot be done.
+    #[error(transparent)]
+    Refused(#[from] honami_model::correct::Refused),
     /// The caller stopped a job that keeps nothing.
     #[error("stopped")]
     Stopped,

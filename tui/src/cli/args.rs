@@ -45,7 +45,7 @@ pub(super) enum Command {
     ///
     /// An edit is answered once it is in the project file, with its number in the undo tree. The first edit that
     /// cannot be done ends the script; those before it are kept.
-    #[command(after_help = EDITS)]
+    #[command(after_help = honami_workbench::script::help())]
     Edit(Project),
     /// Run trackers side by side on a clip and say how far they can be trusted.
     Compare(Compare),
@@ -75,18 +75,6 @@ pub(super) enum Command {
         folder: PathBuf,
     },
 }
-
-/// What `edit` reads.
-pub(super) const EDITS: &str = "\
-Edits (frames count from 0; pixels, (0,0) is the centre of the top-left pixel; # begins a remark):
-  add FRAME X Y         place a new track
-  key TRACK FRAME X Y   move a sample, which becomes a key-frame
-  clear TRACK FRAME     give a key-frame back to the runs below it
-  delete TRACK…         delete tracks; their work is kept
-  restore TRACK…        take deleted tracks back
-  cut K                 cut the shown clustering into K groups
-  undo                  take the last edit back
-  redo                  do again what was undone";
 
 #[derive(Args, Debug)]
 pub(super) struct Project {

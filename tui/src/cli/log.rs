@@ -24,8 +24,8 @@ fn line(line: &LogLine) -> String {
             let (made, found) = (&run.head.provenance, &run.found);
             let state = &run.state;
             format!(
-                "{date}  run {}  {} frames {}..{}, {state}  {made}",
-                run.id, run.tracks, found.start, found.end
+                "{date}  run {}  {}: {} frames {}..{}, {state}  {made}",
+                run.id, made.what, run.tracks, found.start, found.end
             )
         }
         LogItem::Clustering(info) => {

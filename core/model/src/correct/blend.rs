@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::{Correction, Refused, Shown, is_placed, position};
+use crate::clip::FrameTimes;
 use crate::curve::{Knot, Segment};
 use crate::document::RunId;
 use crate::over::{Laid, Over};
@@ -60,12 +61,69 @@ fn laid(
     shown.correct(vec![edit.ok_or(Refused::NoSamples { track: shown.id, frames: asked })?], words)
 }
 
-/// Blends what was found forwards from one key-frame with what was found backwards from the next.
+/// Which of two passes a sample counts to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// The one from the first key-frame on.
+    Forward,
+    /// The one from the second key-frame back.
+    Backward,
+}
+
+/// A frame between two key-frames, as two passes together have it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Blended {
+    /// The frame.
+    pub frame: u32,
+    /// What is laid there.
+    pub sample: Sample,
+    /// The pass that weighs more; `None` where neither has seen the feature.
+    pub side: Option<Side>,
+}
+
+/// The path between two key-frames, given by frame and position: what was found forwards from the first blended with
+/// what was found backwards from the second.
 ///
 /// Each weighs by a sigmoid that falls along its way; the two sum to one, and are stretched so that each is
 /// exactly one at its own key-frame and zero at the other (after the reverse-sigmoid correction of LK-RSTC).
 /// Where one of them is lost the other counts alone, and the sigmoids run over the frames that both have
 /// seen; where both are, a curve bridges them. Status and quality are those of the heavier one.
+#[must_use]
+pub fn blended(
+    forward: &Span,
+    backward: &Span,
+    keys: [(u32, [f64; 2]); 2],
+    times: &FrameTimes,
+) -> Vec<Blended> {
+    let [(from, _), (to, _)] = keys;
+    let inner = from + 1..to;
+    // The last frame that is followed from the first key-frame on, and the first one that is from the second.
+    let followed = inner.clone().take_while(|&frame| placed(forward, frame).is_some()).last().unwrap_or(from);
+    let reached =
+        inner.clone().rev().take_while(|&frame| placed(backward, frame).is_some()).last().unwrap_or(to);
+    let start = if reached <= from + 1 { from } else { reached };
+    let end = if followed + 1 >= to { to } else { followed };
+    let bridge = bridge(forward, backward, keys, (followed, reached), times);
+    let at = |frame: u32| -> Option<(Sample, Option<Side>)> {
+        if reached > followed && frame > followed && frame < reached {
+            let [x, y] = bridge.as_ref()?.at(times.get(frame)?);
+            let (status, source, quality) = (Status::Tracked, Source::Interpolated, Quality::default());
+            return Some((Sample { x: x as f32, y: y as f32, status, source, quality }, None));
+        }
+        match (forward.get(frame), backward.get(frame)) {
+            (Some(ahead), Some(back)) if (reached..=followed).contains(&frame) => {
+                let share = share(times, (start, end), frame);
+                let side = if share < 0.5 { Side::Forward } else { Side::Backward };
+                Some((mixed(ahead, back, share), Some(side)))
+            }
+            (Some(ahead), _) if frame <= followed => Some((*ahead, Some(Side::Forward))),
+            (_, back) => Some((*back?, Some(Side::Backward))),
+        }
+    };
+    inner.filter_map(|frame| at(frame).map(|(sample, side)| Blended { frame, sample, side })).collect()
+}
+
+/// Lays the [`blended`] path of two passes between two key-frames.
 ///
 /// # Errors
 /// [`Refused::NoKey`] when one of the two is no key-frame; [`Refused::NoSamples`] when they are neighbours.
@@ -76,38 +134,16 @@ pub fn blend(
     run: RunId,
     keys: (u32, u32),
 ) -> Result<Correction, Refused> {
-    let (from, to) = keys;
-    for frame in [from, to] {
-        if !shown.track.keys.contains_key(&frame) {
-            return Err(Refused::NoKey { track: shown.id, frame });
-        }
-    }
-    let inner = from + 1..to;
-    // The last frame that is followed from the first key-frame on, and the first one that is from the second.
-    let followed = inner.clone().take_while(|&frame| placed(forward, frame).is_some()).last().unwrap_or(from);
-    let reached =
-        inner.clone().rev().take_while(|&frame| placed(backward, frame).is_some()).last().unwrap_or(to);
-    let start = if reached <= from + 1 { from } else { reached };
-    let end = if followed + 1 >= to { to } else { followed };
-    let bridge = bridge(shown, forward, backward, (followed, reached));
-    let blended = |frame: u32| -> Option<Sample> {
-        if reached > followed && frame > followed && frame < reached {
-            let [x, y] = bridge.as_ref()?.at(shown.time(frame));
-            let (status, source, quality) = (Status::Tracked, Source::Interpolated, Quality::default());
-            return Some(Sample { x: x as f32, y: y as f32, status, source, quality });
-        }
-        match (forward.get(frame), backward.get(frame)) {
-            (Some(ahead), Some(back)) if (reached..=followed).contains(&frame) => {
-                Some(mixed(ahead, back, share(shown, (start, end), frame)))
-            }
-            (Some(ahead), _) if frame <= followed => Some(*ahead),
-            (_, back) => back.copied(),
-        }
+    let key = |frame: u32| {
+        let key = shown.track.keys.get(&frame).ok_or(Refused::NoKey { track: shown.id, frame })?;
+        Ok::<_, Refused>((frame, [f64::from(key.x), f64::from(key.y)]))
     };
+    let inner = keys.0 + 1..keys.1;
+    let path = blended(forward, backward, [key(keys.0)?, key(keys.1)?], shown.times);
     let over = |frame: u32| {
-        let sample = blended(frame)?;
-        let run = (sample.source != Source::Interpolated).then_some(run);
-        Some(Some(Over::Sample(Laid { sample, run })))
+        let at = path.binary_search_by_key(&frame, |blended| blended.frame).ok()?;
+        let Blended { sample, side, .. } = path[at];
+        Some(Some(Over::Sample(Laid { sample, run: side.map(|_| run) })))
     };
     let edit = shown.relay(inner.clone(), over);
     shown.correct(
@@ -123,12 +159,13 @@ fn placed(span: &Span, frame: u32) -> Option<&Sample> {
 
 /// The backward one's share at a frame of the blended range: 0 at its start, 1 at its end, and
 /// `share(tau) + share(1 - tau) = 1`.
-fn share(shown: &Shown<'_>, (start, end): (u32, u32), frame: u32) -> f64 {
-    let dt_s = shown.time(end) - shown.time(start);
+fn share(times: &FrameTimes, (start, end): (u32, u32), frame: u32) -> f64 {
+    let time = |frame: u32| times.get(frame).unwrap_or_default();
+    let dt_s = time(end) - time(start);
     if dt_s <= 0.0 {
         return 0.5;
     }
-    rising((shown.time(frame) - shown.time(start)) / dt_s)
+    rising((time(frame) - time(start)) / dt_s)
 }
 
 /// A sigmoid on 0..=1, stretched to reach 0 and 1 at its ends.
@@ -146,15 +183,16 @@ fn mixed(ahead: &Sample, back: &Sample, share: f64) -> Sample {
 
 /// The curve over the frames that neither has seen, with the speed that each has there.
 fn bridge(
-    shown: &Shown<'_>,
     forward: &Span,
     backward: &Span,
+    keys: [(u32, [f64; 2]); 2],
     (followed, reached): (u32, u32),
+    times: &FrameTimes,
 ) -> Option<Segment> {
     let knot = |span: &Span, frame: u32| {
-        let sample = shown.track.keys.get(&frame).map(|key| [f64::from(key.x), f64::from(key.y)]);
-        let at = sample.or_else(|| span.get(frame).map(position))?;
-        Some(Knot { t_s: shown.times.get(frame)?, at })
+        let key = keys.iter().find(|(at, _)| *at == frame).map(|(_, at)| *at);
+        let at = key.or_else(|| span.get(frame).map(position))?;
+        Some(Knot { t_s: times.get(frame)?, at })
     };
     let (from, to) = (knot(forward, followed)?, knot(backward, reached)?);
     let speed = |a: Option<Knot>, b: Option<Knot>| match (a, b) {

@@ -16,30 +16,21 @@ const BATCH_SAMPLES: usize = if cfg!(test) { 50 } else { 4_000_000 };
 /// Ends a run: spans instead of chunks, and the state it ends in, in one transaction.
 pub(super) fn end(conn: &mut Connection, run: RunId, state: &RunState) -> Result<(), StoreError> {
     let tx = conn.transaction_with_behavior(TransactionBehavior::Immediate)?;
-    gather(
-        &tx,
-        run,
-        |_| true,
-        |track, span| {
-            let mut data = Vec::new();
-            codec::write_block(&mut data, &span.samples);
-            let n_frames = codec::len_u32(span.samples.len());
-            tx.prepare_cached(
-                "INSERT INTO span (run, track, first_frame, n_frames, data) VALUES (?1, ?2, ?3, ?4, ?5)",
-            )?
-            .execute(params![run.0, track.0, span.first_frame, n_frames, data])?;
-            Ok(())
-        },
-    )?;
+    gather(&tx, run, |_| true, |track, span| insert(&tx, run, track, &span))?;
     tx.execute("DELETE FROM chunk WHERE run = ?1", [run.0])?;
-    let (word, reason) = match state {
-        RunState::Running => ("running", None),
-        RunState::Complete => ("complete", None),
-        RunState::Stopped { reason } => ("stopped", Some(reason)),
-        RunState::Interrupted => ("interrupted", None),
-    };
+    let (word, reason) = state.words();
     tx.execute("UPDATE run SET state = ?1, reason = ?2 WHERE id = ?3", params![word, reason, run.0])?;
     Ok(tx.commit()?)
+}
+
+/// Writes consecutive samples of a track of a run.
+pub(super) fn insert(conn: &Connection, run: RunId, track: TrackId, span: &Span) -> Result<(), StoreError> {
+    let mut data = Vec::new();
+    codec::write_block(&mut data, &span.samples);
+    let n_frames = codec::len_u32(span.samples.len());
+    let sql = "INSERT INTO span (run, track, first_frame, n_frames, data) VALUES (?1, ?2, ?3, ?4, ?5)";
+    conn.prepare_cached(sql)?.execute(params![run.0, track.0, span.first_frame, n_frames, data])?;
+    Ok(())
 }
 
 /// Puts the chunks of a run together: the gap-free spans of the wanted tracks, in order of tracks and frames.

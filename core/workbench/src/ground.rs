@@ -1,0 +1,56 @@
+//! A track as it lies in the project, taken out of it: what a correction starts from, on any thread.
+
+use std::collections::BTreeMap;
+
+use honami_model::clip::FrameTimes;
+use honami_model::correct::Shown;
+use honami_model::document::{RunId, Track};
+use honami_model::edit::EditError;
+use honami_model::over::{Laid, Over};
+use honami_model::track::{Sample, Span, TrackId};
+use honami_store::{Project, StoreError};
+
+/// A track with the runs below it.
+pub(crate) struct Ground {
+    id: TrackId,
+    /// The hand work on it.
+    pub(crate) track: Track,
+    /// Spans of its shown runs, the topmost last.
+    runs: Vec<(RunId, Span)>,
+    /// Spans of the runs by which what corrections have laid down unseen was found.
+    found: BTreeMap<RunId, Vec<Span>>,
+}
+
+impl Ground {
+    /// # Errors
+    /// When there is no such track, and what the project met.
+    pub(crate) fn of(project: &Project, id: TrackId) -> Result<Self, StoreError> {
+        let document = project.document();
+        let known = document.track(id).filter(|known| !known.deleted);
+        let track = known.ok_or(EditError::NoSuchTrack(id))?.clone();
+        let mut runs = Vec::new();
+        for run in document.runs_of(id) {
+            runs.extend(project.run_spans(run, id)?.into_iter().map(|span| (run, span)));
+        }
+        let mut found = BTreeMap::new();
+        for over in track.over.values() {
+            if let Over::Sample(Laid { sample, run: Some(run) }) = over
+                && !sample.status.is_seen()
+                && !found.contains_key(run)
+            {
+                found.insert(*run, project.run_spans(*run, id)?);
+            }
+        }
+        Ok(Self { id, track, runs, found })
+    }
+
+    /// What is shown of it.
+    pub(crate) fn shown<'a>(&'a self, times: &'a FrameTimes) -> Shown<'a> {
+        Shown::new(self.id, &self.track, &self.runs, times)
+    }
+
+    /// What a run found in a frame, of those whose samples lie unseen over the track.
+    pub(crate) fn found(&self, run: RunId, frame: u32) -> Option<&Sample> {
+        self.found.get(&run)?.iter().find_map(|span| span.get(frame))
+    }
+}

@@ -1,0 +1,219 @@
+//! Re-tracking: a tracker goes on from a person's key-frames, forward, backward, or both ways between two.
+//!
+//! The tracker sees only what lies round the path that the feature is known to take (`retrack/crop.rs`), which makes
+//! a pass a matter of milliseconds. Every pass is kept as an immutable run; what it found is laid over the track by
+//! one edit. Key-frames, strokes and marks of a person are never changed by it.
+
+mod crop;
+mod direction;
+mod lay;
+mod pass;
+mod plan;
+#[cfg(test)]
+mod tests;
+
+use std::ops::RangeInclusive;
+use std::sync::Arc;
+use std::sync::atomic::AtomicU64;
+
+use honami_host::Values;
+use honami_media::Media;
+use honami_model::correct::Correction;
+use honami_model::document::{Key, RunId};
+use honami_model::history::EntryId;
+use honami_model::track::{Span, TrackId};
+use honami_store::{Project, RunHead};
+
+use crate::error::WorkbenchError;
+use crate::ground::Ground;
+use crate::progress::Progress;
+use crate::session::Session;
+use direction::{Direction, Made};
+use lay::{Runs, Tracked};
+use pass::{Found, Meter, Scene};
+use plan::{Pass, Stretch};
+
+/// In which direction the tracker goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// From a key-frame on, until the feature is lost or up to the next key-frame.
+    Forward,
+    /// From a key-frame back, until the feature is lost or down to the one before.
+    Backward,
+    /// From both of two neighbouring key-frames; where both have found the feature the two paths are blended.
+    Both,
+}
+
+/// What to re-track.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RetrackRequest {
+    /// The track.
+    pub track: TrackId,
+    /// The direction.
+    pub way: Way,
+    /// First and last frame; key-frames among them are where passes begin and end.
+    pub frames: RangeInclusive<u32>,
+    /// A key-frame that is not in the project yet: it is set by the same edit.
+    pub key: Option<(u32, Key)>,
+    /// The tracker, short name or full id, with its parameters; `None`: those of the track's run.
+    pub with: Option<(String, Values)>,
+}
+
+/// Passes that are ready to go.
+pub struct RetrackJob {
+    media: Arc<Media>,
+    ground: Ground,
+    request: RetrackRequest,
+    stretches: Vec<Stretch>,
+    forward: Option<Direction>,
+    backward: Option<Direction>,
+    margin_px: u32,
+}
+
+/// Passes that have ended; give them to [`finish`], or drop them and nothing has happened.
+pub struct Retracked {
+    request: RetrackRequest,
+    tracked: Vec<Tracked>,
+    heads: [Option<RunHead>; 2],
+    correction: Correction,
+    warnings: Vec<String>,
+}
+
+/// What a re-tracking came to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RetrackOutcome {
+    /// The runs that were made.
+    pub runs: Vec<RunId>,
+    /// The edit that laid them over the track.
+    pub entry: EntryId,
+    /// What happened, in one line.
+    pub line: String,
+    /// What the tracker warned of.
+    pub warnings: Vec<String>,
+}
+
+/// What a person means who says `way` with the cursor on `frame`: up to the neighbouring key-frames, or where there
+/// are none to the track's birth and the clip's ends. On a key-frame, both ways are both of its sides.
+///
+/// # Errors
+/// When there is no such track.
+pub fn around(
+    project: &Project,
+    track: TrackId,
+    way: Way,
+    frame: u32,
+    key: Option<(u32, Key)>,
+) -> Result<RetrackRequest, WorkbenchError> {
+    let ground = Ground::of(project, track)?;
+    let anchors = lay::anchors(&ground, key, &project.clip().clip.times);
+    let frames = plan::around(&anchors, frame, way, project.clip().clip.n_frames());
+    Ok(RetrackRequest { track, way, frames, key, with: None })
+}
+
+/// Loads the tracker, once for each direction.
+///
+/// # Errors
+/// When the plugin, its parameters or the frames are not what they must be, or no key-frame in them says where the
+/// feature is.
+pub fn prepare(session: &Session, request: &RetrackRequest) -> Result<RetrackJob, WorkbenchError> {
+    let (first, last) = (*request.frames.start(), *request.frames.end());
+    let n_frames = session.media.clip().n_frames();
+    if first > last || last >= n_frames {
+        return Err(WorkbenchError::Frames { start: first, end: last.saturating_add(1), n_frames });
+    }
+    let ground = Ground::of(&session.project, request.track)?;
+    let anchors = lay::anchors(&ground, request.key, &session.media.clip().times);
+    let stretches = plan::stretches(&anchors, &request.frames, request.way);
+    if stretches.is_empty() {
+        return Err(WorkbenchError::NoAnchor { track: request.track, first, last });
+    }
+    let (plugin, values) =
+        request.with.clone().map_or_else(|| direction::usual(session, request.track), Ok)?;
+    let start = |pass: fn(&Stretch) -> Option<Pass>, word| {
+        let passes: Vec<Pass> = stretches.iter().filter_map(pass).collect();
+        Direction::start(session, request.track, (&plugin, &values), &passes, word)
+    };
+    Ok(RetrackJob {
+        media: Arc::clone(&session.media),
+        ground,
+        request: request.clone(),
+        forward: start(Stretch::forward, "forward")?,
+        backward: start(Stretch::backward, "backward")?,
+        stretches,
+        margin_px: direction::margin_px(&values),
+    })
+}
+
+impl RetrackJob {
+    /// Makes the passes, the two directions side by side, and looks what they would change.
+    ///
+    /// # Errors
+    /// [`WorkbenchError::Stopped`], [`WorkbenchError::LostAtOnce`], and what the clip or the tracker met; nothing is
+    /// kept then.
+    pub fn run(self, progress: &dyn Progress) -> Result<Retracked, WorkbenchError> {
+        let Self { media, ground, request, stretches, forward, backward, margin_px } = self;
+        let (ahead, back): (Vec<_>, Vec<_>) =
+            stretches.iter().map(|stretch| (stretch.forward(), stretch.backward())).unzip();
+        let total = ahead.iter().chain(&back).flatten().map(|pass| pass.order().count() as u64).sum();
+        let meter = Meter { progress, done: AtomicU64::new(0), total };
+        let times = &media.clip().times;
+        let path = ground.shown(times).span().clone();
+        let scene = Scene { media: &media, track: request.track, path: &path, margin_px, meter: &meter };
+        let make = |direction: Option<Direction>, passes: &[Option<Pass>]| {
+            direction.map_or_else(|| Ok(Made::default()), |direction| direction.make(&scene, passes))
+        };
+        let (ahead, back) = rayon::join(|| make(forward, &ahead), || make(backward, &back));
+        let (ahead, back) = (ahead?, back?);
+        let (mut found_ahead, mut found_back) = (ahead.found.into_iter(), back.found.into_iter());
+        let tracked: Vec<Tracked> = stretches
+            .into_iter()
+            .map(|stretch| Tracked {
+                stretch,
+                forward: found_ahead.next().flatten(),
+                backward: found_back.next().flatten(),
+            })
+            .collect();
+        let mut warnings = ahead.warnings;
+        warnings.extend(back.warnings);
+        warnings.dedup();
+        let correction = lay::correction(&ground, &request, &tracked, Runs::default(), times)?;
+        Ok(Retracked { request, tracked, heads: [ahead.head, back.head], correction, warnings })
+    }
+}
+
+impl Retracked {
+    /// What it would do; the runs it would be said to come from have no numbers yet.
+    #[must_use]
+    pub fn correction(&self) -> &Correction {
+        &self.correction
+    }
+}
+
+/// Keeps the passes as runs and lays them over the track: one edit, which undo takes back.
+///
+/// What a person has made of the track in the meantime is not changed.
+///
+/// # Errors
+/// What the project met.
+pub fn finish(session: &mut Session, done: Retracked) -> Result<RetrackOutcome, WorkbenchError> {
+    let Retracked { request, tracked, heads, warnings, .. } = done;
+    let project = &mut session.project;
+    let [ahead, back] = heads;
+    let spans = |pass: fn(&Tracked) -> &Option<Found>| -> Vec<(TrackId, Span)> {
+        let found = tracked.iter().filter_map(|one| pass(one).as_ref());
+        let kept = found.filter(|found| !found.span.samples.is_empty());
+        kept.map(|found| (request.track, found.span.clone())).collect()
+    };
+    let ahead = ahead.map(|head| (head, spans(|one| &one.forward)));
+    let back = back.map(|head| (head, spans(|one| &one.backward)));
+    let has_ahead = ahead.is_some();
+    let runs = project.keep_runs(&ahead.into_iter().chain(back).collect::<Vec<_>>())?;
+    let mut numbers = runs.iter().copied();
+    let numbers = Runs { forward: if has_ahead { numbers.next() } else { None }, backward: numbers.next() };
+    let times = project.clip().clip.times.clone();
+    let correction =
+        lay::correction(&Ground::of(project, request.track)?, &request, &tracked, numbers, &times)?;
+    let line = correction.transaction.label.clone();
+    let entry = project.commit(correction.transaction)?;
+    Ok(RetrackOutcome { runs, entry, line, warnings })
+}

@@ -1,0 +1,90 @@
+//! The words after the first: numbers, tracks, frames and positions, each refused with what was wanted.
+
+use std::ops::Range;
+
+use honami_model::track::{TrackId, TrackSet};
+
+use super::{ScriptError, Word};
+use crate::session::Session;
+
+/// The words after the first, as many as the word takes.
+pub(super) struct Arguments<'a> {
+    word: &'static Word,
+    given: &'a [&'a str],
+}
+
+impl<'a> Arguments<'a> {
+    /// As many as the word takes: `…` at the end of its form is one or more, what stands in brackets may be missing.
+    pub(super) fn of(word: &'static Word, given: &'a [&'a str]) -> Result<Self, ScriptError> {
+        let forms = word.takes.split_whitespace();
+        let least = forms.clone().filter(|form| !form.starts_with('[')).count();
+        let most = if word.takes.contains('…') { usize::MAX } else { forms.count() };
+        if (least..=most).contains(&given.len()) {
+            Ok(Self { word, given })
+        } else {
+            Err(ScriptError::Form { name: word.name, takes: word.takes })
+        }
+    }
+
+    /// The word in a place; empty where none was given.
+    pub(super) fn text(&self, at: usize) -> &'a str {
+        self.given.get(at).copied().unwrap_or_default()
+    }
+
+    /// The words from a place on.
+    pub(super) fn rest(&self, at: usize) -> &'a [&'a str] {
+        self.given.get(at..).unwrap_or_default()
+    }
+
+    /// It is not what the word takes there.
+    pub(super) fn wrong(&self, at: usize, wanted: &str) -> ScriptError {
+        let got = self.given.get(at).map_or_else(|| format!("{} alone", self.word.name), ToString::to_string);
+        ScriptError::Wrong { wanted: wanted.to_owned(), got }
+    }
+
+    pub(super) fn whole(&self, at: usize, what: &str) -> Result<u32, ScriptError> {
+        self.text(at).parse().ok().ok_or_else(|| self.wrong(at, &format!("the {what} as a whole number")))
+    }
+
+    /// A finite number.
+    pub(super) fn number(&self, at: usize, wanted: &str) -> Result<f64, ScriptError> {
+        let number: Option<f64> = self.text(at).parse().ok();
+        number.filter(|number| number.is_finite()).ok_or_else(|| self.wrong(at, wanted))
+    }
+
+    pub(super) fn track(&self, at: usize) -> Result<TrackId, ScriptError> {
+        Ok(TrackId(self.whole(at, "track")?))
+    }
+
+    /// The tracks from a place on.
+    pub(super) fn tracks(&self, at: usize) -> Result<TrackSet, ScriptError> {
+        (at..self.given.len()).map(|at| self.track(at)).collect()
+    }
+
+    /// The frames from the one in this place to the one in the next, both included.
+    pub(super) fn frames(&self, at: usize) -> Result<Range<u32>, ScriptError> {
+        let (first, last) = (self.whole(at, "first frame")?, self.whole(at + 1, "last frame")?);
+        if first > last {
+            return Err(self.wrong(at + 1, &format!("a last frame from {first} on")));
+        }
+        Ok(first..last.saturating_add(1))
+    }
+
+    /// A frame and a position in the clip: elsewhere no tracker could go on from it.
+    pub(super) fn place(&self, at: usize, session: &Session) -> Result<(u32, [f32; 2]), ScriptError> {
+        let clip = session.media.clip();
+        let (width, height, n_frames) = (clip.width, clip.height, clip.n_frames());
+        let frame = self.whole(at, "frame")?;
+        let pixels = |at: usize| {
+            self.text(at).parse::<f32>().ok().ok_or_else(|| self.wrong(at, "a position in pixels"))
+        };
+        let [x, y] = [pixels(at + 1)?, pixels(at + 2)?];
+        let inside = |v: f32, size: u32| (-0.5..size as f32 - 0.5).contains(&v);
+        if inside(x, width) && inside(y, height) && frame < n_frames {
+            Ok((frame, [x, y]))
+        } else {
+            let [x, y] = [at + 1, at + 2].map(|at| self.text(at).to_owned());
+            Err(ScriptError::Outside { x, y, frame, width, height, n_frames })
+        }
+    }
+}

@@ -1,0 +1,316 @@
+//! The words of scripts, and what each does.
+
+use honami_host::{HostError, Kind, Values};
+use honami_model::correct::{self, Correction, Drawn, Played, Refused, Shown, tracks};
+use honami_model::edit::{Edit, Transaction};
+use honami_model::judgement::{Effort, Judgement, Verdict};
+use honami_model::track::{Status, TrackId};
+
+use super::arguments::Arguments;
+use super::{Act, ScriptError, Word};
+use crate::error::WorkbenchError;
+use crate::ground::Ground;
+use crate::retrack::{self, RetrackRequest, Way};
+use crate::session::Session;
+
+type Outcome = Result<Act, ScriptError>;
+
+/// Every word of a script, in the order of the help.
+pub const WORDS: &[Word] = &[
+    Word { name: "add", takes: "FRAME X Y", does: "place a new track", act: add },
+    Word {
+        name: "key",
+        takes: "TRACK FRAME X Y",
+        does: "move a sample, which becomes a key-frame; those beside it stay",
+        act: key,
+    },
+    Word {
+        name: "confirm",
+        takes: "TRACK FRAME",
+        does: "find a sample right; it becomes a key-frame",
+        act: confirm,
+    },
+    Word {
+        name: "clear",
+        takes: "TRACK FRAME",
+        does: "give a key-frame back to the runs below it",
+        act: clear,
+    },
+    Word {
+        name: "linear",
+        takes: "TRACK FRAME X Y",
+        does: "move a sample; straight lines to the key-frames beside it",
+        act: |session, given| moved(session, given, correct::linear),
+    },
+    Word {
+        name: "hermite",
+        takes: "TRACK FRAME X Y",
+        does: "move a sample; a smooth curve through the key-frames beside it",
+        act: |session, given| moved(session, given, correct::hermite),
+    },
+    Word {
+        name: "space",
+        takes: "TRACK FRAME X Y",
+        does: "move a sample; those up to the key-frames beside it move along",
+        act: |session, given| moved(session, given, correct::space),
+    },
+    Word {
+        name: "time",
+        takes: "TRACK FRAME SECONDS",
+        does: "slide samples along the curve, later or (-) earlier",
+        act: time,
+    },
+    Word {
+        name: "sketch",
+        takes: "TRACK FRAME RATE S,X,Y…",
+        does: "lay a stroke: drawn S seconds after the clip played from FRAME at RATE",
+        act: sketch,
+    },
+    Word {
+        name: "retrack",
+        takes: "TRACK forward|backward|both FIRST LAST [TRACKER] [K=V…]",
+        does: "track again from the key-frames in a range; hand work stays",
+        act: retrack,
+    },
+    Word {
+        name: "mark",
+        takes: "lost|occluded|outside|seen TRACK FIRST LAST",
+        does: "say what is known of the feature in a range",
+        act: mark,
+    },
+    Word {
+        name: "range-delete",
+        takes: "TRACK FIRST LAST",
+        does: "take the samples of a range away",
+        act: range_delete,
+    },
+    Word { name: "split", takes: "TRACK FRAME", does: "cut a track in two: a new one goes on", act: split },
+    Word { name: "swap", takes: "TRACK TRACK FIRST LAST", does: "exchange two tracks in a range", act: swap },
+    Word {
+        name: "join",
+        takes: "TRACK TRACK",
+        does: "fill a track with another one, which is deleted",
+        act: join,
+    },
+    Word { name: "duplicate", takes: "TRACK", does: "make a track like this one", act: duplicate },
+    Word { name: "average", takes: "TRACK…", does: "make a track that is the mean of these", act: average },
+    Word {
+        name: "name", takes: "TRACK [NAME…]", does: "name a track; without a name, forget it", act: name
+    },
+    Word {
+        name: "judge",
+        takes: "TRACK FIRST LAST accepted|fixed|occluded|lost|rejected|later",
+        does: "a reviewer's word on a range",
+        act: judge,
+    },
+    Word { name: "unjudge", takes: "TRACK FIRST", does: "take a judgement back", act: unjudge },
+    Word {
+        name: "delete",
+        takes: "TRACK…",
+        does: "delete tracks; their work is kept",
+        act: |_, given| Ok(Act::Commit(Transaction::delete_tracks(given.tracks(0)?))),
+    },
+    Word {
+        name: "restore",
+        takes: "TRACK…",
+        does: "take deleted tracks back",
+        act: |_, given| Ok(Act::Commit(Transaction::restore_tracks(given.tracks(0)?))),
+    },
+    Word { name: "cut", takes: "K", does: "cut the shown clustering into K groups", act: cut },
+    Word { name: "undo", takes: "", does: "take the last edit back", act: |_, _| Ok(Act::Undo) },
+    Word { name: "redo", takes: "", does: "do again what was undone", act: |_, _| Ok(Act::Redo) },
+];
+
+fn add(session: &mut Session, given: &Arguments<'_>) -> Outcome {
+    let (frame, [x, y]) = given.place(0, session)?;
+    let track = new(session)?;
+    Ok(Act::Commit(Transaction::add_track(track, frame, x, y)))
+}
+
+fn key(session: &mut Session, given: &Arguments<'_>) -> Outcome {
+    let (frame, to) = given.place(1, session)?;
+    let track = given.track(0)?;
+    let from = session.project.shown(track)?.and_then(|span| span.get(frame).map(|at| [at.x, at.y]));
+    Ok(Act::Commit(Transaction::set_key(track, frame, to, from)))
+}
+
+fn confirm(session: &mut Session, given: &Arguments<'_>) -> Outcome {
+    let (track, frame) = (given.track(0)?, given.whole(1, "frame")?);
+    let span = session.project.shown(track)?;
+    let sample = span.and_then(|span| span.get(frame).copied()).ok_or(Refused::NoSample { track, frame })?;
+    Ok(Act::Commit(Transaction::confirm_key(track, frame, [sample.x, sample.y])))
+}
+
+fn clear(_: &mut Session, given: &Arguments<'_>) -> Outcome {
+    Ok(Act::Commit(Transaction::clear_key(given.track(0)?, given.whole(1, "frame")?)))
+}
+
+/// A sample is moved, with what the tool makes of those beside it.
+fn moved(
+    session: &Session,
+    given: &Arguments<'_>,
+    tool: fn(&Shown<'_>, u32, [f32; 2]) -> Result<Correction, Refused>,
+) -> Outcome {
+    let (frame, to) = given.place(1, session)?;
+    on_track(session, given.track(0)?, |shown| tool(shown, frame, to))
+}
+
+fn time(session: &mut Session, given: &Arguments<'_>) -> Outcome {
+    let frame = given.whole(1, "frame")?;
+    let shift_s = given.number(2, "a shift in seconds")?;
+    on_track(session, given.track(0)?, |shown| Ok(correct::time(shown, frame, shift_s)?.correction))
+}
+
+fn sketch(session: &mut Session, given: &Arguments<'_>) -> Outcome {
+    let frame = given.whole(1, "frame")?;
+    let beyond = || given.wrong(1, "a frame of the clip");
+    let from_s = session.media.clip().times.get(frame).ok_or_else(beyond)?;
+    let rate = given.number(2, "a rate, 1 for real time")?;
+    let drawn = given.rest(3).iter().enumerate().map(|(at, word)| {
+        let numbers: Option<Vec<f64>> = word.split(',').map(|number| number.parse().ok()).collect();
+        match numbers.as_deref() {
+            Some(&[elapsed_s, x, y]) => Ok(Drawn { elapsed_s, at: [x, y] }),
+            _ => Err(given.wrong(at + 3, "a point of the stroke as S,X,Y")),
+        }
+    });
+    let drawn = drawn.collect::<Result<Vec<Drawn>, _>>()?;
+    let played = Played { from_s, rate, link_s: 0.0 };
+    on_track(session, given.track(0)?, |shown| correct::sketch(shown, &drawn, played))
+}
+
+fn retrack(session: &mut Session, given: &Arguments<'_>) -> Outcome {
+    let way = match given.text(1) {
+        "forward" => Way::Forward,
+        "backward" => Way::Backward,
+        "both" => Way::Both,
+        _ => return Err(given.wrong(1, "forward, backward or both")),
+    };
+    let (track, frames) = (given.track(0)?, given.frames(2)?);
+    let with = match given.rest(4) {
+        [] => None,
+        [name, set @ ..] => {
+            let plugin = session.registry.find(Kind::Tracker, name).map_err(WorkbenchError::from)?;
+            let mut values = Values::defaults(&plugin.params);
+            for assignment in set {
+                values
+                    .set_text(&plugin.params, assignment)
+                    .map_err(HostError::from)
+                    .map_err(WorkbenchError::from)?;
+            }
+            Some((plugin.id.clone(), values))
+        }
+    };
+    let request = RetrackRequest { track, way, frames: frames.start..=frames.end - 1, key: None, with };
+    let done = retrack::prepare(session, &request)?.run(&())?;
+    Ok(Act::Committed(retrack::finish(session, done)?.entry))
+}
+
+fn mark(session: &mut Session, given: &Arguments<'_>) -> Outcome {
+    let status = match given.text(0) {
+        "lost" => Status::Lost,
+        "occluded" => Status::Occluded,
+        "outside" => Status::Outside,
+        "seen" => Status::Tracked,
+        _ => return Err(given.wrong(0, "lost, occluded, outside or seen")),
+    };
+    let frames = given.frames(2)?;
+    on_track(session, given.track(1)?, |shown| correct::mark(shown, frames, status))
+}
+
+fn range_delete(session: &mut Session, given: &Arguments<'_>) -> Outcome {
+    let frames = given.frames(1)?;
+    on_track(session, given.track(0)?, |shown| correct::delete_range(shown, frames))
+}
+
+fn split(session: &mut Session, given: &Arguments<'_>) -> Outcome {
+    let (track, frame) = (given.track(0)?, given.whole(1, "frame")?);
+    on_tracks(session, &[track], |session, shown| Ok(tracks::split(&shown[0], frame, new(session)?)?))
+}
+
+fn swap(session: &mut Session, given: &Arguments<'_>) -> Outcome {
+    let frames = given.frames(2)?;
+    let pair = [given.track(0)?, given.track(1)?];
+    on_tracks(session, &pair, |_, shown| Ok(tracks::swap(&shown[0], &shown[1], frames)?))
+}
+
+fn join(session: &mut Session, given: &Arguments<'_>) -> Outcome {
+    let pair = [given.track(0)?, given.track(1)?];
+    on_tracks(session, &pair, |_, shown| Ok(tracks::join(&shown[0], &shown[1])?))
+}
+
+fn duplicate(session: &mut Session, given: &Arguments<'_>) -> Outcome {
+    let track = given.track(0)?;
+    on_tracks(session, &[track], |session, shown| Ok(tracks::duplicate(&shown[0], new(session)?)?))
+}
+
+fn average(session: &mut Session, given: &Arguments<'_>) -> Outcome {
+    let all: Vec<TrackId> = given.tracks(0)?.iter().collect();
+    on_tracks(session, &all, |session, shown| Ok(tracks::average(shown, new(session)?)?))
+}
+
+fn name(_: &mut Session, given: &Arguments<'_>) -> Outcome {
+    let name = given.rest(1).join(" ");
+    Ok(Act::Commit(Transaction::name_track(given.track(0)?, (!name.is_empty()).then_some(name))))
+}
+
+fn judge(session: &mut Session, given: &Arguments<'_>) -> Outcome {
+    let (track, frames) = (given.track(0)?, given.frames(1)?);
+    let verdict = Verdict::ALL.into_iter().find(|verdict| verdict.word() == given.text(3));
+    let words = Verdict::ALL.map(Verdict::word).join(", ");
+    let verdict = verdict.ok_or_else(|| given.wrong(3, &format!("one of {words}")))?;
+    let reviewer = session.project.holder().map_or_else(String::new, |holder| holder.user.clone());
+    let judgement = Judgement {
+        end_frame: frames.end,
+        verdict,
+        reasons: Vec::new(),
+        reviewer,
+        time: honami_store::now(),
+        effort: Effort::default(),
+    };
+    let label = format!("track {track}: frames {}-{} {}", frames.start, frames.end - 1, verdict.word());
+    let edit = Edit::Judge { track, first_frame: frames.start, judgement: Some(judgement) };
+    Ok(Act::Commit(Transaction::new(label, vec![edit])))
+}
+
+fn unjudge(_: &mut Session, given: &Arguments<'_>) -> Outcome {
+    let (track, first_frame) = (given.track(0)?, given.whole(1, "first frame")?);
+    let label = format!("track {track}: judgement from frame {first_frame} taken back");
+    let edit = Edit::Judge { track, first_frame, judgement: None };
+    Ok(Act::Commit(Transaction::new(label, vec![edit])))
+}
+
+fn cut(session: &mut Session, given: &Arguments<'_>) -> Outcome {
+    let groups = given.whole(0, "number of groups")?;
+    let grouping = session.project.grouping()?;
+    let n_tracks = grouping.map_or(u32::MAX as usize, |grouping| grouping.group_of.len());
+    if groups as usize > n_tracks {
+        return Err(ScriptError::Groups { groups, n_tracks });
+    }
+    Ok(Act::Commit(Transaction::set_cut(groups)))
+}
+
+/// The number of a new track.
+fn new(session: &mut Session) -> Result<TrackId, ScriptError> {
+    Ok(TrackId(session.project.reserve_tracks(1)?.start))
+}
+
+fn on_track(
+    session: &Session,
+    track: TrackId,
+    tool: impl FnOnce(&Shown<'_>) -> Result<Correction, Refused>,
+) -> Outcome {
+    let ground = Ground::of(&session.project, track)?;
+    Ok(Act::Commit(tool(&ground.shown(&session.project.clip().clip.times))?.transaction))
+}
+
+fn on_tracks(
+    session: &mut Session,
+    tracks: &[TrackId],
+    tool: impl FnOnce(&mut Session, &[Shown<'_>]) -> Result<Transaction, ScriptError>,
+) -> Outcome {
+    let grounds =
+        tracks.iter().map(|&track| Ground::of(&session.project, track)).collect::<Result<Vec<_>, _>>()?;
+    let times = session.project.clip().clip.times.clone();
+    let shown: Vec<Shown<'_>> = grounds.iter().map(|ground| ground.shown(&times)).collect();
+    Ok(Act::Commit(tool(session, &shown)?))
+}
