@@ -259,6 +259,7 @@ fn judge(session: &mut Session, given: &Arguments<'_>) -> Outcome {
     let words = Verdict::ALL.map(Verdict::word).join(", ");
     let verdict = verdict.ok_or_else(|| given.wrong(3, &format!("one of {words}")))?;
     let reviewer = session.project.holder().map_or_else(String::new, |holder| holder.user.clone());
+    let seal = session.project.shown(track)?.map(|span| span.seal(frames.clone()));
     let judgement = Judgement {
         end_frame: frames.end,
         verdict,
@@ -266,10 +267,9 @@ fn judge(session: &mut Session, given: &Arguments<'_>) -> Outcome {
         reviewer,
         time: honami_store::now(),
         effort: Effort::default(),
+        seal,
     };
-    let label = format!("track {track}: frames {}-{} {}", frames.start, frames.end - 1, verdict.word());
-    let edit = Edit::Judge { track, first_frame: frames.start, judgement: Some(judgement) };
-    Ok(Act::Commit(Transaction::new(label, vec![edit])))
+    Ok(Act::Commit(Transaction::judge(track, frames.start, judgement)))
 }
 
 fn unjudge(_: &mut Session, given: &Arguments<'_>) -> Outcome {
