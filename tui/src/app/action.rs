@@ -122,6 +122,11 @@ table! {
     // Looking.
     ZoomIn "zoom-in" ["z"] [Review "" Place "" Move ""] "look closer, at the selected track or the cursor"
     ZoomOut "zoom-out" ["Z"] [Review "" Place "" Move ""] "look from farther away"
+    PanLeft "pan-left" ["Ctrl-Left"] [Review ""] "look a quarter of the view further left"
+    PanDown "pan-down" ["Ctrl-Down"] [Review ""] "look a quarter of the view further down"
+    PanUp "pan-up" ["Ctrl-Up"] [Review ""] "look a quarter of the view further up"
+    PanRight "pan-right" ["Ctrl-Right"] [Review ""] "look a quarter of the view further right"
+    Centre "centre" ["C"] [Review ""] "bring the selected track to the middle"
     Follow "follow" ["f"] [Review ""] "keep the selected track in the middle, or not"
     Marks "marks" ["M"] [Review ""] "mark all tracks in the picture, or only the selected one"
     Column "next-panel" ["Tab"] [Review ""] "show the next panel beside the picture; after the last, none"

@@ -11,8 +11,8 @@ const BESIDE_COLUMN: u16 = 40;
 /// With so much left, cells, a part of the picture is still worth seeing.
 const OVER_COLUMN: u16 = 12;
 
-/// Deepest magnification, as a power of two.
-pub const ZOOM_MAX: u8 = 5;
+/// Most steps of magnification that any clip on any screen can need.
+pub const ZOOM_MAX: u8 = 16;
 
 /// The parts of the screen; a part without room is empty.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,15 +78,23 @@ pub struct Lens {
     pub grid: (u32, u32),
 }
 
+/// Image pixels of a cell, across, at the deepest magnification.
+const SMALLEST: f64 = 1.0 / 8.0;
+
+/// Image pixels of a cell, across: half as many with each step, and from one on whole cells for each pixel.
+fn scale(whole: f64, zoom: u8) -> f64 {
+    let scale = whole * 0.5_f64.powi(zoom.into());
+    if zoom == 0 || scale > 1.0 { scale } else { scale.log2().ceil().exp2().max(SMALLEST) }
+}
+
 impl Lens {
     /// The lens of a state: all of the picture, or a part as large as the zoom says.
     #[must_use]
     pub fn of(state: &State, area: Rect) -> Self {
         let (clip_width, clip_height) = (f64::from(state.clip.width), f64::from(state.clip.height));
         let (columns, rows) = (f64::from(area.width), f64::from(2 * area.height));
-        // Image pixels per screen pixel that show everything.
-        let whole = (clip_width / columns.max(1.0)).max(clip_height / rows.max(1.0));
-        let scale = whole / f64::from(1_u32 << state.zoom);
+        let whole = Self::whole(state, area);
+        let scale = scale(whole, state.zoom);
         let n_columns = (clip_width / scale).round().min(columns).max(1.0);
         let n_rows = ((clip_height / scale / 2.0).round() * 2.0).min(rows).max(2.0);
         let (width, height) = if state.zoom == 0 {
@@ -96,9 +104,15 @@ impl Lens {
         };
         let [cx, cy] = state.centre.map(f64::from);
         let (n_columns, n_rows) = (n_columns as u16, n_rows as u16 / 2);
+        // In whole steps of the screen's pixels: what stands still keeps its pixels when the view moves, and what is
+        // magnified keeps its edges.
+        let edge = |centre: f64, extent: f64, limit: f64| {
+            let steps = ((centre + 0.5 - extent / 2.0) / scale).round();
+            (steps * scale).clamp(0.0, limit - extent) - 0.5
+        };
         Self {
-            x: (cx - width / 2.0).clamp(-0.5, clip_width - width - 0.5),
-            y: (cy - height / 2.0).clamp(-0.5, clip_height - height - 0.5),
+            x: edge(cx, width, clip_width),
+            y: edge(cy, height, clip_height),
             width,
             height,
             area: Rect {
@@ -109,6 +123,31 @@ impl Lens {
             },
             grid: state.shown_glyphs().grid(),
         }
+    }
+
+    /// The last step of magnification that brings one closer.
+    #[must_use]
+    pub fn deepest(state: &State, area: Rect) -> u8 {
+        let whole = Self::whole(state, area);
+        (0..ZOOM_MAX).find(|&zoom| scale(whole, zoom) <= SMALLEST).unwrap_or(ZOOM_MAX)
+    }
+
+    /// Image pixels of a cell, across, that show everything.
+    fn whole(state: &State, area: Rect) -> f64 {
+        let (columns, rows) = (f64::from(area.width), f64::from(2 * area.height));
+        (f64::from(state.clip.width) / columns.max(1.0)).max(f64::from(state.clip.height) / rows.max(1.0))
+    }
+
+    /// The image point in its middle.
+    #[must_use]
+    pub fn middle(&self) -> [f32; 2] {
+        [(self.x + self.width / 2.0) as f32, (self.y + self.height / 2.0) as f32]
+    }
+
+    /// Cells that an image pixel is wide: 1 and above it is seen as it is.
+    #[must_use]
+    pub fn magnification(&self) -> f64 {
+        f64::from(self.area.width) / self.width
     }
 
     /// Screen pixels across and down.

@@ -60,10 +60,12 @@ pub struct State {
     pub marks_all: bool,
     /// What the column shows; `None` hides it.
     pub panel: Option<Panel>,
-    /// Magnification, a power of two: 0 shows all of the picture.
+    /// Steps of magnification, each twice the last: 0 shows all of the picture. See [`Lens`](super::layout::Lens).
     pub zoom: u8,
     /// Image point in the middle when magnified, pixels.
     pub centre: [f32; 2],
+    /// Cell at which the mouse last was while the view is dragged.
+    pub dragged: Option<(u16, u16)>,
     /// Whether the selected track stays in the middle.
     pub follow: bool,
     /// Columns and rows of the terminal.
@@ -202,6 +204,7 @@ impl State {
             panel: None,
             zoom: 0,
             centre,
+            dragged: None,
             follow: false,
             size,
             notice: None,

@@ -3,6 +3,7 @@
 mod actions;
 mod edit;
 mod facts;
+mod look;
 mod mouse;
 mod time;
 

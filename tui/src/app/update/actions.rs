@@ -1,13 +1,12 @@
 //! Actions, each by its place.
 
-use super::{Action, Effect, Mode, State, choose, complain, edit, open_menu, say, time};
+use super::{Action, Effect, Mode, State, choose, complain, edit, look, open_menu, say, time};
 use honami_model::track::TrackSet;
 use honami_workbench::cluster::ClusterRequest;
 use honami_workbench::track::{Area, PointSource, TrackRequest};
 
 use super::time::Pace;
 use crate::app::form::{Features, Form, Task};
-use crate::app::layout::ZOOM_MAX;
 use crate::app::panel::Panel;
 
 /// Does an action. The count, if one was typed, is still in the state.
@@ -59,9 +58,14 @@ pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {
         Action::Redo => return edit::repeat(state, Effect::Redo),
         Action::RunTracker => open_form(state, Task::Track),
         Action::RunClusterer => open_form(state, Task::Cluster),
-        Action::ZoomIn => zoom(state, 1),
-        Action::ZoomOut => zoom(state, -1),
-        Action::Follow => follow(state),
+        Action::ZoomIn => look::zoom(state, count(state)),
+        Action::ZoomOut => look::zoom(state, -count(state)),
+        Action::PanLeft => look::pan(state, -1.0, 0.0),
+        Action::PanDown => look::pan(state, 0.0, 1.0),
+        Action::PanUp => look::pan(state, 0.0, -1.0),
+        Action::PanRight => look::pan(state, 1.0, 0.0),
+        Action::Centre => look::centre(state),
+        Action::Follow => look::follow(state),
         Action::Marks => state.marks_all = !state.marks_all,
         Action::Column => state.panel = Panel::after(state.panel),
         Action::PanelTracks => show_panel(state, Panel::Tracks),
@@ -215,17 +219,6 @@ fn show_panel(state: &mut State, panel: Panel) {
     state.panel = Some(panel).filter(|panel| state.panel != Some(*panel));
 }
 
-fn zoom(state: &mut State, by: i8) {
-    let focus = match state.mode {
-        Mode::Place(at) | Mode::Move { to: at, .. } => Some(at),
-        _ => state.selected_at(),
-    };
-    if let Some(focus) = focus.filter(|_| by > 0) {
-        state.centre = focus;
-    }
-    state.zoom = state.zoom.saturating_add_signed(by).min(ZOOM_MAX);
-}
-
 fn turn_glyphs(state: &mut State) {
     if state.mono {
         return complain(state, "without colours the picture is letters");
@@ -247,12 +240,4 @@ fn turn_stills(state: &mut State) {
         (true, None) => "stills on, but the terminal offers no pixels".to_owned(),
     };
     say(state, line);
-}
-
-fn follow(state: &mut State) {
-    state.follow = !state.follow && state.selected.is_some();
-    if state.follow {
-        state.zoom = state.zoom.max(1);
-    }
-    say(state, if state.follow { "following the selected track" } else { "not following" });
 }

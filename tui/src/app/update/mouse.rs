@@ -1,6 +1,6 @@
 //! The mouse: selects, places, scrubs; whatever it does, keys do too.
 
-use super::{Effect, Mode, State, time};
+use super::{Effect, Mode, State, look, time};
 use crate::app::layout::{Layout, Lens, bar, frame_at};
 use crate::app::view::column::{self, Pick};
 use crate::term::input::{Mouse, MouseKind};
@@ -19,8 +19,20 @@ pub(super) fn on_mouse(state: &mut State, mouse: Mouse) -> Vec<Effect> {
                 Mode::Menu(menu) => menu.step(by),
                 Mode::Form(form) => form.step(by),
                 Mode::Review if layout.column.contains(here) => pick(state, column::pick_beside(state, by)),
-                Mode::Review => time::step(state, by),
-                _ => {}
+                Mode::Review if layout.time.contains(here) => time::step(state, by),
+                Mode::Review | Mode::Place(_) | Mode::Move { .. } => {
+                    if let Some(point) = lens.point_of(mouse.column, mouse.row) {
+                        look::zoom_at(state, -by, point);
+                    }
+                }
+                Mode::Prompt(_) => {}
+            }
+        }
+        MouseKind::Press(1 | 2) => state.dragged = Some((mouse.column, mouse.row)),
+        MouseKind::Drag(1 | 2) => {
+            if let Some((column, row)) = state.dragged.replace((mouse.column, mouse.row)) {
+                let by = |to: u16, from: u16| i32::from(to) - i32::from(from);
+                look::drag(state, (by(mouse.column, column), by(mouse.row, row)));
             }
         }
         MouseKind::Press(0) | MouseKind::Drag(0) if layout.time.contains(here) => {

@@ -4,6 +4,7 @@ use super::*;
 use crate::app::action::TABLE;
 use crate::app::clock::Play;
 use crate::app::fixture;
+use crate::app::layout::{Layout, Lens};
 use crate::app::state::Job;
 use crate::app::update::Fact;
 use crate::term::input::MouseKind;
@@ -446,7 +447,7 @@ fn the_mouse() {
     let mut state = start("");
     let mut mouse = |kind, column, row| update(&mut state, Msg::Mouse(Mouse { kind, column, row }));
     mouse(MouseKind::Press(0), 26, 10);
-    mouse(MouseKind::WheelDown, 26, 10);
+    mouse(MouseKind::WheelDown, 26, 22);
     assert_eq!((state.selected, state.frame), (Some(TrackId(2)), 1));
     let mut state = start("");
     update(&mut state, Msg::Mouse(Mouse { kind: MouseKind::Press(0), column: 77, row: 22 }));
@@ -455,6 +456,61 @@ fn the_mouse() {
     update(&mut state, Msg::Mouse(Mouse { kind: MouseKind::Press(0), column: 40, row: 11 }));
     let Mode::Place(at) = state.mode else { panic!("not placing") };
     assert!((at[0] - 162.0).abs() < 6.0 && (at[1] - 126.0).abs() < 12.0, "{at:?}");
+}
+
+/// Looking elsewhere: what is seen after keys, as magnification and the image point in the middle.
+#[test]
+fn looking() {
+    // 320x240 in 80x24: 6 px a cell; 3, 1.5, then whole cells for each pixel: 1, 2, 4 and 8.
+    for (keys, times, middle) in [
+        ("", 0.17, [159.5, 119.5]),
+        ("z", 0.33, [119.5, 119.5]),
+        ("z z z", 1.0, [40.5, 120.5]),
+        ("5 z", 4.0, [40.0, 120.0]),
+        ("9 z", 8.0, [40.0, 120.0]),
+        ("9 z Z", 4.0, [40.0, 120.0]),
+        ("9 z 9 Z", 0.17, [159.5, 119.5]),
+        ("5 z Ctrl-Right", 4.0, [45.0, 120.0]),
+        ("5 z 4 Ctrl-Right Ctrl-Down", 4.0, [60.0, 122.5]),
+        ("5 z 4 Ctrl-Right C", 4.0, [40.0, 120.0]),
+        ("5 z 9 9 9 Ctrl-Left 9 9 9 Ctrl-Up", 4.0, [9.5, 4.5]),
+        ("5 z 9 9 9 Ctrl-Left 9 9 9 Ctrl-Up Ctrl-Right", 4.0, [14.5, 4.5]),
+        ("C", 0.33, [119.5, 119.5]),
+        ("Ctrl-Right", 0.17, [159.5, 119.5]),
+    ] {
+        let mut state = start("");
+        press(&mut state, keys);
+        let lens = Lens::of(&state, Layout::of(&state).picture);
+        let seen = (format!("{:.2}", lens.magnification()), lens.middle());
+        assert_eq!(seen, (format!("{times:.2}"), middle), "by `{keys}`");
+    }
+    check("", "Ctrl-Right", "review | frame 0 track 1 | said all of the picture is seen: z looks closer");
+    check("", "9 z z", "review | frame 0 track 1 | said as close as it gets: 8 cells a pixel");
+}
+
+#[test]
+fn the_wheel_and_dragging_keep_the_point_under_the_mouse() {
+    let mut state = start("");
+    let under = |state: &State, column, row| {
+        Lens::of(state, Layout::of(state).picture).point_of(column, row).unwrap()
+    };
+    let event = |state: &mut State, kind, column, row| {
+        update(state, Msg::Mouse(Mouse { kind, column, row }));
+    };
+    let point = under(&state, 40, 10);
+    for n in 1..=6 {
+        event(&mut state, MouseKind::WheelUp, 40, 10);
+        let now = under(&state, 40, 10);
+        let far = (now[0] - point[0]).hypot(now[1] - point[1]);
+        assert!(far <= 6.0, "{now:?} after {n} steps");
+    }
+    press(&mut state, "f");
+    let before = under(&state, 40, 10);
+    event(&mut state, MouseKind::Press(1), 40, 10);
+    event(&mut state, MouseKind::Drag(1), 36, 12);
+    let far = (0..2).map(|axis| (under(&state, 36, 12)[axis] - before[axis]).abs()).fold(0.0, f32::max);
+    assert!(far < 1e-3, "moved {far} px");
+    assert!(!state.follow, "dragging ends it");
 }
 
 #[test]

@@ -28,11 +28,14 @@ pub(super) fn title(state: &State, area: Rect, frame: &mut Frame) {
         1 => "1 group".to_owned(),
         k => format!("{k} groups"),
     }));
-    let nth = marks_nth(state, &Lens::of(state, Layout::of(state).picture), state.shown_frame());
+    let lens = Lens::of(state, Layout::of(state).picture);
+    let nth = marks_nth(state, &lens, state.shown_frame());
     facts.extend((state.marks_all && nth > 1).then(|| format!("1 in {nth} marked")));
     facts.extend(state.read_only.is_some().then(|| "read only".to_owned()));
     if state.zoom > 0 {
-        facts.push(format!("{}x{}", 1_u32 << state.zoom, if state.follow { " following" } else { "" }));
+        let times = lens.magnification();
+        let times = if times < 0.95 { format!("{times:.2}x") } else { format!("{times:.0}x") };
+        facts.push(format!("{times}{}", if state.follow { " following" } else { "" }));
     }
     let left = Line::from(vec![
         Span::styled(state.name.clone(), style::BOLD),
