@@ -6,6 +6,7 @@
 pub mod accuracy;
 pub mod composite;
 pub mod linkage;
+pub mod overlay;
 pub mod positions;
 pub mod score;
 pub mod spectrum;
