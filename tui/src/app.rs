@@ -15,6 +15,7 @@ mod jobs;
 pub mod keymap;
 pub mod layout;
 pub mod menu;
+pub mod motion;
 pub mod opening;
 pub mod panel;
 mod pictures;

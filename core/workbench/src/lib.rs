@@ -26,6 +26,8 @@ pub use error::WorkbenchError;
 pub use honami_host as plugins;
 /// Clips and their frames.
 pub use honami_media as media;
+/// Motion as colour.
+pub use honami_motion::overlay;
 /// Projects.
 pub use honami_store as store;
 /// Generated clips.

@@ -17,13 +17,16 @@ pub enum Context {
     Form,
     /// Choosing from a list by typing a part of its name.
     Menu,
+    /// Setting which directions of motion are shown.
+    Dial,
     /// Typing a number.
     Prompt,
 }
 
 impl Context {
     /// All of them.
-    pub const ALL: [Self; 6] = [Self::Review, Self::Place, Self::Move, Self::Form, Self::Menu, Self::Prompt];
+    pub const ALL: [Self; 7] =
+        [Self::Review, Self::Place, Self::Move, Self::Form, Self::Menu, Self::Dial, Self::Prompt];
 
     /// Whether letters are text here, so that only other keys are commands.
     #[must_use]
@@ -70,21 +73,21 @@ macro_rules! table {
 
 table! {
     // Moving about: hjkl and the arrows.
-    Left "left" ["h" "Left"] [Review "" Place "1 px" Move "1 px" Form "change"]
+    Left "left" ["h" "Left"] [Review "" Place "1 px" Move "1 px" Form "change" Dial "turn"]
         "left: the previous frame, one pixel, or a smaller value"
-    Down "down" ["j" "Down"] [Review "" Place "1 px" Move "1 px" Form "" Menu ""]
+    Down "down" ["j" "Down"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "narrower"]
         "down: the next track, one pixel, or the next row"
-    Up "up" ["k" "Up"] [Review "" Place "1 px" Move "1 px" Form "" Menu ""]
+    Up "up" ["k" "Up"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "wider"]
         "up: the previous track, one pixel, or the previous row"
-    Right "right" ["l" "Right"] [Review "" Place "1 px" Move "1 px" Form "change"]
+    Right "right" ["l" "Right"] [Review "" Place "1 px" Move "1 px" Form "change" Dial "turn"]
         "right: the next frame, one pixel, or a larger value"
     FineLeft "fine-left" ["H" "Shift-Left"] [Place ".25" Move ".25" Form ""] "a quarter of a pixel left, or a tenth of a value's range down"
     FineDown "fine-down" ["J" "Shift-Down"] [Place ".25" Move ".25"] "a quarter of a pixel down"
     FineUp "fine-up" ["K" "Shift-Up"] [Place ".25" Move ".25"] "a quarter of a pixel up"
     FineRight "fine-right" ["L" "Shift-Right"] [Place ".25" Move ".25" Form ""] "a quarter of a pixel right, or a tenth of a value's range up"
-    Accept "accept" ["Enter"] [Place "place" Move "keep" Form "run" Menu "choose" Prompt "go" Review ""]
+    Accept "accept" ["Enter"] [Place "place" Move "keep" Form "run" Menu "choose" Prompt "go" Review "" Dial "keep"]
         "accept: keep, place, run or go; while reviewing, confirm the sample here as a key-frame"
-    Back "back" ["Esc" "Ctrl-c"] [Place "back" Move "back" Form "back" Menu "back" Prompt "back" Review ""]
+    Back "back" ["Esc" "Ctrl-c"] [Place "back" Move "back" Form "back" Menu "back" Prompt "back" Review "" Dial "back"]
         "back: leave what is open, undone; while reviewing, stop the job or the clip"
     // Time.
     PlayPause "play" ["space"] [Review "play"] "play or pause; 200 space: at 200 %, from now on"
@@ -115,8 +118,8 @@ table! {
     Erase "erase" ["Backspace"] [Menu "" Prompt ""] "take back a typed letter"
     RunTracker "track" ["t"] [Review "track"] "follow features with a tracker"
     RunClusterer "cluster" ["c"] [Review "cluster"] "group the tracks by their movement"
-    MoreGroups "more-groups" ["+" "="] [Review ""] "cut the hierarchy into one group more"
-    FewerGroups "fewer-groups" ["-"] [Review ""] "cut the hierarchy into one group fewer"
+    MoreGroups "more-groups" ["+" "="] [Review "" Dial "gain"] "one group more; at the dial, more gain"
+    FewerGroups "fewer-groups" ["-"] [Review "" Dial "gain"] "one group fewer; at the dial, less gain"
     Undo "undo" ["u"] [Review ""] "undo: take the last edit back"
     Redo "redo" ["Ctrl-r"] [Review ""] "redo: do again what was undone"
     // Looking.
@@ -128,6 +131,10 @@ table! {
     PanRight "pan-right" ["Ctrl-Right"] [Review ""] "look a quarter of the view further right"
     Centre "centre" ["C"] [Review ""] "bring the selected track to the middle"
     Follow "follow" ["f"] [Review ""] "keep the selected track in the middle, or not"
+    MotionColours "motion" ["v v"] [Review ""] "show motion in colours: hue is direction, strength is speed; or not"
+    MotionGainUp "motion-gain-up" ["v +"] [Review ""] "stronger colours of motion"
+    MotionGainDown "motion-gain-down" ["v -"] [Review ""] "weaker colours of motion"
+    MotionDial "motion-dial" ["v d"] [Review ""] "choose the directions of motion that are shown"
     Marks "marks" ["M"] [Review ""] "mark all tracks in the picture, or only the selected one"
     Column "next-panel" ["Tab"] [Review ""] "show the next panel beside the picture; after the last, none"
     PanelTracks "panel-tracks" ["P t"] [Review ""] "show or hide the tracks"
@@ -135,12 +142,12 @@ table! {
     PanelKeyFrames "panel-key-frames" ["P k"] [Review ""] "show or hide the key-frames of the selected track"
     Glyphs "glyphs" ["v q"] [Review ""] "show the picture in half blocks, quadrants, sextants or octants (what the font has)"
     Stills "stills" ["v s"] [Review ""] "show a picture that stays in the terminal's own pixels, or not"
-    Palette "palette" [":"] [Review "" Place "" Move "" Form ""] "find any action by name, key or what it does"
-    Help "help" ["?"] [Review "help" Place "" Move "" Form "help"] "list what works here; Enter does it"
-    Redraw "redraw" ["Ctrl-l"] [Review "" Place "" Move "" Form "" Menu "" Prompt ""] "paint the screen anew"
-    Suspend "suspend" ["Ctrl-z"] [Review "" Place "" Move "" Form "" Menu "" Prompt ""] "stop honami until `fg`"
-    Quit "quit" ["q"] [Review "leave" Place "" Move "" Form ""] "back; while reviewing, leave honami"
-    Leave "leave" ["Q"] [Review "" Place "" Move "" Form ""] "leave honami (everything is kept)"
+    Palette "palette" [":"] [Review "" Place "" Move "" Form "" Dial ""] "find any action by name, key or what it does"
+    Help "help" ["?"] [Review "help" Place "" Move "" Form "help" Dial "help"] "list what works here; Enter does it"
+    Redraw "redraw" ["Ctrl-l"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial ""] "paint the screen anew"
+    Suspend "suspend" ["Ctrl-z"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial ""] "stop honami until `fg`"
+    Quit "quit" ["q"] [Review "leave" Place "" Move "" Form "" Dial ""] "back; while reviewing, leave honami"
+    Leave "leave" ["Q"] [Review "" Place "" Move "" Form "" Dial ""] "leave honami (everything is kept)"
 }
 
 impl Action {

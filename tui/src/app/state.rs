@@ -10,6 +10,7 @@ use super::clock::Play;
 use super::form::{Form, Plugin};
 use super::keymap::KeyMap;
 use super::menu::Menu;
+use super::motion::Motion;
 use super::panel::Panel;
 use super::tracks::{Groups, TrackRow};
 use crate::term::capabilities::Pixels;
@@ -56,6 +57,8 @@ pub struct State {
     pub pending: Vec<Key>,
     /// The number typed before a command.
     pub count: Option<u32>,
+    /// Colours of motion over the picture.
+    pub motion: Motion,
     /// Whether all tracks are marked in the picture, not only the selected one.
     pub marks_all: bool,
     /// What the column shows; `None` hides it.
@@ -110,6 +113,8 @@ pub enum Mode {
     Form(Box<Form>),
     /// Choosing from a list.
     Menu(Box<Menu>),
+    /// Setting which directions of motion are shown: what was set before.
+    Dial(Motion),
     /// Typing a frame number.
     Prompt(String),
 }
@@ -125,6 +130,7 @@ impl Mode {
             Self::Form(form) if form.typed.is_some() => Context::Prompt,
             Self::Form(_) => Context::Form,
             Self::Menu(_) => Context::Menu,
+            Self::Dial(_) => Context::Dial,
             Self::Prompt(_) => Context::Prompt,
         }
     }
@@ -200,6 +206,7 @@ impl State {
             keys: KeyMap::default(),
             pending: Vec::new(),
             count: None,
+            motion: Motion::default(),
             marks_all: true,
             panel: None,
             zoom: 0,

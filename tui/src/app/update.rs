@@ -4,6 +4,7 @@ mod actions;
 mod edit;
 mod facts;
 mod look;
+mod motion;
 mod mouse;
 mod time;
 
@@ -147,7 +148,7 @@ fn on_text(state: &mut State, text: &str) {
                 append(typed, chars, TYPED_MAX);
             }
         }
-        Mode::Review | Mode::Place(_) | Mode::Move { .. } => {
+        Mode::Review | Mode::Place(_) | Mode::Move { .. } | Mode::Dial(_) => {
             for c in chars {
                 state.count = c.to_digit(10).map(|digit| {
                     state.count.unwrap_or(0).saturating_mul(10).saturating_add(digit).min(COUNT_MAX)

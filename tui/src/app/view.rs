@@ -25,6 +25,7 @@ pub fn draw(state: &State, shot: Option<&Shot>) -> Frame {
     let mut frame = Frame::new(columns, rows);
     let layout = Layout::of(state);
     picture::draw(state, &layout, shot, &mut frame);
+    picture::motion::legend(state, layout.picture, &mut frame);
     lines::title(state, layout.title, &mut frame);
     column::draw(state, layout.column, &mut frame);
     lines::track(state, layout.track, &mut frame);

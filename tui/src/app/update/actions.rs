@@ -1,6 +1,6 @@
 //! Actions, each by its place.
 
-use super::{Action, Effect, Mode, State, choose, complain, edit, look, open_menu, say, time};
+use super::{Action, Effect, Mode, State, choose, complain, edit, look, motion, open_menu, say, time};
 use honami_model::track::TrackSet;
 use honami_workbench::cluster::ClusterRequest;
 use honami_workbench::track::{Area, PointSource, TrackRequest};
@@ -52,12 +52,26 @@ pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {
         Action::ClearKey => return edit::clear_key(state),
         Action::Sort => time::sort(state),
         Action::DeleteTrack => return edit::delete(state),
+        Action::MoreGroups if matches!(state.mode, Mode::Dial(_)) => motion::gain(state, count(state)),
+        Action::FewerGroups if matches!(state.mode, Mode::Dial(_)) => motion::gain(state, -count(state)),
         Action::MoreGroups => return edit::cut(state, count(state)),
         Action::FewerGroups => return edit::cut(state, -count(state)),
         Action::Undo => return edit::repeat(state, Effect::Undo),
         Action::Redo => return edit::repeat(state, Effect::Redo),
         Action::RunTracker => open_form(state, Task::Track),
         Action::RunClusterer => open_form(state, Task::Cluster),
+        Action::Palette => open_menu(state, "actions"),
+        Action::Help => open_menu(state, "what works here"),
+        Action::Redraw => return vec![Effect::Redraw],
+        Action::Suspend => return vec![Effect::Suspend],
+        other => look_about(state, other),
+    }
+    Vec::new()
+}
+
+/// Actions that change only what is seen.
+fn look_about(state: &mut State, action: Action) {
+    match action {
         Action::ZoomIn => look::zoom(state, count(state)),
         Action::ZoomOut => look::zoom(state, -count(state)),
         Action::PanLeft => look::pan(state, -1.0, 0.0),
@@ -66,6 +80,10 @@ pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {
         Action::PanRight => look::pan(state, 1.0, 0.0),
         Action::Centre => look::centre(state),
         Action::Follow => look::follow(state),
+        Action::MotionColours => motion::turn_on(state),
+        Action::MotionGainUp => motion::gain(state, count(state)),
+        Action::MotionGainDown => motion::gain(state, -count(state)),
+        Action::MotionDial => motion::open_dial(state),
         Action::Marks => state.marks_all = !state.marks_all,
         Action::Column => state.panel = Panel::after(state.panel),
         Action::PanelTracks => show_panel(state, Panel::Tracks),
@@ -73,12 +91,9 @@ pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {
         Action::PanelKeyFrames => show_panel(state, Panel::KeyFrames),
         Action::Glyphs => turn_glyphs(state),
         Action::Stills => turn_stills(state),
-        Action::Palette => open_menu(state, "actions"),
-        Action::Help => open_menu(state, "what works here"),
-        Action::Redraw => return vec![Effect::Redraw],
-        Action::Suspend => return vec![Effect::Suspend],
+        // The rest are not of this kind; a test asks that no binding is silent.
+        _ => {}
     }
-    Vec::new()
 }
 
 /// The number typed before the command, 1 if none.
@@ -100,6 +115,7 @@ fn steer(state: &mut State, dx: f32, dy: f32, px: f32) -> Vec<Effect> {
         Mode::Form(form) if columns != 0 => form.change(columns, px < 1.0),
         Mode::Form(form) => form.step(rows),
         Mode::Menu(menu) => menu.step(rows),
+        Mode::Dial(_) => motion::steer(state, f64::from(dx), f64::from(dy)),
         Mode::Prompt(_) => {}
     }
     Vec::new()
@@ -111,6 +127,10 @@ fn accept(state: &mut State) -> Vec<Effect> {
         Mode::Place(_) => edit::place(state),
         Mode::Move { .. } => edit::keep(state),
         Mode::Menu(_) => choose(state),
+        Mode::Dial(_) => {
+            state.mode = Mode::Review;
+            Vec::new()
+        }
         Mode::Prompt(typed) => {
             let frame = typed.parse().ok();
             state.mode = Mode::Review;
@@ -162,6 +182,10 @@ fn back(state: &mut State) -> Vec<Effect> {
             }
         }
         Mode::Form(form) if form.typed.is_some() => form.typed = None,
+        Mode::Dial(before) => {
+            state.motion = *before;
+            state.mode = Mode::Review;
+        }
         Mode::Menu(menu) => state.mode = std::mem::replace(&mut menu.below, Mode::Review),
         _ => state.mode = Mode::Review,
     }
@@ -181,7 +205,7 @@ fn erase(state: &mut State) -> Vec<Effect> {
                 typed.pop();
             }
         }
-        Mode::Review | Mode::Place(_) | Mode::Move { .. } => {}
+        Mode::Review | Mode::Place(_) | Mode::Move { .. } | Mode::Dial(_) => {}
     }
     Vec::new()
 }

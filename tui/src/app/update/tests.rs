@@ -58,6 +58,13 @@ fn line(state: &State, effects: &[Effect]) -> String {
         Mode::Menu(menu) => {
             format!("menu {:?} of {}", menu.chosen().map(|r| r.label.as_str()), menu.rows().len())
         }
+        Mode::Dial(_) => {
+            format!(
+                "dial {} at {:.0}",
+                state.motion.dial_words().unwrap_or_default(),
+                state.motion.full_px_s()
+            )
+        }
         Mode::Prompt(typed) => format!("prompt {typed:?}"),
     }];
     words.push(format!(
@@ -395,6 +402,7 @@ fn every_binding_answers() {
         (Context::Form, "t"),
         (Context::Menu, ":"),
         (Context::Prompt, "g f"),
+        (Context::Dial, "v d"),
     ];
     for binding in crate::app::keymap::KeyMap::default().bindings() {
         let (_, way) = reach.iter().find(|(context, _)| *context == binding.context).unwrap();
@@ -425,6 +433,7 @@ fn prepared(context: Context, action: Action) -> &'static str {
     match (context, action) {
         (Context::Form, Action::Up | Action::FineLeft | Action::FineRight) => "j j",
         (Context::Menu, Action::Up) => "j Down",
+        (Context::Dial, Action::Up) => "j",
         (Context::Menu, Action::Erase) => "x",
         (Context::Prompt, Action::Erase) => "1",
         (Context::Review, Action::Back) => "space",
@@ -486,6 +495,40 @@ fn looking() {
     }
     check("", "Ctrl-Right", "review | frame 0 track 1 | said all of the picture is seen: z looks closer");
     check("", "9 z z", "review | frame 0 track 1 | said as close as it gets: 8 cells a pixel");
+}
+
+#[test]
+fn motion_in_colours() {
+    for (keys, expect) in [
+        ("v d", "dial  at 98"),
+        ("v d l", "dial → 10° ± 45° at 98"),
+        ("v d 3 h", "dial ↗ 330° ± 45° at 98"),
+        ("v d 9 l k", "dial ↓ 90° ± 55° at 98"),
+        ("v d 9 9 j", "dial → 0° ± 1° at 98"),
+        ("v d l 9 9 k", "dial  at 98"),
+        ("v d 2 +", "dial  at 49 | said full colour at 49 px/s"),
+        ("v d - -", "dial  at 196 | said full colour at 196 px/s"),
+    ] {
+        let mut state = start("");
+        let effects = press(&mut state, keys);
+        let expect = expect.replace(" |", " | frame 0 track 1 |");
+        let expect = if expect.contains("said") { expect } else { format!("{expect} | frame 0 track 1") };
+        assert_eq!(line(&state, &effects), expect, "by `{keys}`");
+    }
+    let mut state = start("");
+    press(&mut state, "v v");
+    let before = state.motion;
+    press(&mut state, "v d 5 l + Esc");
+    assert_eq!(state.motion, before, "Esc sets it back");
+    press(&mut state, "v d 5 l Enter");
+    assert!(state.motion.is_on && state.motion.dial != before.dial, "Enter keeps it");
+    press(&mut state, "v v");
+    assert!(!state.motion.is_on);
+    check(
+        "empty",
+        "v v",
+        "review | frame 0 track - | error motion is shown of tracks, and there are none yet: t follows features",
+    );
 }
 
 #[test]

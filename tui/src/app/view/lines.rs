@@ -177,6 +177,10 @@ pub(super) fn hints(state: &State, area: Rect, frame: &mut Frame) {
         let moved = (to[0] - from[0]).hypot(to[1] - from[1]);
         left.push_str(&format!("  track {} moved {moved:.2} px", row.id));
     }
+    if let Mode::Dial(_) = state.mode {
+        let dial = state.motion.dial_words();
+        left.push_str(&format!("  showing {}", dial.as_deref().unwrap_or("all directions")));
+    }
     if let Mode::Place([x, y]) = state.mode {
         left.push_str(&format!("  new feature at {x:.1}, {y:.1}"));
     }

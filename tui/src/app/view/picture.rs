@@ -1,5 +1,8 @@
 //! The picture, with the tracks on it: in characters, and in pixels for stills.
 
+pub(super) mod motion;
+mod path;
+
 use std::collections::BTreeMap;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
@@ -34,14 +37,10 @@ const CELLS_PER_MARK: usize = 6;
 const PICTURE: u8 = 1;
 const MARK: u8 = 8;
 
-/// The selected track's path is drawn this many frames to both sides.
-const PATH_FRAMES: u32 = 12;
-
 const WHITE: [u8; 3] = [255, 255, 255];
 /// Round rings and in crosses: they must be seen on petals and on sky.
 const DARK: [u8; 3] = [20, 20, 20];
 const KEY: [u8; 3] = [255, 215, 95];
-const PATH: [u8; 3] = [255, 235, 160];
 const CURSOR: [u8; 3] = [255, 60, 255];
 const UNSEEN: [u8; 3] = [130, 130, 130];
 
@@ -148,6 +147,7 @@ impl<'a> Canvas<'a> {
             scene,
         };
         // Marks belong to the frame that is shown, which may be a moment behind.
+        canvas.motion(state, shot.frame);
         canvas.tracks(state, shot.frame);
         canvas.cursor(state);
         canvas
@@ -181,18 +181,6 @@ impl<'a> Canvas<'a> {
             let ring = if row.keys.binary_search(&frame).is_ok() { KEY } else { WHITE };
             self.mark(at, &HALO, DARK, ' ');
             self.mark(at, &RING, ring, '@');
-        }
-    }
-
-    fn path(&mut self, row: &TrackRow, frame: u32) {
-        for f in frame.saturating_sub(PATH_FRAMES)..=frame + PATH_FRAMES {
-            let is_key = row.keys.binary_search(&f).is_ok();
-            match row.at(f) {
-                Some(at) if is_key => self.mark(at, &[(0, 0)], KEY, '*'),
-                Some(at) if self.letters.is_some() => self.dot(at),
-                Some(at) => self.mark(at, &[(0, 0)], PATH, '.'),
-                None => {}
-            }
         }
     }
 
@@ -239,8 +227,8 @@ impl<'a> Canvas<'a> {
     }
 
     /// A dot finer than letters.
-    fn dot(&mut self, at: [f32; 2]) {
-        self.note(at, PATH);
+    fn dot(&mut self, at: [f32; 2], colour: [u8; 3]) {
+        self.note(at, colour);
         let Some((x, y)) = self.lens.place_of(at, (2, 4)) else { return };
         let cell = (y / 4 * u32::from(self.lens.area.width) + x / 2) as usize;
         if let Some(letters) = &mut self.letters {

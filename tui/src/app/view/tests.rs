@@ -131,6 +131,8 @@ fn screens() {
         state.read_only = Some("ada@lab2 (pid 4711) since 2026-11-22T02:27:01Z".to_owned());
     });
     check("zoomed_80x24", small, "z z f", |_| {});
+    check("motion_80x24", small, "v v", |_| {});
+    check("dial_120x40", large, "v d 3 h", |_| {});
     check("unmarked_80x24", small, "M", |_| {});
     check("tiny_40x12", (40, 12), "", |_| {});
     check("least_20x5", (20, 5), "", |_| {});
