@@ -22,6 +22,7 @@ mod pictures;
 mod run;
 mod seat;
 pub mod state;
+mod stills;
 mod tally;
 pub mod tracks;
 pub mod update;

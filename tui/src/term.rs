@@ -14,5 +14,6 @@ pub mod key;
 pub mod link;
 pub mod screen;
 pub mod signals;
+pub mod still;
 pub mod tty;
 pub mod writer;

@@ -182,6 +182,13 @@ impl Lens {
         inside.then_some([(self.x + across * self.width) as f32, (self.y + down * self.height) as f32])
     }
 
+    /// Image pixels that a cell is wide and high.
+    #[must_use]
+    pub fn cell_sides_px(&self) -> (f64, f64) {
+        let sides = (f64::from(self.area.width.max(1)), f64::from(self.area.height.max(1)));
+        (self.width / sides.0, self.height / sides.1)
+    }
+
     /// Image pixels that a cell is wide.
     #[must_use]
     pub fn cell_px(&self) -> f32 {

@@ -63,16 +63,21 @@ impl Pictures {
                 None => return Ok(false),
             },
         };
-        let area = Rect { x: lens.x, y: lens.y, width: lens.width, height: lens.height };
-        let (columns, rows) = lens.size();
-        let pixels = picture.rgb_area(area, columns, rows);
-        self.shot = Some(Shot { frame, lens, pixels });
+        self.shot = Some(Shot { frame, lens, pixels: scaled(&picture, lens) });
         Ok(true)
     }
 
     /// The picture at hand.
     pub(super) fn shot(&self) -> Option<&Shot> {
         self.shot.as_ref()
+    }
+
+    /// The picture at hand, with so many pixels to a cell; `None` where that takes time.
+    pub(super) fn fine(&self, grid: (u32, u32)) -> Option<Shot> {
+        let Shot { frame, lens, .. } = self.shot.as_ref()?;
+        let lens = Lens { grid, ..*lens };
+        let picture = self.media.try_frame(*frame).ok()??;
+        Some(Shot { frame: *frame, lens, pixels: scaled(&picture, lens) })
     }
 
     /// Takes a frame from the desk, or puts the wish for it there.
@@ -89,6 +94,13 @@ impl Pictures {
         }
         Ok(None)
     }
+}
+
+/// What a lens shows of a picture.
+fn scaled(picture: &FrameRef, lens: Lens) -> Vec<[u8; 3]> {
+    let area = Rect { x: lens.x, y: lens.y, width: lens.width, height: lens.height };
+    let (columns, rows) = lens.size();
+    picture.rgb_area(area, columns, rows)
 }
 
 /// The thread: fetches what is wished for, one frame after another.

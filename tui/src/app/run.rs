@@ -11,6 +11,7 @@ use super::opening::{Opened, Opening, Plan};
 use super::pictures::Pictures;
 use super::seat::Seat;
 use super::state::{Display, Link, Notice, State};
+use super::stills::{self, Stills};
 use super::tally::Tally;
 use super::update::{Effect, Fact, Msg, update};
 use super::view;
@@ -19,6 +20,7 @@ use crate::term::glyph::Glyphs;
 use crate::term::input::{Event, Reply};
 use crate::term::screen::{End, Screen};
 use crate::term::signals;
+use crate::term::still::Pixmap;
 
 /// While the clip is being decoded, the time line is looked after this often.
 const DECODING_TICK: Duration = Duration::from_millis(250);
@@ -65,6 +67,7 @@ fn log_path() -> PathBuf {
 struct App {
     state: State,
     pictures: Pictures,
+    stills: Stills,
     /// What the screen should show; `None` when the state has changed since.
     frame: Option<Frame>,
     is_exact: bool,
@@ -79,9 +82,11 @@ struct App {
 impl App {
     fn new(state: State, world: &World, screen: &Screen) -> anyhow::Result<Self> {
         let pictures = Pictures::new(world.media(), screen.waker())?;
+        let stills = Stills::new(screen.waker())?;
         let mut app = Self {
             state,
             pictures,
+            stills,
             frame: None,
             is_exact: false,
             tally: Tally::default(),
@@ -107,11 +112,13 @@ impl App {
             return Ok(None);
         }
         loop {
-            let until = [self.state.next_tick(), self.decoding_tick(screen, world), self.seat_due]
-                .into_iter()
-                .flatten()
-                .min();
-            let happened = screen.wait(until, self.frame.is_none() || !self.is_exact)?;
+            let until =
+                [self.state.next_tick(), self.decoding_tick(screen, world), self.seat_due, self.stills.due()]
+                    .into_iter()
+                    .flatten()
+                    .min();
+            let wants_slot = self.frame.is_none() || !self.is_exact || screen.is_sending();
+            let happened = screen.wait(until, wants_slot)?;
             self.tell(Msg::Clock(screen.now()), screen, world)?;
             let mut is_leaving = happened.end.is_some();
             if happened.resized {
@@ -232,8 +239,12 @@ impl App {
                 }
             }
         }
-        if !screen.has_slot() || (self.frame.is_some() && self.is_exact) {
+        self.look_at_still(screen);
+        if !screen.has_slot() {
             return Ok(());
+        }
+        if self.frame.is_some() && self.is_exact {
+            return if screen.is_sending() { Ok(screen.send_still()?) } else { Ok(()) };
         }
         if self.frame.is_none() {
             self.look_at_link(screen);
@@ -243,6 +254,40 @@ impl App {
         self.is_exact = screen.paint(frame, state.play.is_some())?;
         shot.iter().for_each(|shot| self.tally.painted(shot.frame));
         Ok(())
+    }
+
+    /// Sees to it that a picture that stays is shown in the terminal's own pixels, and no other is.
+    fn look_at_still(&mut self, screen: &mut Screen) {
+        let is_allowed = self.state.stills && !screen.link().is_silent();
+        let pixels = screen.pixels().filter(|_| is_allowed);
+        if screen.has_still() && pixels.is_none() {
+            screen.drop_still();
+            self.is_exact = false;
+        }
+        let made = self.stills.take();
+        let frame = self.frame.as_ref().filter(|_| self.is_exact && self.state.play.is_none());
+        let goodput = screen.link().goodput();
+        let (Some(frame), Some(pixels), Some(shot), Some(goodput)) =
+            (frame, pixels, self.pictures.shot(), goodput)
+        else {
+            return self.stills.see(None, screen.has_still(), screen.now());
+        };
+        if let Some(still) = made {
+            screen.show_still(still, frame);
+        }
+        let lens = shot.lens;
+        self.stills.see(stills::wish(frame, lens.area, pixels), screen.has_still(), screen.now());
+        let Some(wish) = self.stills.wish(screen.now()) else { return };
+        let image_px = lens.cell_sides_px();
+        let grid = stills::grid(pixels, screen.cell_px(), image_px);
+        let picture = self.pictures.fine(grid).map(|shot| {
+            let (width, height) = (shot.lens.size().0, grid.1 * u32::from(wish.area.height));
+            let mut pixels = view::picture::compose(&self.state, &shot);
+            pixels.truncate((width * height) as usize);
+            Pixmap { width, height, pixels }
+        });
+        let at_once = screen.link().budget() * screen.link().window();
+        self.stills.order(wish, picture, goodput, at_once);
     }
 
     /// Takes what is known of the terminal into the state.

@@ -8,7 +8,7 @@ mod pen;
 
 use ratatui::buffer::{Buffer, Cell, CellWidth};
 use ratatui::layout::Rect;
-use ratatui::style::Color;
+use ratatui::style::{Color, Modifier};
 
 use super::colour::{Depth, rgb};
 use super::glyph;
@@ -44,6 +44,9 @@ const REUSE_BAND: u8 = 3;
 const RAMP: &[u8] = b" .:-=+*#%@";
 /// In place of cells of which nothing is known: a private character that nobody wants.
 const UNKNOWN: Cell = Cell::new("\u{10fffd}");
+
+/// Marks shown cells over which something else stands that looks like them. No frame wants it.
+const COVERED: Modifier = Modifier::HIDDEN;
 
 /// Paints frames with as few bytes as it can.
 #[derive(Debug)]
@@ -85,6 +88,24 @@ impl Encoder {
     /// Forgets what the terminal shows: the next frame paints every cell.
     pub fn forget(&mut self) {
         self.shown.clear();
+    }
+
+    /// Says that something stands in place of some cells that looks about as they did: none of them is right any
+    /// more, but those that should look different are more wrong.
+    pub fn cover(&mut self, area: Rect) {
+        let columns = self.columns;
+        let is_in = |i: usize| {
+            let (x, y) = (i % columns.max(1), i / columns.max(1));
+            (usize::from(area.left())..usize::from(area.right())).contains(&x)
+                && (usize::from(area.top())..usize::from(area.bottom())).contains(&y)
+        };
+        let covered = self.shown.iter_mut().enumerate().filter(|(i, _)| is_in(*i));
+        covered.for_each(|(_, cell)| cell.modifier |= COVERED);
+    }
+
+    /// Says that somebody else has written: colours and attributes are the terminal's own.
+    pub fn lose_pen(&mut self) {
+        self.pen = Pen::default();
     }
 
     /// Appends the bytes that bring the terminal nearer to the frame.
@@ -146,7 +167,9 @@ impl Encoder {
         if shown == cell {
             return None;
         }
-        let Some(difference) = glyph::difference(shown, cell) else { return Some(1 << 20) };
+        let mut below = shown.clone();
+        below.modifier.remove(COVERED);
+        let Some(difference) = glyph::difference(&below, cell) else { return Some(1 << 20) };
         if moving && difference.most <= DEAD_BAND {
             return None;
         }

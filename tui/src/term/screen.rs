@@ -14,6 +14,7 @@ use super::encode::Frame;
 use super::input::{Decoder, Event, Unfinished};
 use super::link::Link;
 use super::signals::{Signals, Waker};
+use super::still::Still;
 use super::tty::{self, Tty};
 use super::writer::Writer;
 
@@ -135,6 +136,12 @@ impl Screen {
         self.writer.depth()
     }
 
+    /// Width and height of a cell in pixels, where the terminal says.
+    #[must_use]
+    pub fn cell_px(&self) -> Option<(u16, u16)> {
+        self.writer.capabilities().cell_px(self.size())
+    }
+
     /// How pixels get to the terminal, if they do.
     #[must_use]
     pub fn pixels(&self) -> Option<Pixels> {
@@ -168,6 +175,40 @@ impl Screen {
         match &self.tty {
             Some(tty) => Ok(self.writer.paint(tty, frame, moving, now)? == 0),
             None => Ok(true),
+        }
+    }
+
+    /// Begins to show a still over a frame that is on screen.
+    pub fn show_still(&mut self, still: Still, frame: &Frame) {
+        self.writer.show_still(still, frame);
+    }
+
+    /// Whether a still is there, or is being sent.
+    #[must_use]
+    pub fn has_still(&self) -> bool {
+        self.writer.has_still()
+    }
+
+    /// Gives the still up; the next frame takes away what is there of it.
+    pub fn drop_still(&mut self) {
+        self.writer.drop_still();
+    }
+
+    /// Whether pieces of a still wait to be sent.
+    #[must_use]
+    pub fn is_sending(&self) -> bool {
+        self.writer.is_sending()
+    }
+
+    /// Sends the next pieces of the still. Needs a free slot.
+    ///
+    /// # Errors
+    /// When the terminal is gone.
+    pub fn send_still(&mut self) -> io::Result<()> {
+        let now = self.now();
+        match &self.tty {
+            Some(tty) => self.writer.send_still(tty, now),
+            None => Ok(()),
         }
     }
 
@@ -278,6 +319,10 @@ impl Screen {
     /// # Errors
     /// When the system cannot wait.
     pub fn close(&mut self) -> io::Result<()> {
+        if let Some(tty) = &self.tty {
+            // A terminal that is gone shows no still either.
+            self.writer.end_still(tty).ok();
+        }
         let until = self.now() + LAST_ANSWERS;
         while self.tty.is_some() && self.link().is_waiting() && self.now() < until {
             if self.wait(Some(until), false)?.end.is_some() {

@@ -4,6 +4,8 @@ use std::io;
 use std::os::fd::AsFd;
 use std::time::Duration;
 
+use ratatui::buffer::Cell;
+use ratatui::layout::Rect;
 use rustix::io::Errno;
 
 use super::capabilities::Capabilities;
@@ -11,6 +13,7 @@ use super::colour::Depth;
 use super::encode::{Encoder, Frame};
 use super::input::Reply;
 use super::link::Link;
+use super::still::Still;
 
 /// The query at the end of a frame. Its answer, `CSI 0 n`, is no key.
 const QUERY: &[u8] = b"\x1b[5n";
@@ -26,7 +29,23 @@ pub struct Writer {
     bytes: Vec<u8>,
     n_written: usize,
     capabilities: Capabilities,
+    still: Option<Showing>,
+    /// What takes the last still away; goes before everything else.
+    farewell: Vec<u8>,
 }
+
+/// A still that is being sent, or is there.
+#[derive(Debug)]
+struct Showing {
+    still: Still,
+    n_sent: usize,
+    /// The picture that it shows, and the cells that show it coarsely.
+    scene: u64,
+    cells: Vec<Cell>,
+}
+
+/// As much of a still goes at once as a link carries in this time: then a key can still stop it.
+const STILL_SLICE: Duration = Duration::from_millis(16);
 
 impl Writer {
     /// A writer to a terminal of which no more is known than this.
@@ -38,6 +57,8 @@ impl Writer {
             bytes: Vec::new(),
             n_written: 0,
             capabilities,
+            still: None,
+            farewell: Vec::new(),
         }
     }
 
@@ -64,7 +85,7 @@ impl Writer {
     /// # Errors
     /// When the terminal is gone.
     pub fn begin(&mut self, terminal: impl AsFd, bytes: &[u8], now: Duration) -> io::Result<()> {
-        self.encoder.forget();
+        self.forget();
         self.bytes.extend_from_slice(bytes);
         self.bytes.extend_from_slice(&self.capabilities.questions());
         self.bytes.extend_from_slice(QUERY);
@@ -74,7 +95,76 @@ impl Writer {
 
     /// Nothing is known of the screen any more; the next frame paints all of it.
     pub fn forget(&mut self) {
+        self.drop_still();
         self.encoder.forget();
+    }
+
+    /// Begins to show a still over a frame that is on screen; [`send_still`](Self::send_still) goes on.
+    pub fn show_still(&mut self, still: Still, frame: &Frame) {
+        self.drop_still();
+        let cells = cells_in(frame, still.area);
+        self.still = Some(Showing { still, n_sent: 0, scene: frame.scene, cells });
+    }
+
+    /// Whether a still is there, or is being sent.
+    #[must_use]
+    pub fn has_still(&self) -> bool {
+        self.still.is_some()
+    }
+
+    /// Whether pieces of a still wait to be sent.
+    #[must_use]
+    pub fn is_sending(&self) -> bool {
+        self.still.as_ref().is_some_and(|showing| showing.n_sent < showing.still.pieces.len())
+    }
+
+    /// Sends the next pieces of the still. Call it only when a slot is free.
+    ///
+    /// # Errors
+    /// When the terminal is gone.
+    pub fn send_still(&mut self, terminal: impl AsFd, now: Duration) -> io::Result<()> {
+        let slice = self.link.goodput().map_or(0, |rate| (rate * STILL_SLICE.as_secs_f64()) as usize);
+        let slice = slice.min(self.link.budget());
+        let Some(showing) = &mut self.still else { return Ok(()) };
+        self.bytes.append(&mut self.farewell);
+        let begin = self.bytes.len();
+        while let Some(piece) = showing.still.pieces.get(showing.n_sent) {
+            let n = self.bytes.len() - begin;
+            if n > 0 && n + piece.len() > slice {
+                break;
+            }
+            self.bytes.extend_from_slice(piece);
+            showing.n_sent += 1;
+        }
+        // Pieces may set colours, and leave none set.
+        self.bytes.extend_from_slice(b"\x1b[m");
+        self.encoder.lose_pen();
+        self.bytes.extend_from_slice(QUERY);
+        self.link.sent(now, self.bytes.len());
+        self.flush(terminal)
+    }
+
+    /// Gives the still up; the next frame takes away what is there of it.
+    pub fn drop_still(&mut self) {
+        let Some(Showing { still, n_sent, .. }) = self.still.take().filter(|showing| showing.n_sent > 0)
+        else {
+            return;
+        };
+        let is_whole = n_sent == still.pieces.len();
+        self.farewell.extend_from_slice(if is_whole { &still.remove } else { &still.stop });
+        if still.replaces {
+            self.encoder.cover(still.area);
+        }
+    }
+
+    /// Takes the still away, before the terminal is given back.
+    ///
+    /// # Errors
+    /// When the terminal is gone.
+    pub fn end_still(&mut self, terminal: impl AsFd) -> io::Result<()> {
+        self.drop_still();
+        self.bytes.append(&mut self.farewell);
+        self.flush(terminal)
     }
 
     /// Whether a frame is only half written: wait until the terminal takes more, then [`flush`](Self::flush).
@@ -113,7 +203,14 @@ impl Writer {
         if synchronizes {
             self.bytes.extend_from_slice(BEGIN);
         }
+        let stays = |showing: &Showing| {
+            showing.scene == frame.scene && showing.cells == cells_in(frame, showing.still.area)
+        };
+        if !self.still.as_ref().is_none_or(stays) {
+            self.drop_still();
+        }
         let begin = self.bytes.len();
+        self.bytes.append(&mut self.farewell);
         let budget = self.link.budget().saturating_sub(frills);
         let n_wrong = self.encoder.encode(frame, budget, moving, &mut self.bytes);
         if self.bytes.len() == begin {
@@ -156,3 +253,14 @@ impl Writer {
         }
     }
 }
+
+/// The cells of a frame in an area; none where it reaches out of the frame.
+fn cells_in(frame: &Frame, area: Rect) -> Vec<Cell> {
+    if area.intersection(frame.cells.area) != area {
+        return Vec::new();
+    }
+    area.positions().map(|at| frame.cells[at].clone()).collect()
+}
+
+#[cfg(test)]
+mod tests;
