@@ -10,6 +10,8 @@ use std::time::{Duration, Instant};
 use portable_pty::{Child, CommandBuilder, MasterPty, PtySize, native_pty_system};
 use rustix::process::{Pid, Signal, kill_process};
 
+#[path = "pty/display.rs"]
+mod display;
 #[path = "pty/work.rs"]
 mod work;
 
@@ -17,7 +19,10 @@ mod work;
 const PATIENCE: Duration = Duration::from_secs(60);
 const N_FRAMES: usize = 12;
 
-/// A terminal: shows what it gets, answers status queries unless it is silent.
+/// The status query, and its answer.
+const STATUS: (&[u8], &[u8]) = (b"\x1b[5n", b"\x1b[0n");
+
+/// A terminal: shows what it gets, and answers what it knows.
 struct Terminal {
     emulator: vt100::Parser,
     output: Receiver<Vec<u8>>,
@@ -25,9 +30,14 @@ struct Terminal {
     pty: Box<dyn MasterPty + Send>,
     child: Box<dyn Child + Send + Sync>,
     modes_before: String,
-    answers: bool,
-    /// End of the output so far, where a query may be split.
-    tail: Vec<u8>,
+    /// Queries, and what it answers to each.
+    answers: Vec<(&'static [u8], &'static [u8])>,
+    /// Answers that are not sent for now, where they are held back.
+    held: Option<Vec<u8>>,
+    /// All of the output.
+    seen: Vec<u8>,
+    /// How much of it was searched for queries.
+    n_searched: usize,
 }
 
 fn size(columns: u16, rows: u16) -> PtySize {
@@ -46,7 +56,7 @@ impl Terminal {
         for name in ["XDG_STATE_HOME", "XDG_CACHE_HOME", "XDG_DATA_HOME", "HOME"] {
             command.env(name, folder);
         }
-        for name in ["TMUX", "SSH_CONNECTION", "NO_COLOR", "HONAMI_COLOR"] {
+        for name in ["TMUX", "SSH_CONNECTION", "NO_COLOR", "HONAMI_COLOR", "HONAMI_GLYPHS"] {
             command.env_remove(name);
         }
         let child = pair.slave.spawn_command(command).unwrap();
@@ -71,8 +81,10 @@ impl Terminal {
             pty: pair.master,
             child,
             modes_before,
-            answers,
-            tail: Vec::new(),
+            answers: if answers { vec![STATUS] } else { Vec::new() },
+            held: None,
+            seen: Vec::new(),
+            n_searched: 0,
         }
     }
 
@@ -89,19 +101,36 @@ impl Terminal {
         match self.output.recv_timeout(within) {
             Ok(bytes) => {
                 self.emulator.process(&bytes);
-                self.tail.extend_from_slice(&bytes);
-                while let Some(at) = self.tail.windows(4).position(|w| w == b"\x1b[5n") {
-                    self.tail.drain(..at + 4);
-                    if self.answers {
-                        // A program that has gone needs no answer.
-                        self.keyboard.write_all(b"\x1b[0n").ok();
-                    }
-                }
-                self.tail.drain(..self.tail.len().saturating_sub(3));
+                self.seen.extend_from_slice(&bytes);
+                self.answer();
                 (true, true)
             }
             Err(RecvTimeoutError::Timeout) => (false, true),
             Err(RecvTimeoutError::Disconnected) => (false, false),
+        }
+    }
+
+    /// Answers the queries that have come, in their order.
+    fn answer(&mut self) {
+        let mut answers = Vec::new();
+        let mut at = self.n_searched;
+        while at < self.seen.len() {
+            let rest = &self.seen[at..];
+            match self.answers.iter().find(|(query, _)| rest.starts_with(query)) {
+                Some((query, answer)) => {
+                    answers.extend_from_slice(answer);
+                    at += query.len();
+                }
+                // A query may be split: its beginning waits for the rest.
+                None if self.answers.iter().any(|(query, _)| query.starts_with(rest)) => break,
+                None => at += 1,
+            }
+        }
+        self.n_searched = at;
+        match &mut self.held {
+            Some(held) => held.append(&mut answers),
+            // A program that has gone needs no answer.
+            None => drop(self.keyboard.write_all(&answers)),
         }
     }
 
@@ -113,6 +142,20 @@ impl Terminal {
             let screen = self.emulator.screen().contents();
             assert!(goes_on || condition(self.emulator.screen()), "{what}: it ended with\n{screen}");
             assert!(Instant::now() < until, "{what}: still not there, but\n{screen}");
+        }
+    }
+
+    /// Waits until the output from `start` on has something; returns where it ends.
+    #[track_caller]
+    fn wait_for_bytes(&mut self, start: usize, wanted: &str) -> usize {
+        let until = Instant::now() + PATIENCE;
+        loop {
+            let found = self.seen[start..].windows(wanted.len()).position(|w| w == wanted.as_bytes());
+            if let Some(at) = found {
+                return start + at + wanted.len();
+            }
+            assert!(self.listen(Duration::from_millis(50)).1, "it ended without {wanted:?}");
+            assert!(Instant::now() < until, "no {wanted:?} came");
         }
     }
 
