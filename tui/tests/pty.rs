@@ -299,13 +299,13 @@ fn after_a_dropped_connection_everything_is_where_it_was() {
         terminal.wait_for_text("placed at frame 7");
         terminal.press("z,");
         terminal
-            .wait_for("frame 6, closer", |s| s.contents().contains("6/11") && s.contents().contains("2x"));
+            .wait_for("frame 6, closer", |s| s.contents().contains("6/11") && s.contents().contains("1x"));
         terminal.signal(signal);
         terminal.wait_for_status();
         let mut terminal = Terminal::honami(folder.path(), (80, 24), true);
         terminal.wait_for("the same place", |s| {
             let screen = s.contents();
-            screen.contains("6/11") && screen.contains("2x") && screen.contains("track 0")
+            screen.contains("6/11") && screen.contains("1x") && screen.contains("track 0")
         });
         terminal.press("q");
         assert!(terminal.wait_for_end());
