@@ -6,6 +6,7 @@
 
 pub mod action;
 pub mod clock;
+pub mod config;
 mod effects;
 #[cfg(test)]
 mod fixture;
@@ -13,6 +14,7 @@ pub mod form;
 mod fuzzy;
 mod jobs;
 pub mod keymap;
+mod labels;
 pub mod layout;
 pub mod menu;
 pub mod motion;

@@ -5,6 +5,7 @@ mod compare;
 mod edit;
 mod groups;
 mod help;
+mod keys;
 mod log;
 mod project;
 mod report;
@@ -161,6 +162,7 @@ fn run(command: Command, common: &Common) -> anyhow::Result<Outcome> {
         Command::Demo(args) => return synth::demo(&args, common),
         Command::Plugin(args) => help::plugin(&args, common)?,
         Command::Log(args) => log::log(&args)?,
+        Command::Keys(args) => keys::keys(&args),
         Command::Doctor => help::doctor(common),
         Command::Completions { shell } => help::completions(shell),
         Command::Man { folder } => help::manual(&folder)?,

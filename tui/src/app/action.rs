@@ -21,17 +21,42 @@ pub enum Context {
     Dial,
     /// Typing a number.
     Prompt,
+    /// Typing the letters on a track.
+    Label,
 }
 
 impl Context {
     /// All of them.
-    pub const ALL: [Self; 7] =
-        [Self::Review, Self::Place, Self::Move, Self::Form, Self::Menu, Self::Dial, Self::Prompt];
+    pub const ALL: [Self; 8] = [
+        Self::Review,
+        Self::Place,
+        Self::Move,
+        Self::Form,
+        Self::Menu,
+        Self::Dial,
+        Self::Prompt,
+        Self::Label,
+    ];
+
+    /// Its name in key maps and logs.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Review => "review",
+            Self::Place => "place",
+            Self::Move => "move",
+            Self::Form => "form",
+            Self::Menu => "menu",
+            Self::Dial => "dial",
+            Self::Prompt => "prompt",
+            Self::Label => "label",
+        }
+    }
 
     /// Whether letters are text here, so that only other keys are commands.
     #[must_use]
     pub fn is_text(self) -> bool {
-        matches!(self, Self::Menu | Self::Prompt)
+        matches!(self, Self::Menu | Self::Prompt | Self::Label)
     }
 }
 
@@ -87,7 +112,7 @@ table! {
     FineRight "fine-right" ["L" "Shift-Right"] [Place ".25" Move ".25" Form ""] "a quarter of a pixel right, or a tenth of a value's range up"
     Accept "accept" ["Enter"] [Place "place" Move "keep" Form "run" Menu "choose" Prompt "go" Review "" Dial "keep"]
         "accept: keep, place, run or go; while reviewing, confirm the sample here as a key-frame"
-    Back "back" ["Esc" "Ctrl-c"] [Place "back" Move "back" Form "back" Menu "back" Prompt "back" Review "" Dial "back"]
+    Back "back" ["Esc" "Ctrl-c"] [Place "back" Move "back" Form "back" Menu "back" Prompt "back" Label "back" Review "" Dial "back"]
         "back: leave what is open, undone; while reviewing, stop the job or the clip"
     // Time.
     PlayPause "play" ["space"] [Review "play"] "play or pause; 200 space: at 200 %, from now on"
@@ -109,6 +134,9 @@ table! {
     GoEnd "go-end" ["g e" "End"] [Review ""] "go to the last frame"
     GoFrame "go-frame" ["g f"] [Review ""] "go to a frame by its number (120 g f goes at once)"
     GoTrack "go-track" ["g t" "/"] [Review ""] "find a track by its number or name"
+    GoLabel "go-label" ["g l"] [Review ""] "select a track by the letters that appear on it"
+    GoKey "go-key-frame" ["g k"] [Review ""] "find a key-frame of the selected track"
+    GoPlugin "go-plugin" ["g p"] [Review ""] "find a plugin and open its form"
     Sort "sort-tracks" ["S"] [Review ""] "sort the tracks by doubt, the worst first, or by number"
     // Work.
     MoveSample "move-sample" ["m"] [Review "move"] "move the sample here; it becomes a key-frame"
@@ -142,10 +170,12 @@ table! {
     PanelKeyFrames "panel-key-frames" ["P k"] [Review ""] "show or hide the key-frames of the selected track"
     Glyphs "glyphs" ["v q"] [Review ""] "show the picture in half blocks, quadrants, sextants or octants (what the font has)"
     Stills "stills" ["v s"] [Review ""] "show a picture that stays in the terminal's own pixels, or not"
+    NextTheme "next-theme" ["v t"] [Review ""] "change the colours: the next theme"
+    Mouse "mouse" ["v m"] [Review ""] "leave the mouse to the terminal, for selecting text, or take it back"
     Palette "palette" [":"] [Review "" Place "" Move "" Form "" Dial ""] "find any action by name, key or what it does"
     Help "help" ["?"] [Review "help" Place "" Move "" Form "help" Dial "help"] "list what works here; Enter does it"
-    Redraw "redraw" ["Ctrl-l"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial ""] "paint the screen anew"
-    Suspend "suspend" ["Ctrl-z"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial ""] "stop honami until `fg`"
+    Redraw "redraw" ["Ctrl-l"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label ""] "paint the screen anew"
+    Suspend "suspend" ["Ctrl-z"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label ""] "stop honami until `fg`"
     Quit "quit" ["q"] [Review "leave" Place "" Move "" Form "" Dial ""] "back; while reviewing, leave honami"
     Leave "leave" ["Q"] [Review "" Place "" Move "" Form "" Dial ""] "leave honami (everything is kept)"
 }

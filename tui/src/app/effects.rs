@@ -112,7 +112,7 @@ impl World {
                 Ok(Vec::new())
             }
             // The loop's own.
-            Effect::Redraw | Effect::Suspend | Effect::Leave => Ok(Vec::new()),
+            Effect::Mouse(_) | Effect::Redraw | Effect::Suspend | Effect::Leave => Ok(Vec::new()),
         };
         done.unwrap_or_else(|error| vec![failed(&error)])
     }

@@ -11,6 +11,17 @@ pub enum Task {
     Cluster,
 }
 
+impl Task {
+    /// What a plugin that does it is called.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Track => "tracker",
+            Self::Cluster => "clusterer",
+        }
+    }
+}
+
 /// A plugin that was found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plugin {
@@ -97,6 +108,14 @@ impl Form {
         }
         let values = Values::defaults(&plugins.first()?.params);
         Some(Self { task, plugins, which: 0, at: 0, unfolded: false, typed: None, values })
+    }
+
+    /// Chooses a plugin by its name, where it does this task.
+    pub fn choose(&mut self, name: &str) {
+        if let Some(which) = self.plugins.iter().position(|plugin| plugin.name == name) {
+            self.which = which;
+            self.values = Values::defaults(&self.plugin().params);
+        }
     }
 
     /// The chosen plugin.

@@ -1,5 +1,7 @@
 //! Keys to actions, and back: the one source of hints, menus and help.
 
+mod user;
+
 use super::action::{Action, Context, TABLE};
 use crate::term::key::{Code, Key};
 
@@ -80,6 +82,12 @@ impl KeyMap {
     #[must_use]
     pub fn keys_of(&self, context: Context, action: Action) -> Option<String> {
         self.in_context(context).find(|b| b.action == action).map(|b| shown(&b.keys))
+    }
+
+    /// All keys that call an action in a place, as shown.
+    #[must_use]
+    pub fn all_keys_of(&self, context: Context, action: Action) -> Vec<String> {
+        self.in_context(context).filter(|b| b.action == action).map(|b| shown(&b.keys)).collect()
     }
 
     /// The hint line: keys and what they do here. Neighbours that do alike share one hint (`hjkl 1 px`).

@@ -1,11 +1,14 @@
 //! A list to choose from by typing a part of a name: the palette, the help, the tracks.
 
+use honami_model::clip::FrameTimes;
 use honami_model::track::TrackId;
 
-use super::action::{Action, Context, TABLE};
+use super::action::{Action, TABLE};
+use super::form::Plugin;
 use super::fuzzy;
 use super::keymap::KeyMap;
 use super::state::{Mode, State};
+use super::tracks::TrackRow;
 
 /// What a row does when it is chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,6 +17,10 @@ pub enum Choice {
     Action(Action),
     /// Selects a track.
     Track(TrackId),
+    /// Goes to a frame.
+    Frame(u32),
+    /// Opens the form of the plugin with this place in the list.
+    Plugin(usize),
 }
 
 /// A row of a menu.
@@ -58,7 +65,7 @@ impl Menu {
         let rows = rows.map(|info| Row {
             label: info.name.replace('-', " "),
             detail: info.doc.to_owned(),
-            keys: all_keys(keys, context, info.action),
+            keys: keys.all_keys_of(context, info.action).join("  "),
             choice: Choice::Action(info.action),
         });
         Self::new(title, rows.collect(), below)
@@ -78,6 +85,33 @@ impl Menu {
             }
         });
         Self::new("tracks", rows.collect(), Mode::Review)
+    }
+
+    /// The key-frames of a track.
+    #[must_use]
+    pub fn of_key_frames(track: &TrackRow, times: &FrameTimes) -> Self {
+        let rows = track.keys.iter().map(|&frame| {
+            let [x, y] = track.at(frame).unwrap_or_default();
+            Row {
+                label: format!("frame {frame}"),
+                detail: format!("{:.2} s at {x:.1}, {y:.1}", times.get(frame).unwrap_or_default()),
+                keys: String::new(),
+                choice: Choice::Frame(frame),
+            }
+        });
+        Self::new("key-frames", rows.collect(), Mode::Review)
+    }
+
+    /// The plugins that have a form.
+    #[must_use]
+    pub fn of_plugins(plugins: &[Plugin]) -> Self {
+        let rows = plugins.iter().enumerate().map(|(at, plugin)| Row {
+            label: plugin.name.clone(),
+            detail: format!("{} {}", plugin.task.word(), plugin.version),
+            keys: String::new(),
+            choice: Choice::Plugin(at),
+        });
+        Self::new("plugins", rows.collect(), Mode::Review)
     }
 
     /// The rows that match what was typed, best first.
@@ -124,10 +158,4 @@ impl Menu {
         let at = i64::try_from(self.at).unwrap_or(0) + rows;
         self.at = usize::try_from(at).unwrap_or(0).min(last);
     }
-}
-
-/// All keys of an action in a place, two spaces apart.
-fn all_keys(keys: &KeyMap, context: Context, action: Action) -> String {
-    let mine = keys.bindings().iter().filter(|b| b.context == context && b.action == action);
-    mine.map(|b| super::keymap::shown(&b.keys)).collect::<Vec<_>>().join("  ")
 }

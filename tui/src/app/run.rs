@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use anyhow::Context as _;
 
+use super::config::Config;
 use super::effects::World;
 use super::layout::{Layout, Lens};
 use super::opening::{Opened, Opening, Plan};
@@ -35,13 +36,18 @@ const LINK_TICK: Duration = Duration::from_secs(1);
 /// # Errors
 /// When there is no terminal, or the project cannot be read.
 pub fn run(plan: Plan) -> anyhow::Result<Option<End>> {
+    let config = Config::load();
     let mut screen = Screen::open(&log_path()).context("the terminal UI cannot start")?;
+    if !config.mouse {
+        screen.set_mouse(false)?;
+    }
     let opened = Opening::start(plan, screen.waker()).context("no thread for opening");
     let (left, outcome) = match opened.and_then(|opening| opening.watch(&mut screen)) {
         Ok(Opened::Ready(ready, typed)) => {
             let (mut world, state) = *ready;
-            let mut app = App::new(state, &world, &screen)?;
+            let mut app = App::new(state, &config, &world, &screen)?;
             let outcome = app.turn(&mut screen, &mut world, typed);
+            config.keep(&app.state);
             (Some((world, Seat::of(&app.state))), outcome)
         }
         Ok(Opened::Left(end)) => (None, Ok(end)),
@@ -80,7 +86,7 @@ struct App {
 }
 
 impl App {
-    fn new(state: State, world: &World, screen: &Screen) -> anyhow::Result<Self> {
+    fn new(state: State, config: &Config, world: &World, screen: &Screen) -> anyhow::Result<Self> {
         let pictures = Pictures::new(world.media(), screen.waker())?;
         let stills = Stills::new(screen.waker())?;
         let mut app = Self {
@@ -94,6 +100,10 @@ impl App {
             seat_due: None,
         };
         app.state.mono = screen.is_mono();
+        config.take(&mut app.state);
+        if let Some(text) = config.complaint() {
+            app.state.notice = Some(Notice { text, is_error: true });
+        }
         app.state.size = screen.size();
         app.state.glyphs = Glyphs::from_env(|name| std::env::var(name).ok());
         app.look_at_display(screen);
@@ -201,6 +211,7 @@ impl App {
                     self.frame = None;
                 }
                 Effect::Redraw => screen.forget(),
+                Effect::Mouse(ours) => screen.set_mouse(ours)?,
                 other => {
                     for fact in world.carry_out(other, screen.now()) {
                         update(&mut self.state, Msg::Fact(fact));

@@ -13,6 +13,7 @@ use super::menu::Menu;
 use super::motion::Motion;
 use super::panel::Panel;
 use super::tracks::{Groups, TrackRow};
+use super::view::theme::Theme;
 use crate::term::capabilities::Pixels;
 use crate::term::colour::Depth;
 use crate::term::glyph::Glyphs;
@@ -93,6 +94,12 @@ pub struct State {
     pub stills: bool,
     /// What is known of the terminal.
     pub display: Display,
+    /// The themes there are.
+    pub themes: Vec<Theme>,
+    /// The one in use.
+    pub theme: usize,
+    /// Whether the mouse is ours, not the terminal's.
+    pub mouse: bool,
 }
 
 /// What keys mean.
@@ -117,6 +124,8 @@ pub enum Mode {
     Dial(Motion),
     /// Typing a frame number.
     Prompt(String),
+    /// Typing the letters on a track.
+    Label(String),
 }
 
 impl Mode {
@@ -132,6 +141,7 @@ impl Mode {
             Self::Menu(_) => Context::Menu,
             Self::Dial(_) => Context::Dial,
             Self::Prompt(_) => Context::Prompt,
+            Self::Label(_) => Context::Label,
         }
     }
 }
@@ -224,6 +234,9 @@ impl State {
             glyphs: Glyphs::default(),
             stills: true,
             display: Display::default(),
+            themes: Theme::all(),
+            theme: 0,
+            mouse: true,
         }
     }
 

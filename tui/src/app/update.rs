@@ -6,6 +6,7 @@ mod facts;
 mod look;
 mod motion;
 mod mouse;
+mod pick;
 mod time;
 
 use std::time::Duration;
@@ -69,6 +70,8 @@ pub enum Effect {
     Cluster(ClusterRequest),
     /// Stop the running job; it keeps what it has.
     StopJob,
+    /// Take the mouse, or leave it to the terminal.
+    Mouse(bool),
     /// Paint the screen anew.
     Redraw,
     /// Stop the program until it is continued.
@@ -148,6 +151,7 @@ fn on_text(state: &mut State, text: &str) {
                 append(typed, chars, TYPED_MAX);
             }
         }
+        Mode::Label(_) => chars.for_each(|c| pick::type_label(state, c)),
         Mode::Review | Mode::Place(_) | Mode::Move { .. } | Mode::Dial(_) => {
             for c in chars {
                 state.count = c.to_digit(10).map(|digit| {
@@ -192,6 +196,14 @@ fn choose(state: &mut State) -> Vec<Effect> {
             time::select(state, track);
             Vec::new()
         }
+        Some(Choice::Frame(frame)) => {
+            time::go(state, frame);
+            Vec::new()
+        }
+        Some(Choice::Plugin(at)) => {
+            actions::open_plugin(state, at);
+            Vec::new()
+        }
         None => Vec::new(),
     }
 }
@@ -203,5 +215,7 @@ fn open_menu(state: &mut State, title: &'static str) {
     state.mode = Mode::Menu(Box::new(Menu::of_actions(title, &state.keys, below)));
 }
 
+#[cfg(test)]
+mod keys_tests;
 #[cfg(test)]
 mod tests;

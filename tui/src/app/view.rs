@@ -2,11 +2,13 @@
 
 pub mod column;
 mod form;
+mod labels;
 mod lines;
 mod menu;
 mod opening;
 pub mod picture;
 pub mod style;
+pub mod theme;
 
 use ratatui::layout::Rect;
 use ratatui::style::Style;
@@ -32,6 +34,7 @@ pub fn draw(state: &State, shot: Option<&Shot>) -> Frame {
     lines::time(state, layout.time, &mut frame);
     lines::hints(state, layout.hints, &mut frame);
     match &state.mode {
+        Mode::Label(typed) => labels::draw(state, typed, &layout, &mut frame),
         Mode::Form(open) => form::draw(open, layout.picture, &mut frame),
         Mode::Menu(open) => menu::draw(open, layout.picture, &mut frame),
         _ if !state.pending.is_empty() => menu::which_key(state, layout.picture, &mut frame),
@@ -39,6 +42,9 @@ pub fn draw(state: &State, shot: Option<&Shot>) -> Frame {
     }
     // Last, over everything: what happened must be seen.
     lines::notices(state, layout.picture, &mut frame);
+    if let Some(theme) = state.themes.get(state.theme) {
+        theme.paint(&mut frame);
+    }
     frame
 }
 

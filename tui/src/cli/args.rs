@@ -62,6 +62,8 @@ pub(super) enum Command {
     Plugin(Plugin),
     /// Everything that was done to a project: runs, clusterings, edits.
     Log(Project),
+    /// The keys of the terminal UI as they are now, your own included.
+    Keys(Keys),
     /// What this machine has, what each missing piece would add, and how to install it.
     Doctor,
     /// Shell completions, on standard output.
@@ -241,6 +243,13 @@ pub(super) enum Wind {
     Wind,
     /// 5.8 px per frame.
     Storm,
+}
+
+#[derive(Args, Debug)]
+pub(super) struct Keys {
+    /// Only say what is wrong with the configuration; fail where anything is.
+    #[arg(long)]
+    pub(super) check: bool,
 }
 
 #[derive(Args, Debug)]

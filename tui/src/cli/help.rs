@@ -11,6 +11,7 @@ use serde_json::json;
 
 use super::args::{Cli, Common, Plugin};
 use super::{Answer, report};
+use crate::app::config::Config;
 
 /// The shell script that completes honami's words.
 pub(super) fn completions(shell: clap_complete::Shell) -> Answer {
@@ -41,7 +42,14 @@ pub(super) fn doctor(common: &Common) -> Answer {
         };
         rows.push(vec![mark.to_owned(), finding.what.to_owned(), advice]);
     }
-    Answer { json: json!({ "findings": findings }), text: report::table(&rows), done: true }
+    let config = Config::load();
+    let (mark, said) = match config.complaint() {
+        None => ("ok", "config.toml is understood, or not there".to_owned()),
+        Some(complaint) => ("--", complaint),
+    };
+    rows.push(vec![mark.to_owned(), "settings".to_owned(), said]);
+    let json = json!({ "findings": findings, "settings": config.wrong });
+    Answer { json, text: report::table(&rows), done: true }
 }
 
 /// Lists plugins, or describes one.

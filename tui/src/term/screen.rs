@@ -37,6 +37,8 @@ pub struct Screen {
     decoder: Decoder,
     writer: Writer,
     esc_delay: Duration,
+    /// Whether the mouse is ours.
+    mouse: bool,
     /// What is unfinished, and until when more may come of it.
     unfinished: Option<(Unfinished, Duration)>,
     start: Instant,
@@ -93,6 +95,7 @@ impl Screen {
             decoder: Decoder::default(),
             writer: Writer::new(Depth::from_env(var), capabilities),
             esc_delay: ESC_DELAY[usize::from(var("SSH_CONNECTION").is_some())],
+            mouse: true,
             unfinished: None,
             start: Instant::now(),
         };
@@ -103,7 +106,21 @@ impl Screen {
     fn enter(&mut self) -> io::Result<()> {
         let now = self.now();
         let tty = self.tty.insert(Tty::enter(&self.log)?);
-        self.writer.begin(tty, tty::ENTER, now)
+        self.writer.begin(tty, tty::ENTER, now)?;
+        self.set_mouse(self.mouse)
+    }
+
+    /// Takes the mouse, or leaves it to the terminal, where it selects text.
+    ///
+    /// # Errors
+    /// When the terminal is gone.
+    pub fn set_mouse(&mut self, ours: bool) -> io::Result<()> {
+        let changed = ours != self.mouse || !ours;
+        self.mouse = ours;
+        match &self.tty {
+            Some(tty) if changed => self.writer.send(tty, if ours { tty::MOUSE_ON } else { tty::MOUSE_OFF }),
+            _ => Ok(()),
+        }
     }
 
     /// Time since the session began.
@@ -300,7 +317,8 @@ impl Screen {
         let now = self.now();
         let Some(tty) = &self.tty else { return Ok(()) };
         tty.set_raw()?;
-        self.writer.begin(tty, tty::RESUME, now)
+        self.writer.begin(tty, tty::RESUME, now)?;
+        self.set_mouse(self.mouse)
     }
 
     /// Gives the terminal back, stops the program until it is continued, and takes the terminal again.

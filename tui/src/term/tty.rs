@@ -25,6 +25,11 @@ pub const RESUME: &[u8] = b"\x1b[?1049h\x1b[<u\x1b[?25l\x1b[?1000h\x1b[?1002h\x1
 pub const LEAVE: &[u8] =
     b"\x1b[?2026l\x1b[<u\x1b[?2004l\x1b[?1006l\x1b[?1002l\x1b[?1000l\x1b[m\x1b[?25h\x1b[?1049l";
 
+/// Mouse presses and drags come to us.
+pub const MOUSE_ON: &[u8] = b"\x1b[?1000h\x1b[?1002h\x1b[?1006h";
+/// The mouse is the terminal's own.
+pub const MOUSE_OFF: &[u8] = b"\x1b[?1006l\x1b[?1002l\x1b[?1000l";
+
 /// How long the terminal has for taking [`LEAVE`].
 const LEAVE_WITHIN: Duration = Duration::from_millis(500);
 /// A log longer than this begins anew, bytes.

@@ -93,6 +93,15 @@ impl Writer {
         self.flush(terminal)
     }
 
+    /// Sends `bytes` that change nothing on the screen, after whatever is on its way.
+    ///
+    /// # Errors
+    /// When the terminal is gone.
+    pub fn send(&mut self, terminal: impl AsFd, bytes: &[u8]) -> io::Result<()> {
+        self.bytes.extend_from_slice(bytes);
+        self.flush(terminal)
+    }
+
     /// Nothing is known of the screen any more; the next frame paints all of it.
     pub fn forget(&mut self) {
         self.drop_still();

@@ -56,3 +56,51 @@ fn hints_are_the_live_key_map() {
     }
     assert!(changed.hints(Context::Move).contains(&("F1".to_owned(), "keep")));
 }
+
+/// A key map with a user's own, and what is said of it.
+fn with(text: &str) -> (KeyMap, Vec<String>) {
+    KeyMap::with(&text.parse().expect("TOML"))
+}
+
+#[test]
+fn a_users_keys_lie_over_the_usual_ones() {
+    let (keys, wrong) = with("undo = [\"U\", \"F5\"]\nfollow = []\n[move]\nleft = \"a\"");
+    assert_eq!(wrong, Vec::<String>::new());
+    let find = |context, text: &str| {
+        let typed: Vec<Key> = text.split(' ').map(|k| k.parse().expect("a key")).collect();
+        keys.find(context, &typed)
+    };
+    for (context, typed, expect) in [
+        (Context::Review, "U", Found::Action(Action::Undo)),
+        (Context::Review, "F5", Found::Action(Action::Undo)),
+        (Context::Review, "u", Found::Nothing),
+        (Context::Review, "f", Found::Nothing),
+        (Context::Move, "a", Found::Action(Action::Left)),
+        (Context::Move, "h", Found::Nothing),
+        (Context::Review, "h", Found::Action(Action::Left)),
+        (Context::Review, "a", Found::Action(Action::AddFeature)),
+    ] {
+        assert_eq!(find(context, typed), expect, "{typed}");
+    }
+    assert_eq!(keys.keys_of(Context::Move, Action::Left).as_deref(), Some("a"), "hints follow");
+}
+
+#[test]
+fn what_is_wrong_with_a_users_keys_is_said() {
+    for (text, expect) in [
+        ("undoo = \"u\"", "there is no action undoo; did you mean undo?"),
+        ("undo = \"Entr\"", "undo: a key like `g`, `Ctrl-r` or `Enter` is wanted, `Entr` came"),
+        ("undo = 7", "undo: keys are wanted, as \"g f\" or [\"g f\", \"F5\"], got 7"),
+        ("undo = \"\"", "undo: a key is wanted, nothing came"),
+        ("undo = \"F5\"\nredo = \"F5\"", "F5 (review) is given to redo and to undo: it calls redo"),
+        ("[move]\nundo = \"F5\"", "undo does nothing in move"),
+        ("[moving]\nleft = \"a\"", "keys.moving: a place is wanted, one of "),
+        ("undo = \"g\"", "g (review) calls undo and hides go-"),
+        ("back = []", "no key calls back while in move"),
+        ("palette = []\nhelp = []\nfollow = []", "out of reach in review: "),
+    ] {
+        let (_, wrong) = with(text);
+        assert!(wrong.iter().any(|line| line.starts_with(expect)), "{text}: {wrong:?}");
+    }
+    assert_eq!(KeyMap::default().lint(), Vec::<String>::new());
+}

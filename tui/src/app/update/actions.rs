@@ -1,6 +1,6 @@
 //! Actions, each by its place.
 
-use super::{Action, Effect, Mode, State, choose, complain, edit, look, motion, open_menu, say, time};
+use super::{Action, Effect, Mode, State, choose, complain, edit, look, motion, open_menu, pick, say, time};
 use honami_model::track::TrackSet;
 use honami_workbench::cluster::ClusterRequest;
 use honami_workbench::track::{Area, PointSource, TrackRequest};
@@ -50,6 +50,9 @@ pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {
         Action::MoveSample => edit::begin_move(state),
         Action::AddFeature => edit::begin_place(state),
         Action::ClearKey => return edit::clear_key(state),
+        Action::GoLabel => pick::label(state),
+        Action::GoKey => pick::key_frame(state),
+        Action::GoPlugin => pick::plugin(state),
         Action::Sort => time::sort(state),
         Action::DeleteTrack => return edit::delete(state),
         Action::MoreGroups if matches!(state.mode, Mode::Dial(_)) => motion::gain(state, count(state)),
@@ -64,6 +67,7 @@ pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {
         Action::Help => open_menu(state, "what works here"),
         Action::Redraw => return vec![Effect::Redraw],
         Action::Suspend => return vec![Effect::Suspend],
+        Action::Mouse => return mouse(state),
         other => look_about(state, other),
     }
     Vec::new()
@@ -91,6 +95,7 @@ fn look_about(state: &mut State, action: Action) {
         Action::PanelKeyFrames => show_panel(state, Panel::KeyFrames),
         Action::Glyphs => turn_glyphs(state),
         Action::Stills => turn_stills(state),
+        Action::NextTheme => next_theme(state),
         // The rest are not of this kind; a test asks that no binding is silent.
         _ => {}
     }
@@ -116,7 +121,7 @@ fn steer(state: &mut State, dx: f32, dy: f32, px: f32) -> Vec<Effect> {
         Mode::Form(form) => form.step(rows),
         Mode::Menu(menu) => menu.step(rows),
         Mode::Dial(_) => motion::steer(state, f64::from(dx), f64::from(dy)),
-        Mode::Prompt(_) => {}
+        Mode::Prompt(_) | Mode::Label(_) => {}
     }
     Vec::new()
 }
@@ -139,6 +144,7 @@ fn accept(state: &mut State) -> Vec<Effect> {
             }
             Vec::new()
         }
+        Mode::Label(_) => Vec::new(),
         Mode::Form(form) if form.typed.is_some() => {
             if let Err(line) = form.take_typed() {
                 complain(state, line);
@@ -205,15 +211,39 @@ fn erase(state: &mut State) -> Vec<Effect> {
                 typed.pop();
             }
         }
-        Mode::Review | Mode::Place(_) | Mode::Move { .. } | Mode::Dial(_) => {}
+        Mode::Review | Mode::Place(_) | Mode::Move { .. } | Mode::Dial(_) | Mode::Label(_) => {}
     }
     Vec::new()
 }
 
+/// Opens the form of the plugin with this place in the list.
+pub(super) fn open_plugin(state: &mut State, at: usize) {
+    let Some(plugin) = state.plugins.get(at).cloned() else { return };
+    open_form(state, plugin.task);
+    if let Mode::Form(form) = &mut state.mode {
+        form.choose(&plugin.name);
+    }
+}
+
+fn next_theme(state: &mut State) {
+    state.theme = (state.theme + 1) % state.themes.len().max(1);
+    if let Some(theme) = state.themes.get(state.theme) {
+        let line = format!("theme {}", theme.name);
+        say(state, line);
+    }
+}
+
+/// Takes the mouse, or leaves it to the terminal, where it selects text.
+fn mouse(state: &mut State) -> Vec<Effect> {
+    state.mouse = !state.mouse;
+    say(state, if state.mouse { "the mouse selects and places" } else { "the mouse is the terminal's" });
+    vec![Effect::Mouse(state.mouse)]
+}
+
 fn open_form(state: &mut State, task: Task) {
-    let (word, plugin) = match task {
-        Task::Track => ("tracker", "tracker-klt"),
-        Task::Cluster => ("clusterer", "clusterer-movement"),
+    let plugin = match task {
+        Task::Track => "tracker-klt",
+        Task::Cluster => "clusterer-movement",
     };
     if let Some(holder) = &state.read_only {
         let line = format!("read only: {holder} holds this project");
@@ -232,9 +262,10 @@ fn open_form(state: &mut State, task: Task) {
     };
     match Form::new(task, &state.plugins, features) {
         Some(form) => state.mode = Mode::Form(Box::new(form)),
-        None => {
-            complain(state, format!("no {word} was found; `honami doctor` says where {plugin} is looked for"))
-        }
+        None => complain(
+            state,
+            format!("no {} was found; `honami doctor` says where {plugin} is looked for", task.word()),
+        ),
     }
 }
 

@@ -25,7 +25,7 @@ pub(super) fn on_mouse(state: &mut State, mouse: Mouse) -> Vec<Effect> {
                         look::zoom_at(state, -by, point);
                     }
                 }
-                Mode::Dial(_) | Mode::Prompt(_) => {}
+                Mode::Dial(_) | Mode::Prompt(_) | Mode::Label(_) => {}
             }
         }
         MouseKind::Press(1 | 2) => state.dragged = Some((mouse.column, mouse.row)),

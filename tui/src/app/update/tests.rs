@@ -65,6 +65,7 @@ fn line(state: &State, effects: &[Effect]) -> String {
                 state.motion.full_px_s()
             )
         }
+        Mode::Label(typed) => format!("label {typed}"),
         Mode::Prompt(typed) => format!("prompt {typed:?}"),
     }];
     words.push(format!(
@@ -403,6 +404,7 @@ fn every_binding_answers() {
         (Context::Menu, ":"),
         (Context::Prompt, "g f"),
         (Context::Dial, "v d"),
+        (Context::Label, "g l"),
     ];
     for binding in crate::app::keymap::KeyMap::default().bindings() {
         let (_, way) = reach.iter().find(|(context, _)| *context == binding.context).unwrap();
@@ -438,6 +440,22 @@ fn prepared(context: Context, action: Action) -> &'static str {
         (Context::Prompt, Action::Erase) => "1",
         (Context::Review, Action::Back) => "space",
         _ => "",
+    }
+}
+
+#[test]
+fn finding_by_letters_and_in_lists() {
+    for (keys, expect) in [
+        ("g l", "label  | frame 20 track 1"),
+        ("g l j", "review | frame 20 track 7 | said track 7 is selected"),
+        ("g l z", "review | frame 20 track 1 | error no track here has the letters z"),
+        ("g l Esc", "review | frame 20 track 1"),
+        ("g k Down Enter", "review | frame 50 track 1"),
+        ("g p m o v Enter", "form Cluster row 0 typed None | frame 20 track 1"),
+        ("g p f l o Enter", "form Track row 0 typed None | frame 20 track 1"),
+        ("v m", "review | frame 20 track 1 | said the mouse is the terminal's | Mouse(false)"),
+    ] {
+        check("frame=20", keys, expect);
     }
 }
 

@@ -167,6 +167,7 @@ pub(super) fn time(state: &State, area: Rect, frame: &mut Frame) {
 pub(super) fn hints(state: &State, area: Rect, frame: &mut Frame) {
     let mut left = match &state.mode {
         Mode::Prompt(typed) => format!("go to frame {typed}▏"),
+        Mode::Label(typed) => format!("letters of a track {typed}▏"),
         _ => {
             let t_s = state.clip.times.get(state.frame).unwrap_or_default();
             format!("{}/{}  {t_s:.2} s", state.frame, state.last_frame())

@@ -118,6 +118,8 @@ fn screens() {
     check("crowded_80x24", small, "", fixture::crowd);
     check("typing_80x24", small, "t j j 2 5", |_| {});
     check("prefix_80x24", small, "g", |_| {});
+    check("labels_80x24", small, "g l", fixture::crowd);
+    check("light_80x24", small, "v t g k", |_| {});
     check("palette_80x24", small, ": f r a m e", |_| {});
     check("help_120x40", large, "?", |_| {});
     check("tracks_80x24", small, "/", |_| {});

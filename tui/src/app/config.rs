@@ -1,0 +1,150 @@
+//! What a user has settled: keys, theme and mouse, in `$XDG_CONFIG_HOME/honami/config.toml`.
+//!
+//! What is changed on screen and not settled there is kept in `$XDG_STATE_HOME/honami/choices.toml`.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::keymap::KeyMap;
+use super::state::State;
+use super::view::theme::Theme;
+
+/// What the terminal UI begins with.
+#[derive(Clone, Debug)]
+pub struct Config {
+    /// The live key map.
+    pub keys: KeyMap,
+    /// The themes there are.
+    pub themes: Vec<Theme>,
+    /// The one to begin with.
+    pub theme: usize,
+    /// Whether the mouse is ours.
+    pub mouse: bool,
+    /// What is wrong with what was settled, one line each.
+    pub wrong: Vec<String>,
+    /// Whether theme and mouse were settled, so that no choice on screen outlasts the session.
+    settled: (bool, bool),
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        Self::of("", "")
+    }
+}
+
+impl Config {
+    /// Reads what was settled and chosen; what is not there is as usual.
+    #[must_use]
+    pub fn load() -> Self {
+        let read = |path: Option<PathBuf>| match path.as_deref().map(fs::read_to_string) {
+            Some(Ok(text)) => Ok(text),
+            Some(Err(error)) if error.kind() != std::io::ErrorKind::NotFound => Err(error),
+            _ => Ok(String::new()),
+        };
+        let chosen = read(choices_path()).unwrap_or_default();
+        match read(Self::path()) {
+            Ok(text) => Self::of(&text, &chosen),
+            Err(error) => {
+                let mut config = Self::of("", &chosen);
+                config.wrong.push(format!("it cannot be read: {error}"));
+                config
+            }
+        }
+    }
+
+    /// Where a user settles things.
+    #[must_use]
+    pub fn path() -> Option<PathBuf> {
+        folder("XDG_CONFIG_HOME", ".config").map(|folder| folder.join("config.toml"))
+    }
+
+    /// The text of a configuration, and of what was chosen on screen.
+    #[must_use]
+    pub fn of(text: &str, chosen: &str) -> Self {
+        let mut wrong = Vec::new();
+        let table: toml::Table = text.parse().unwrap_or_else(|error: toml::de::Error| {
+            wrong.push(format!("it is no TOML: {}", error.message()));
+            toml::Table::new()
+        });
+        for name in table.keys().filter(|name| !["keys", "theme", "themes", "mouse"].contains(&name.as_str()))
+        {
+            wrong.push(format!("{name} is not known; there are keys, theme, themes, mouse"));
+        }
+        let none = toml::Table::new();
+        let part = |name: &str| table.get(name).and_then(toml::Value::as_table).unwrap_or(&none);
+        let (keys, wrong_keys) = KeyMap::with(part("keys"));
+        wrong.extend(wrong_keys);
+        let mut themes = Theme::all();
+        for (name, wanted) in part("themes") {
+            let wanted = wanted.as_table().unwrap_or(&none);
+            let like = wanted.get("like").and_then(toml::Value::as_str);
+            let base =
+                like.and_then(|like| themes.iter().find(|theme| theme.name == like)).unwrap_or(&themes[0]);
+            let (theme, wrong_theme) = Theme::like(base, name, wanted);
+            wrong.extend(wrong_theme);
+            themes.push(theme);
+        }
+        // A file of choices that cannot be read is as good as none.
+        let chosen: toml::Table = chosen.parse().unwrap_or_default();
+        let settled = (table.contains_key("theme"), table.contains_key("mouse"));
+        let named = table.get("theme").or(chosen.get("theme")).and_then(toml::Value::as_str);
+        let theme = named.and_then(|named| themes.iter().position(|theme| theme.name == named));
+        if let Some(named) = named.filter(|_| theme.is_none() && settled.0) {
+            let known: Vec<&str> = themes.iter().map(|theme| theme.name.as_str()).collect();
+            wrong.push(format!("there is no theme {named}; there are {}", known.join(", ")));
+        }
+        let mouse = table.get("mouse").or(chosen.get("mouse")).and_then(toml::Value::as_bool).unwrap_or(true);
+        Self { keys, themes, theme: theme.unwrap_or(0), mouse, wrong, settled }
+    }
+
+    /// Takes the settings into a state.
+    pub(super) fn take(&self, state: &mut State) {
+        state.keys = self.keys.clone();
+        state.themes = self.themes.clone();
+        state.theme = self.theme;
+        state.mouse = self.mouse;
+    }
+
+    /// One line for the screen, where something is wrong.
+    #[must_use]
+    pub fn complaint(&self) -> Option<String> {
+        let first = self.wrong.first()?;
+        let more = match self.wrong.len() - 1 {
+            0 => String::new(),
+            n => format!(", and {n} more: `honami keys --check` says all"),
+        };
+        Some(format!("config.toml: {first}{more}"))
+    }
+
+    /// Keeps what was chosen on screen and is not settled. Lost without harm: nobody is told.
+    pub(super) fn keep(&self, state: &State) {
+        if (state.theme, state.mouse) == (self.theme, self.mouse) {
+            return;
+        }
+        let mut chosen = toml::Table::new();
+        if let Some(theme) = state.themes.get(state.theme).filter(|_| !self.settled.0) {
+            chosen.insert("theme".to_owned(), theme.name.clone().into());
+        }
+        if !self.settled.1 {
+            chosen.insert("mouse".to_owned(), state.mouse.into());
+        }
+        if let Some(path) = choices_path() {
+            fs::create_dir_all(path.parent().unwrap_or(Path::new("/"))).ok();
+            fs::write(path, chosen.to_string()).ok();
+        }
+    }
+}
+
+fn choices_path() -> Option<PathBuf> {
+    folder("XDG_STATE_HOME", ".local/state").map(|folder| folder.join("choices.toml"))
+}
+
+/// honami's folder in one of the user's: as the variable says, else in the home folder.
+fn folder(variable: &str, in_home: &str) -> Option<PathBuf> {
+    let named = std::env::var_os(variable).map(PathBuf::from).filter(|path| path.is_absolute());
+    let home = || std::env::var_os("HOME").map(|home| PathBuf::from(home).join(in_home));
+    named.or_else(home).map(|folder| folder.join("honami"))
+}
+
+#[cfg(test)]
+mod tests;
