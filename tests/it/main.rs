@@ -3,6 +3,7 @@
 
 mod cli;
 mod edit;
+mod exchange;
 mod home;
 mod journal_kill;
 mod locks;

@@ -3,6 +3,7 @@
 mod args;
 mod compare;
 mod edit;
+mod exchange;
 mod groups;
 mod help;
 mod keys;
@@ -157,7 +158,8 @@ fn run(command: Command, common: &Common) -> anyhow::Result<Outcome> {
         }
         Command::Compare(args) => compare::compare(&args, common)?,
         Command::Spectrum(args) => spectrum::spectrum(&args)?,
-        Command::Export(args) => project::export(&args)?,
+        Command::Export(args) => exchange::export(&args)?,
+        Command::Import(args) => exchange::import(&args)?,
         Command::Synth(args) => synth::synth(&args)?,
         Command::Demo(args) => return synth::demo(&args, common),
         Command::Plugin(args) => help::plugin(&args, common)?,

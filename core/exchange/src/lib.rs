@@ -1,4 +1,5 @@
-//! Tables in and out: tracks, points and truth as CSV with a header line, one row a sample.
+//! Tables in and out: tracks, points and truth as CSV with a header line, one row a sample; and tracks of other
+//! programs in [`foreign`].
 //!
 //! Columns are found by name, in any order; unknown ones are ignored. Numbers are written in the shortest
 //! form that reads back to the same bits. A table is written beside its place and renamed when complete, so
@@ -17,12 +18,20 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod atomic;
+pub mod foreign;
+pub mod origin;
+mod parquet;
 pub mod rows;
 pub mod spans;
 pub mod table;
+mod track_table;
 pub mod verdicts;
 
+pub use atomic::AtomicFile;
+pub use parquet::ParquetWriter;
 pub use rows::{GroupRow, PointRow, TrackRow, TruthRow, trust};
 pub use spans::spans;
 pub use table::{Reader, Row, TableError, Writer, read};
+pub use track_table::TrackTable;
 pub use verdicts::{EffortRow, VerdictRow};

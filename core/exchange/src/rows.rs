@@ -37,13 +37,13 @@ pub fn trust(quality: Quality) -> Option<f32> {
     [from_ncc, from_fb].into_iter().flatten().reduce(f32::min)
 }
 
-fn status_from(text: &str) -> Option<Status> {
+pub(crate) fn status_from(text: &str) -> Option<Status> {
     let numbered = || Status::from_u8(text.parse().ok()?);
     let words = ["lost", "tracked", "occluded", "outside", "rejected", "newborn"];
     numbered().or_else(|| Status::from_u8(u8::try_from(words.iter().position(|&word| word == text)?).ok()?))
 }
 
-fn source_from(text: &str) -> Option<Source> {
+pub(crate) fn source_from(text: &str) -> Option<Source> {
     [Source::Key, Source::Sketch, Source::Tracked, Source::Interpolated, Source::Imported]
         .into_iter()
         .find(|source| source.word() == text)
@@ -205,6 +205,6 @@ impl Row for GroupRow {
     fn put(&self, line: &mut Line) {
         line.put(self.track);
         line.put(self.group);
-        line.put(&self.name);
+        line.text(&self.name);
     }
 }

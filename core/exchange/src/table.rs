@@ -5,6 +5,8 @@ use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use crate::atomic::AtomicFile;
+
 /// Why a table could not be read or written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -235,6 +237,15 @@ impl Line {
         write!(self.text, "{value}").unwrap_or_default();
     }
 
+    /// A text of any kind, in quotes where it needs them.
+    pub fn text(&mut self, text: &str) {
+        if text.contains([',', '"', '\n', '\r']) {
+            self.put(format_args!("\"{}\"", text.replace('"', "\"\"")));
+        } else {
+            self.put(text);
+        }
+    }
+
     /// A number, in the shortest form that reads back to the same bits.
     pub fn number<T: std::fmt::Display + Copy + Into<f64>>(&mut self, value: T) {
         if !value.into().is_finite() {
@@ -255,8 +266,7 @@ impl Line {
 /// A table being written; it takes its name in [`Writer::finish`] and leaves nothing behind before that.
 #[derive(Debug)]
 pub struct Writer<R> {
-    path: PathBuf,
-    file: std::io::BufWriter<tempfile::NamedTempFile>,
+    file: AtomicFile,
     line: Line,
     n_lines: u64,
     rows: PhantomData<R>,
@@ -268,21 +278,8 @@ impl<R: Row> Writer<R> {
     /// # Errors
     /// [`TableError::File`] when the folder cannot be written to.
     pub fn create(path: &Path) -> Result<Self, TableError> {
-        let fail = |source| TableError::File { path: path.into(), source };
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let mut builder = tempfile::Builder::new();
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666)); // less the umask
-        // Its error names the temporary file, which nobody asked for: what the system said is enough.
-        let plain = |e: std::io::Error| fail(e.kind().into());
-        let file = builder.prefix(".honami-").suffix(".part").tempfile_in(folder).map_err(plain)?;
-        let mut writer = Self {
-            path: path.into(),
-            file: std::io::BufWriter::with_capacity(1 << 16, file),
-            line: Line::default(),
-            n_lines: 0,
-            rows: PhantomData,
-        };
+        let file = AtomicFile::create(path)?;
+        let mut writer = Self { file, line: Line::default(), n_lines: 0, rows: PhantomData };
         R::COLUMNS.iter().for_each(|name| writer.line.put(name));
         writer.end_line()?;
         Ok(writer)
@@ -303,13 +300,17 @@ impl<R: Row> Writer<R> {
         self.n_lines += 1;
         if let Some((column, value)) = self.line.not_finite {
             let column = R::COLUMNS[column];
-            return Err(TableError::NotFinite { path: self.path.clone(), line: self.n_lines, column, value });
+            return Err(TableError::NotFinite { path: self.path(), line: self.n_lines, column, value });
         }
         self.line.text.push('\n');
         let written = self.file.write_all(self.line.text.as_bytes());
         self.line.text.clear();
         self.line.column = 0;
-        written.map_err(|source| TableError::File { path: self.path.clone(), source })
+        written.map_err(|source| TableError::File { path: self.path(), source })
+    }
+
+    fn path(&self) -> PathBuf {
+        self.file.path().to_owned()
     }
 
     /// Puts the whole table on the disk under its name, over what stood there.
@@ -317,15 +318,7 @@ impl<R: Row> Writer<R> {
     /// # Errors
     /// [`TableError::File`] on a full disk; what stood there before then still does.
     pub fn finish(self) -> Result<(), TableError> {
-        let Self { path, file, .. } = self;
-        file.into_inner()
-            .map_err(std::io::IntoInnerError::into_error)
-            .and_then(|file| {
-                file.as_file().sync_all()?;
-                file.persist(&path).map_err(|failed| failed.error)
-            })
-            .map_err(|source| TableError::File { path: path.clone(), source })?;
-        Ok(())
+        self.file.finish()
     }
 }
 

@@ -61,8 +61,8 @@ impl Row for VerdictRow {
         line.put(self.first_frame);
         line.put(end_frame);
         line.put(verdict.word());
-        line.put(reasons.join(" "));
-        line.put(reviewer);
+        line.text(&reasons.join(" "));
+        line.text(reviewer);
         line.put(time);
         put_effort(effort, line);
     }

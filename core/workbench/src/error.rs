@@ -20,6 +20,34 @@ pub enum WorkbenchError {
     /// A table could not be read or written.
     #[error(transparent)]
     Table(#[from] honami_exchange::TableError),
+    /// A file of another program could not be read or written.
+    #[error(transparent)]
+    Foreign(#[from] honami_exchange::foreign::ForeignError),
+    /// A file was made on pictures of another size.
+    #[error(
+        "{}: made on pictures of {}x{} pixels, the clip has {}x{}: is it another clip's? \
+         --size {}x{} scales its positions to the clip",
+        path.display(), came[0], came[1], wanted[0], wanted[1], came[0], came[1]
+    )]
+    PictureSize {
+        /// The file.
+        path: PathBuf,
+        /// Width and height that it names.
+        came: [u32; 2],
+        /// Width and height of the clip.
+        wanted: [u32; 2],
+    },
+    /// A file has no sample within the clip.
+    #[error("{}: no track of points in frames 0..{n_frames} of the clip", path.display())]
+    NothingToImport {
+        /// The file.
+        path: PathBuf,
+        /// Frames of the clip.
+        n_frames: u32,
+    },
+    /// No track is among those asked for.
+    #[error("none of the tracks or groups asked for is shown")]
+    NoSuchTracks,
     /// Tracks could not be compared.
     #[error(transparent)]
     Motion(#[from] honami_motion::MotionError),

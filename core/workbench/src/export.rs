@@ -1,43 +1,135 @@
 //! What was measured, for other programs.
 
+use std::collections::BTreeSet;
 use std::path::Path;
+use std::sync::Arc;
 
-use honami_exchange::{GroupRow, TrackRow, Writer};
+use honami_exchange::foreign::{self, ForeignError, ForeignTrack, Format, Loss, Outgoing};
+use honami_exchange::origin::Origin;
+use honami_exchange::{AtomicFile, GroupRow, TrackRow, TrackTable, Writer};
+use honami_model::track::{Source, Span, TrackId, TrackSet};
 use honami_store::Project;
 
 use crate::error::WorkbenchError;
 
+/// Side of the box that stands for a point in MOTChallenge files, pixels.
+pub const BOX_PX: f64 = 9.0;
+
+/// Which tracks to write, and how.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ExportRequest {
+    /// The format.
+    pub format: Format,
+    /// Only these tracks.
+    pub tracks: Option<TrackSet>,
+    /// Only the tracks of these groups, numbered from 1.
+    pub groups: Option<BTreeSet<u32>>,
+    /// Where to count pixels from, if not where the format usually does.
+    pub origin: Option<Origin>,
+    /// CVAT: every frame becomes a key-frame.
+    pub every_frame: bool,
+    /// MOTChallenge: side of the box around a point, pixels.
+    pub box_px: f64,
+}
+
+impl ExportRequest {
+    /// All tracks, as the format usually is.
+    #[must_use]
+    pub fn of(format: Format) -> Self {
+        Self { format, tracks: None, groups: None, origin: None, every_frame: false, box_px: BOX_PX }
+    }
+}
+
 /// What was written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Exported {
     /// Tracks.
     pub n_tracks: usize,
-    /// Rows, one a sample.
-    pub n_rows: u64,
+    /// Samples of these tracks.
+    pub n_samples: u64,
+    /// What the format could not keep.
+    pub losses: Vec<Loss>,
+    /// What its reader should know.
+    pub notes: Vec<String>,
 }
 
-/// Writes the shown tracks as one long table; nothing is left behind when it fails.
+/// Writes the shown tracks, corrections included; nothing is left behind when it fails.
 ///
 /// # Errors
-/// [`WorkbenchError::NoTracks`], and what the project or the disk met.
-pub fn tracks(project: &Project, out: &Path) -> Result<Exported, WorkbenchError> {
-    let shown = project.shown_all()?;
+/// [`WorkbenchError::NoTracks`], [`WorkbenchError::NoSuchTracks`], and what the project or the disk met.
+pub fn tracks(project: &Project, out: &Path, request: &ExportRequest) -> Result<Exported, WorkbenchError> {
+    let shown = chosen(project, request)?;
+    let document = project.document();
+    let called = |id: TrackId| document.track(id).and_then(|track| track.name.clone());
+    let foreign: Vec<ForeignTrack> = shown
+        .into_iter()
+        .map(|(id, span)| ForeignTrack { number: Some(id.0), name: called(id), spans: vec![span] })
+        .collect();
+    let clip = &project.clip().clip;
+    let what = Outgoing {
+        tracks: &foreign,
+        size: [clip.width, clip.height],
+        n_frames: clip.n_frames(),
+        fps: clip.times.nominal_fps(),
+        variable_rate: clip.times.is_variable(),
+        origin: request.origin,
+        every_frame: request.every_frame,
+        box_px: request.box_px,
+    };
+    match TrackTable::create(out, request.format)? {
+        Some(table) => own(project, table, &foreign)?,
+        None => {
+            let mut file = AtomicFile::create(out)?;
+            let written = foreign::write(&mut file, request.format, &what);
+            written.map_err(|source| ForeignError::File { path: out.to_owned(), source })?;
+            file.finish()?;
+        }
+    }
+    Ok(Exported {
+        n_tracks: foreign.len(),
+        n_samples: foreign.iter().map(|track| track.n_samples() as u64).sum(),
+        losses: foreign::losses(request.format, &what),
+        notes: notes(request, &foreign),
+    })
+}
+
+/// The shown tracks that are wanted.
+fn chosen(project: &Project, request: &ExportRequest) -> Result<Vec<(TrackId, Arc<Span>)>, WorkbenchError> {
+    let mut shown = project.shown_all()?;
     if shown.is_empty() {
         return Err(WorkbenchError::NoTracks);
     }
+    if let Some(groups) = &request.groups {
+        let grouping = project.grouping()?.ok_or(WorkbenchError::NoGroups)?;
+        shown.retain(|(id, _)| grouping.group_of.get(id).is_some_and(|group| groups.contains(&(group + 1))));
+    }
+    shown.retain(|(id, _)| request.tracks.as_ref().is_none_or(|wanted| wanted.contains(*id)));
+    if shown.is_empty() { Err(WorkbenchError::NoSuchTracks) } else { Ok(shown) }
+}
+
+/// Writes the own long table, which alone says when every frame was and which run a sample is of.
+fn own(project: &Project, mut table: TrackTable, tracks: &[ForeignTrack]) -> Result<(), WorkbenchError> {
     let times = &project.clip().clip.times;
-    let mut table = Writer::create(out)?;
-    let mut n_rows = 0;
-    for (track, span) in &shown {
-        let runs = project.sample_runs(*track)?;
-        for ((frame, &sample), run) in span.frames().zip(&span.samples).zip(runs) {
+    for foreign in tracks {
+        let Some(track) = foreign.number.map(TrackId) else { continue };
+        let runs = project.sample_runs(track)?;
+        for ((frame, &sample), run) in foreign.samples().zip(runs) {
             let run = run.map(|run| u64::from(run.0));
-            table.write(&TrackRow { track: *track, frame, time_s: times.get(frame), sample, run })?;
-            n_rows += 1;
+            table.write(&TrackRow { track, frame, time_s: times.get(frame), sample, run })?;
         }
     }
-    table.finish()?;
-    Ok(Exported { n_tracks: shown.len(), n_rows })
+    Ok(table.finish()?)
+}
+
+fn notes(request: &ExportRequest, tracks: &[ForeignTrack]) -> Vec<String> {
+    if request.format != Format::Cvat || request.every_frame {
+        return Vec::new();
+    }
+    let is_bare = |track: &&ForeignTrack| !track.samples().any(|(_, sample)| sample.source == Source::Key);
+    let n_bare = tracks.iter().filter(is_bare).count();
+    let lines = "CVAT itself loads key-frames only, with straight lines between them";
+    let advice = "--every-frame makes every frame a key-frame";
+    vec![format!("{lines}: {n_bare} of {} tracks have none; {advice}", tracks.len())]
 }
 
 /// Writes the group of every track of the shown clustering; returns their number.

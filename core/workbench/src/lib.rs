@@ -12,6 +12,7 @@ mod error;
 pub mod export;
 pub mod generate;
 mod ground;
+pub mod import;
 pub mod progress;
 pub mod retrack;
 pub mod review;
@@ -22,6 +23,10 @@ mod stamp;
 pub mod track;
 
 pub use error::WorkbenchError;
+/// Tracks of other programs.
+pub use honami_exchange::foreign;
+/// Where files count pixels from.
+pub use honami_exchange::origin;
 /// Plugins and their parameters.
 pub use honami_host as plugins;
 /// Clips and their frames.

@@ -1,7 +1,9 @@
 //! The provenance of a result that is about to be made.
 
+use std::collections::BTreeMap;
+
 use honami_host::{Origin, PluginInfo, Values};
-use honami_model::provenance::Provenance;
+use honami_model::provenance::{Provenance, Value};
 use honami_store::Project;
 
 /// Says what is about to run, with all its parameters, on which revision of the project.
@@ -25,6 +27,24 @@ pub(crate) fn stamp(
         input_revision: project.revision().0,
         sandbox: origin.sandbox.to_owned(),
         simd: simd().to_owned(),
+        date: honami_store::now(),
+        honami_version: env!("CARGO_PKG_VERSION").to_owned(),
+    }
+}
+
+/// Says which file was read, with how it was read; nothing ran that could be named.
+pub(crate) fn imported(project: &Project, params: BTreeMap<String, Value>, sha256: String) -> Provenance {
+    Provenance {
+        what: "import".to_owned(),
+        plugin_id: "import".to_owned(),
+        plugin_version: env!("CARGO_PKG_VERSION").to_owned(),
+        plugin_sha256: sha256,
+        abi: (0, 0),
+        params,
+        seed: SEED,
+        input_revision: project.revision().0,
+        sandbox: "in process".to_owned(),
+        simd: "baseline".to_owned(),
         date: honami_store::now(),
         honami_version: env!("CARGO_PKG_VERSION").to_owned(),
     }

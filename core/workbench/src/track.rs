@@ -24,7 +24,7 @@ use crate::stamp::stamp;
 const CHUNK: usize = 64;
 
 /// Numbers that a table of points may use: above them there must be room for those of features to come.
-const MAX_NUMBER: u32 = i32::MAX.unsigned_abs();
+pub(crate) const MAX_NUMBER: u32 = i32::MAX.unsigned_abs();
 
 /// Which features are followed.
 #[derive(Clone, Debug, PartialEq)]

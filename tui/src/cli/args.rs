@@ -3,6 +3,10 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use honami_model::track::{TrackId, TrackSet};
+use honami_workbench::export::BOX_PX;
+use honami_workbench::foreign::Format;
+use honami_workbench::origin::Origin;
 
 /// Measures how plants move.
 ///
@@ -51,8 +55,10 @@ pub(super) enum Command {
     Compare(Compare),
     /// Frequencies of tracks and groups, in Hz from the frame times.
     Spectrum(Spectrum),
-    /// Write what was measured for other programs.
+    /// Write what was measured for other programs; docs/formats.md says what each format keeps.
     Export(Export),
+    /// Read somebody else's tracks into a project: one run, and key-frames where the file has them.
+    Import(Import),
     /// Render a clip of a moving plant whose truth is known.
     Synth(Synth),
     /// A generated clip, tracked and clustered; then the terminal UI.
@@ -197,8 +203,52 @@ pub(super) struct Export {
     pub(super) project: PathBuf,
     /// What to write.
     pub(super) what: ExportWhat,
-    /// File to write (.csv).
+    /// File to write; its ending names the format: .csv, .parquet, .npz, .txt (MOTChallenge).
     pub(super) out: PathBuf,
+    /// csv, parquet, cvat, deeplabcut, dltdv, trackmate, tapvid or mot.
+    #[arg(long, value_name = "F")]
+    pub(super) format: Option<Format>,
+    /// Only these tracks, for instance 3,7,10-19.
+    #[arg(long, value_name = "LIST")]
+    pub(super) tracks: Option<Numbers>,
+    /// Only the tracks of these groups, for instance 1,3.
+    #[arg(long, value_name = "LIST")]
+    pub(super) groups: Option<Numbers>,
+    /// Count pixels from centre, corner, top, bottom or normalised (default: as the format does).
+    #[arg(long, value_name = "O")]
+    pub(super) origin: Option<Origin>,
+    /// CVAT: make every frame a key-frame, because CVAT draws straight lines between them.
+    #[arg(long)]
+    pub(super) every_frame: bool,
+    /// MOTChallenge: side of the box around a point, pixels.
+    #[arg(long = "box", value_name = "PX", default_value_t = BOX_PX)]
+    pub(super) box_px: f64,
+}
+
+#[derive(Args, Debug)]
+pub(super) struct Import {
+    /// Project file (.honami).
+    pub(super) project: PathBuf,
+    /// File to read; what it is, is seen from how it begins.
+    pub(super) file: PathBuf,
+    /// csv, parquet, cvat, deeplabcut, dltdv, trackmate, tapvid or mot.
+    #[arg(long, value_name = "F")]
+    pub(super) format: Option<Format>,
+    /// It counts pixels from centre, corner, top, bottom or normalised (default: as the format does).
+    #[arg(long, value_name = "O")]
+    pub(super) origin: Option<Origin>,
+    /// Size of the pictures it was made on, if not the clip's: positions are scaled.
+    #[arg(long, value_name = "WxH")]
+    pub(super) size: Option<Size>,
+    /// DLTdv: the camera whose points are wanted.
+    #[arg(long, value_name = "N")]
+    pub(super) camera: Option<u32>,
+    /// TrackMate: how many of its units of length a pixel is wide.
+    #[arg(long, value_name = "F")]
+    pub(super) pixel_size: Option<f64>,
+    /// Take key-frames as samples like all others.
+    #[arg(long)]
+    pub(super) no_keys: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -353,5 +403,35 @@ impl std::str::FromStr for Foreign {
             }
             _ => Err(format!("wanted tracks as NAME=FILE, for instance opencv=tracks.csv, got {text}")),
         }
+    }
+}
+
+/// `3,7,10-19`: numbers and ranges of them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Numbers(Vec<std::ops::RangeInclusive<u32>>);
+
+impl Numbers {
+    /// As tracks.
+    pub(super) fn tracks(&self) -> TrackSet {
+        self.numbers().map(TrackId).collect()
+    }
+
+    /// One after the other.
+    pub(super) fn numbers(&self) -> impl Iterator<Item = u32> {
+        self.0.iter().cloned().flatten()
+    }
+}
+
+impl std::str::FromStr for Numbers {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wanted = || format!("wanted numbers as 3,7,10-19, got {text}");
+        let range = |word: &str| {
+            let (first, last) = word.split_once('-').unwrap_or((word, word));
+            let (first, last): (u32, u32) = (first.trim().parse().ok()?, last.trim().parse().ok()?);
+            // As many as a project of the largest kind has.
+            (first <= last && last - first < 10_000_000).then_some(first..=last)
+        };
+        text.split(',').map(range).collect::<Option<_>>().map(Self).ok_or_else(wanted)
     }
 }

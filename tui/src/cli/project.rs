@@ -1,15 +1,14 @@
-//! `new` and `export`: a project's beginning, and what leaves it.
+//! `new` and `relink`: a project and its clip.
 
 use std::path::Path;
 
-use honami_workbench::export;
 use honami_workbench::media::{self, OpenOptions};
 use honami_workbench::session::Session;
 use honami_workbench::store::{Access, Project};
 use serde_json::json;
 
-use super::args::{Common, Export, ExportWhat, New, Relink};
-use super::{Answer, look, options, there, want};
+use super::args::{Common, New, Relink};
+use super::{Answer, options, there, want};
 
 /// Makes a project of a clip and says what the clip is.
 pub(super) fn new(args: &New, common: &Common) -> anyhow::Result<Answer> {
@@ -70,26 +69,4 @@ pub(super) fn relink(args: &Relink) -> anyhow::Result<Answer> {
     project.relink(&args.clip, &media.sha256())?;
     let text = format!("{}: its clip is {}", args.project.display(), args.clip.display());
     Ok(Answer { json: json!({ "project": args.project, "clip": args.clip }), text, done: true })
-}
-
-/// Writes what was asked for.
-pub(super) fn export(args: &Export) -> anyhow::Result<Answer> {
-    let is_csv = args.out.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
-    want(is_csv, || format!("tables are written as .csv, not as {}", args.out.display()))?;
-    let (project, out) = (look(&args.project)?, args.out.display());
-    let (text, json) = match args.what {
-        ExportWhat::Tracks => {
-            let written = export::tracks(&project, &args.out)?;
-            let text = format!("{out}: {} tracks, {} samples", written.n_tracks, written.n_rows);
-            (text, json!({ "file": args.out, "tracks": written.n_tracks, "samples": written.n_rows }))
-        }
-        ExportWhat::Groups => {
-            let n_tracks = export::groups(&project, &args.out)?;
-            (
-                format!("{out}: the groups of {n_tracks} tracks"),
-                json!({ "file": args.out, "tracks": n_tracks }),
-            )
-        }
-    };
-    Ok(Answer { json, text, done: true })
 }

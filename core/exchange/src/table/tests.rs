@@ -77,6 +77,15 @@ fn a_row_is_as_short_as_it_can_be() {
 }
 
 #[test]
+fn names_of_any_kind_read_back() {
+    for name in ["", "the \"old\" oak, left", "two\nlines", "葉"] {
+        let row = crate::GroupRow { track: TrackId(1), group: 2, name: name.to_owned() };
+        let (_folder, path) = written(std::slice::from_ref(&row));
+        assert_eq!(read::<crate::GroupRow>(&path).unwrap().map(Result::unwrap).collect::<Vec<_>>(), [row]);
+    }
+}
+
+#[test]
 fn columns_are_found_by_name() {
     let folder = folder();
     let path = folder.path().join("foreign.csv");

@@ -1,0 +1,119 @@
+//! `import` and `export`: tracks of other programs, in and out.
+
+use std::path::Path;
+
+use honami_workbench::export::{self, ExportRequest};
+use honami_workbench::foreign::Format;
+use honami_workbench::import::{self, ImportRequest};
+use honami_workbench::store::{Access, Project};
+use serde_json::json;
+
+use super::args::{Export, ExportWhat, Import, Size};
+use super::{Answer, look, there, want};
+
+/// Reads somebody else's tracks into a project.
+pub(super) fn import(args: &Import) -> anyhow::Result<Answer> {
+    there(&args.project)?;
+    want(args.pixel_size.is_none_or(|size| size.is_finite() && size > 0.0), || {
+        "--pixel-size wants a positive number of the file's units".to_owned()
+    })?;
+    let mut project = Project::open(&args.project, Access::Write)?;
+    let request = ImportRequest {
+        file: args.file.clone(),
+        format: args.format,
+        origin: args.origin,
+        size: args.size.map(|Size { width, height }| [width, height]),
+        camera: args.camera,
+        pixel_size: args.pixel_size,
+        keys: !args.no_keys,
+    };
+    let done = import::tracks(&mut project, &request)?;
+    let (file, format) = (args.file.display(), done.format.word());
+    let mut text = format!("{file} ({format}): {} tracks, {} samples", done.n_tracks, done.n_samples);
+    if done.n_keys > 0 {
+        text += &format!(", {} of them key-frames", done.n_keys);
+    }
+    text += &format!("; run {}", done.run);
+    let notes = [
+        (done.n_renumbered as u64, "tracks have new numbers: theirs are in use here, or were"),
+        (done.n_beyond, "samples left out: the clip has no such frames"),
+        (done.n_outside, "samples lie outside the picture: is the --origin or the --size another?"),
+    ];
+    let notes = notes.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("\nnote: {n} {what}"));
+    let dropped = done.dropped.iter().map(|what| format!("\nnot read: {what}"));
+    text.extend(notes.chain(dropped));
+    let json = json!({
+        "project": args.project,
+        "file": args.file,
+        "format": format,
+        "run": done.run,
+        "tracks": done.n_tracks,
+        "samples": done.n_samples,
+        "key_frames": done.n_keys,
+        "renumbered": done.n_renumbered,
+        "beyond_clip": done.n_beyond,
+        "outside_picture": done.n_outside,
+        "not_read": done.dropped,
+    });
+    Ok(Answer { json, text, done: true })
+}
+
+/// Writes what was asked for.
+pub(super) fn export(args: &Export) -> anyhow::Result<Answer> {
+    match args.what {
+        ExportWhat::Tracks => tracks(args),
+        ExportWhat::Groups => groups(args),
+    }
+}
+
+fn tracks(args: &Export) -> anyhow::Result<Answer> {
+    let ending = args.out.extension().unwrap_or_default().to_string_lossy();
+    let format = args.format.or_else(|| Format::of_extension(&ending));
+    let words = Format::words().join(", ");
+    want(format.is_some(), || {
+        format!("{}: no format has that ending alone; say --format: {words}", args.out.display())
+    })?;
+    want(args.box_px.is_finite() && args.box_px > 0.0, || {
+        "--box wants a positive number of pixels".to_owned()
+    })?;
+    let request = ExportRequest {
+        tracks: args.tracks.as_ref().map(|wanted| wanted.tracks()),
+        groups: args.groups.as_ref().map(|wanted| wanted.numbers().collect()),
+        origin: args.origin,
+        every_frame: args.every_frame,
+        box_px: args.box_px,
+        ..ExportRequest::of(format.unwrap_or(Format::Csv))
+    };
+    let written = export::tracks(&look(&args.project)?, &args.out, &request)?;
+    let word = request.format.word();
+    let mut text = format!(
+        "{} ({word}): {} tracks, {} samples",
+        args.out.display(),
+        written.n_tracks,
+        written.n_samples
+    );
+    text.extend(written.losses.iter().map(|loss| format!("\nnot kept: {loss}")));
+    text.extend(written.notes.iter().map(|note| format!("\nnote: {note}")));
+    let losses: Vec<_> = written
+        .losses
+        .iter()
+        .map(|loss| json!({ "what": loss.what, "n": loss.n, "how": loss.how }))
+        .collect();
+    let json = json!({
+        "file": args.out,
+        "format": word,
+        "tracks": written.n_tracks,
+        "samples": written.n_samples,
+        "not_kept": losses,
+        "notes": written.notes,
+    });
+    Ok(Answer { json, text, done: true })
+}
+
+fn groups(args: &Export) -> anyhow::Result<Answer> {
+    let is_csv = Path::new(&args.out).extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
+    want(is_csv, || format!("groups are written as .csv, not as {}", args.out.display()))?;
+    let n_tracks = export::groups(&look(&args.project)?, &args.out)?;
+    let text = format!("{}: the groups of {n_tracks} tracks", args.out.display());
+    Ok(Answer { json: json!({ "file": args.out, "tracks": n_tracks }), text, done: true })
+}
