@@ -12,6 +12,7 @@ mod effects;
 mod fixture;
 pub mod form;
 mod fuzzy;
+mod history;
 mod jobs;
 pub mod keymap;
 mod labels;

@@ -23,11 +23,13 @@ pub enum Context {
     Prompt,
     /// Typing the letters on a track.
     Label,
+    /// Going about in the undo tree.
+    History,
 }
 
 impl Context {
     /// All of them.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Review,
         Self::Place,
         Self::Move,
@@ -36,6 +38,7 @@ impl Context {
         Self::Dial,
         Self::Prompt,
         Self::Label,
+        Self::History,
     ];
 
     /// Its name in key maps and logs.
@@ -50,6 +53,7 @@ impl Context {
             Self::Dial => "dial",
             Self::Prompt => "prompt",
             Self::Label => "label",
+            Self::History => "history",
         }
     }
 
@@ -100,9 +104,9 @@ table! {
     // Moving about: hjkl and the arrows.
     Left "left" ["h" "Left"] [Review "" Place "1 px" Move "1 px" Form "change" Dial "turn"]
         "left: the previous frame, one pixel, or a smaller value"
-    Down "down" ["j" "Down"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "narrower"]
+    Down "down" ["j" "Down"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "narrower" History ""]
         "down: the next track, one pixel, or the next row"
-    Up "up" ["k" "Up"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "wider"]
+    Up "up" ["k" "Up"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "wider" History ""]
         "up: the previous track, one pixel, or the previous row"
     Right "right" ["l" "Right"] [Review "" Place "1 px" Move "1 px" Form "change" Dial "turn"]
         "right: the next frame, one pixel, or a larger value"
@@ -110,9 +114,9 @@ table! {
     FineDown "fine-down" ["J" "Shift-Down"] [Place ".25" Move ".25"] "a quarter of a pixel down"
     FineUp "fine-up" ["K" "Shift-Up"] [Place ".25" Move ".25"] "a quarter of a pixel up"
     FineRight "fine-right" ["L" "Shift-Right"] [Place ".25" Move ".25" Form ""] "a quarter of a pixel right, or a tenth of a value's range up"
-    Accept "accept" ["Enter"] [Place "place" Move "keep" Form "run" Menu "choose" Prompt "go" Review "" Dial "keep"]
+    Accept "accept" ["Enter"] [Place "place" Move "keep" Form "run" Menu "choose" Prompt "go" Review "" Dial "keep" History "go there"]
         "accept: keep, place, run or go; while reviewing, confirm the sample here as a key-frame"
-    Back "back" ["Esc" "Ctrl-c"] [Place "back" Move "back" Form "back" Menu "back" Prompt "back" Label "back" Review "" Dial "back"]
+    Back "back" ["Esc" "Ctrl-c"] [Place "back" Move "back" Form "back" Menu "back" Prompt "back" Label "back" Review "" Dial "back" History "back"]
         "back: leave what is open, undone; while reviewing, stop the job or the clip"
     // Time.
     PlayPause "play" ["space"] [Review "play"] "play or pause; 200 space: at 200 %, from now on"
@@ -172,12 +176,13 @@ table! {
     Stills "stills" ["v s"] [Review ""] "show a picture that stays in the terminal's own pixels, or not"
     NextTheme "next-theme" ["v t"] [Review ""] "change the colours: the next theme"
     Mouse "mouse" ["v m"] [Review ""] "leave the mouse to the terminal, for selecting text, or take it back"
-    Palette "palette" [":"] [Review "" Place "" Move "" Form "" Dial ""] "find any action by name, key or what it does"
-    Help "help" ["?"] [Review "help" Place "" Move "" Form "help" Dial "help"] "list what works here; Enter does it"
-    Redraw "redraw" ["Ctrl-l"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label ""] "paint the screen anew"
-    Suspend "suspend" ["Ctrl-z"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label ""] "stop honami until `fg`"
-    Quit "quit" ["q"] [Review "leave" Place "" Move "" Form "" Dial ""] "back; while reviewing, leave honami"
-    Leave "leave" ["Q"] [Review "" Place "" Move "" Form "" Dial ""] "leave honami (everything is kept)"
+    History "history" ["U" "P u"] [Review "" History ""] "show the undo tree; j and k choose an edit there, Enter goes to it"
+    Palette "palette" [":"] [Review "" Place "" Move "" Form "" Dial "" History ""] "find any action by name, key or what it does"
+    Help "help" ["?"] [Review "help" Place "" Move "" Form "help" Dial "help" History "help"] "list what works here; Enter does it"
+    Redraw "redraw" ["Ctrl-l"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label "" History ""] "paint the screen anew"
+    Suspend "suspend" ["Ctrl-z"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label "" History ""] "stop honami until `fg`"
+    Quit "quit" ["q"] [Review "leave" Place "" Move "" Form "" Dial "" History ""] "back; while reviewing, leave honami"
+    Leave "leave" ["Q"] [Review "" Place "" Move "" Form "" Dial "" History ""] "leave honami (everything is kept)"
 }
 
 impl Action {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use honami_model::edit::Transaction;
-use honami_model::history::Entry;
+use honami_model::history::{Entry, EntryId, Step};
 use honami_model::track::TrackId;
 use honami_workbench::WorkbenchError;
 use honami_workbench::cluster::{self, ClusterRequest};
@@ -29,6 +29,8 @@ pub(super) struct World {
     waker: Waker,
     running: Option<(Running, Job)>,
     rows: BTreeMap<TrackId, TrackRow>,
+    /// Entries of the undo tree that the state has been told of.
+    n_told: usize,
     /// Where the user was when it was last kept.
     seat: Seat,
 }
@@ -38,7 +40,7 @@ type Facts = Result<Vec<Fact>, WorkbenchError>;
 
 impl World {
     pub(super) fn new(session: Session, waker: Waker) -> Self {
-        Self { session, waker, running: None, rows: BTreeMap::new(), seat: Seat::default() }
+        Self { session, waker, running: None, rows: BTreeMap::new(), n_told: 0, seat: Seat::default() }
     }
 
     /// The state to begin with, of the usual size.
@@ -104,6 +106,7 @@ impl World {
             Effect::Commit(transaction, hint) => self.commit(transaction, hint),
             Effect::AddFeature { frame, at } => self.add_feature(frame, at),
             Effect::Undo(n) => self.travel("undone", n, Project::undo),
+            Effect::Jump(to) => self.jump(to),
             Effect::Redo(n) => self.travel("redone", n, Project::redo),
             Effect::Track(request) => self.track(&request, now),
             Effect::Cluster(request) => self.cluster(&request, now),
@@ -148,6 +151,23 @@ impl World {
             [] => format!("nothing to be {word}"),
             [label] => format!("{word}: {label}"),
             [.., last] => format!("{word}: {} edits, the last of them: {last}", labels.len()),
+        };
+        self.shown_and(said(line))
+    }
+
+    /// Goes to an entry of the undo tree, and says how far that was.
+    fn jump(&mut self, to: EntryId) -> Facts {
+        let history = self.session.project.history();
+        let path = history.path(history.head(), to).unwrap_or_default();
+        let n_back = path.iter().filter(|step| matches!(step, Step::Back(_))).count();
+        let label = history.get(to).map_or_else(String::new, |entry| entry.label.clone());
+        self.session.project.jump(to)?;
+        let n_again = path.len() - n_back;
+        let line = match (n_back, n_again) {
+            (0, 0) => format!("this is edit {to} already: {label}"),
+            (_, 0) => format!("at edit {to}: {label} ({n_back} taken back)"),
+            (0, _) => format!("at edit {to}: {label} ({n_again} done again)"),
+            _ => format!("at edit {to}: {label} ({n_back} taken back, {n_again} done again)"),
         };
         self.shown_and(said(line))
     }
@@ -270,7 +290,11 @@ impl World {
             }
         };
         let rows = self.rows.values().cloned().collect();
-        Ok(vec![Fact::Tracks(rows), Fact::Groups(groups), Fact::Tracker(tracker)])
+        let history = project.history();
+        let new = history.entries().get(self.n_told..).unwrap_or_default().to_vec();
+        self.n_told = history.entries().len();
+        let told = Fact::History(new, history.head());
+        Ok(vec![Fact::Tracks(rows), Fact::Groups(groups), Fact::Tracker(tracker), told])
     }
 }
 

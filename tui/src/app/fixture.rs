@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use honami_model::clip::{Clip, FrameTimes};
 use honami_model::hierarchy::{Dendrogram, Merge};
+use honami_model::history::{Entry, EntryId};
 use honami_model::track::{Quality, Sample, Source, Span, Status, TrackId};
 use honami_workbench::plugins::Param;
 use ratatui::layout::Rect;
@@ -25,7 +26,23 @@ pub(super) fn state() -> State {
     state.tracker = Some("klt 0.1.0".to_owned());
     state.plugins = plugins();
     state.n_ready = 100;
+    state.history.grow(edits(), EntryId(3));
     state
+}
+
+/// The undo tree: after three edits one was taken back, and two others were made.
+fn edits() -> Vec<Entry> {
+    let labels = ["project made", "klt: 3 tracks", "track 1: key-frame at 10", "track 2 deleted", "7 groups"];
+    let parents = [None, Some(0), Some(1), Some(2), Some(1)];
+    let entry = |(id, (label, parent)): (u32, (&str, Option<u32>))| Entry {
+        id: EntryId(id),
+        parent: parent.map(EntryId),
+        next: None,
+        label: label.to_owned(),
+        author: "ana".to_owned(),
+        time: "2026-11-21T14:03:00Z".to_owned(),
+    };
+    (0..).zip(labels.into_iter().zip(parents)).map(entry).collect()
 }
 
 /// A track on a sway, with key-frames; frames 70 to 79 of it are lost, 40 is doubtful.

@@ -9,11 +9,13 @@ pub enum Panel {
     Groups,
     /// The key-frames of the selected track.
     KeyFrames,
+    /// The undo tree.
+    History,
 }
 
 impl Panel {
     /// All of them, in the order in which they follow each other.
-    pub const ALL: &[Self] = &[Self::Tracks, Self::Groups, Self::KeyFrames];
+    pub const ALL: &[Self] = &[Self::Tracks, Self::Groups, Self::KeyFrames, Self::History];
 
     /// What its title calls it.
     #[must_use]
@@ -22,6 +24,7 @@ impl Panel {
             Self::Tracks => "tracks",
             Self::Groups => "groups",
             Self::KeyFrames => "key-frames",
+            Self::History => "history",
         }
     }
 

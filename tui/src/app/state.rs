@@ -8,6 +8,7 @@ use honami_model::track::TrackId;
 use super::action::Context;
 use super::clock::Play;
 use super::form::{Form, Plugin};
+use super::history::Tree;
 use super::keymap::KeyMap;
 use super::menu::Menu;
 use super::motion::Motion;
@@ -94,6 +95,8 @@ pub struct State {
     pub stills: bool,
     /// What is known of the terminal.
     pub display: Display,
+    /// The undo tree.
+    pub history: Tree,
     /// The themes there are.
     pub themes: Vec<Theme>,
     /// The one in use.
@@ -126,6 +129,13 @@ pub enum Mode {
     Prompt(String),
     /// Typing the letters on a track.
     Label(String),
+    /// Going about in the undo tree.
+    History {
+        /// The chosen row.
+        at: usize,
+        /// The panel that was shown before.
+        below: Option<Panel>,
+    },
 }
 
 impl Mode {
@@ -142,6 +152,7 @@ impl Mode {
             Self::Dial(_) => Context::Dial,
             Self::Prompt(_) => Context::Prompt,
             Self::Label(_) => Context::Label,
+            Self::History { .. } => Context::History,
         }
     }
 }
@@ -234,6 +245,7 @@ impl State {
             glyphs: Glyphs::default(),
             stills: true,
             display: Display::default(),
+            history: Tree::default(),
             themes: Theme::all(),
             theme: 0,
             mouse: true,

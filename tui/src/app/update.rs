@@ -3,6 +3,7 @@
 mod actions;
 mod edit;
 mod facts;
+mod history;
 mod look;
 mod motion;
 mod mouse;
@@ -12,6 +13,7 @@ mod time;
 use std::time::Duration;
 
 use honami_model::edit::Transaction;
+use honami_model::history::EntryId;
 use honami_workbench::cluster::ClusterRequest;
 use honami_workbench::track::TrackRequest;
 
@@ -64,6 +66,8 @@ pub enum Effect {
     Undo(u32),
     /// Do so many again.
     Redo(u32),
+    /// Go to an entry of the undo tree.
+    Jump(EntryId),
     /// Run a tracker.
     Track(TrackRequest),
     /// Run a clusterer.
@@ -152,7 +156,7 @@ fn on_text(state: &mut State, text: &str) {
             }
         }
         Mode::Label(_) => chars.for_each(|c| pick::type_label(state, c)),
-        Mode::Review | Mode::Place(_) | Mode::Move { .. } | Mode::Dial(_) => {
+        Mode::Review | Mode::Place(_) | Mode::Move { .. } | Mode::Dial(_) | Mode::History { .. } => {
             for c in chars {
                 state.count = c.to_digit(10).map(|digit| {
                     state.count.unwrap_or(0).saturating_mul(10).saturating_add(digit).min(COUNT_MAX)

@@ -1,6 +1,8 @@
 //! Actions, each by its place.
 
-use super::{Action, Effect, Mode, State, choose, complain, edit, look, motion, open_menu, pick, say, time};
+use super::{
+    Action, Effect, Mode, State, choose, complain, edit, history, look, motion, open_menu, pick, say, time,
+};
 use honami_model::track::TrackSet;
 use honami_workbench::cluster::ClusterRequest;
 use honami_workbench::track::{Area, PointSource, TrackRequest};
@@ -68,6 +70,7 @@ pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {
         Action::Redraw => return vec![Effect::Redraw],
         Action::Suspend => return vec![Effect::Suspend],
         Action::Mouse => return mouse(state),
+        Action::History => history::toggle(state),
         other => look_about(state, other),
     }
     Vec::new()
@@ -121,6 +124,7 @@ fn steer(state: &mut State, dx: f32, dy: f32, px: f32) -> Vec<Effect> {
         Mode::Form(form) => form.step(rows),
         Mode::Menu(menu) => menu.step(rows),
         Mode::Dial(_) => motion::steer(state, f64::from(dx), f64::from(dy)),
+        Mode::History { .. } => history::step(state, rows),
         Mode::Prompt(_) | Mode::Label(_) => {}
     }
     Vec::new()
@@ -144,6 +148,7 @@ fn accept(state: &mut State) -> Vec<Effect> {
             }
             Vec::new()
         }
+        Mode::History { .. } => history::jump(state),
         Mode::Label(_) => Vec::new(),
         Mode::Form(form) if form.typed.is_some() => {
             if let Err(line) = form.take_typed() {
@@ -193,6 +198,7 @@ fn back(state: &mut State) -> Vec<Effect> {
             state.mode = Mode::Review;
         }
         Mode::Menu(menu) => state.mode = std::mem::replace(&mut menu.below, Mode::Review),
+        Mode::History { .. } => history::close(state),
         _ => state.mode = Mode::Review,
     }
     Vec::new()
@@ -211,7 +217,12 @@ fn erase(state: &mut State) -> Vec<Effect> {
                 typed.pop();
             }
         }
-        Mode::Review | Mode::Place(_) | Mode::Move { .. } | Mode::Dial(_) | Mode::Label(_) => {}
+        Mode::Review
+        | Mode::Place(_)
+        | Mode::Move { .. }
+        | Mode::Dial(_)
+        | Mode::Label(_)
+        | Mode::History { .. } => {}
     }
     Vec::new()
 }

@@ -7,7 +7,7 @@ use honami_model::track::{Source, TrackId, TrackSet};
 use super::{Effect, Mode, State, UNDO, complain, say};
 
 /// Whether edits are possible; says why not.
-fn is_writable(state: &mut State) -> bool {
+pub(super) fn is_writable(state: &mut State) -> bool {
     match &state.read_only {
         Some(holder) => {
             let line = format!("read only: {holder} holds this project; nothing can be changed here");

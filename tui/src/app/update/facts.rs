@@ -1,5 +1,7 @@
 //! What the world tells the state.
 
+use honami_model::history::{Entry, EntryId};
+
 use super::{Mode, State};
 use crate::app::state::{Display, Job, Link, Notice};
 use crate::app::tracks::{Groups, TrackRow};
@@ -27,6 +29,8 @@ pub enum Fact {
     Display(Display),
     /// So many frames can be shown without waiting.
     Ready(u32),
+    /// The undo tree has these entries more, and the document stands there.
+    History(Vec<Entry>, EntryId),
 }
 
 pub(super) fn on_fact(state: &mut State, fact: Fact) {
@@ -56,5 +60,6 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
         Fact::Dropped(dropped) => state.dropped = dropped.filter(|_| state.play.is_some()),
         Fact::Display(display) => state.display = display,
         Fact::Ready(n) => state.n_ready = n,
+        Fact::History(new, head) => state.history.grow(new, head),
     }
 }

@@ -21,6 +21,7 @@ fn in_place(context: Context) -> State {
         Context::Prompt => press("g f 4"),
         Context::Dial => press("v d"),
         Context::Label => press("g l"),
+        Context::History => press("U j"),
     }
     assert_eq!(state.mode.context(), context);
     state

@@ -1,6 +1,6 @@
 //! The mouse: selects, places, scrubs; whatever it does, keys do too.
 
-use super::{Effect, Mode, State, look, time};
+use super::{Effect, Mode, State, history, look, time};
 use crate::app::layout::{Layout, Lens, bar, frame_at};
 use crate::app::view::column::{self, Pick};
 use crate::term::input::{Mouse, MouseKind};
@@ -25,6 +25,7 @@ pub(super) fn on_mouse(state: &mut State, mouse: Mouse) -> Vec<Effect> {
                         look::zoom_at(state, -by, point);
                     }
                 }
+                Mode::History { .. } => history::step(state, by),
                 Mode::Dial(_) | Mode::Prompt(_) | Mode::Label(_) => {}
             }
         }
@@ -64,6 +65,14 @@ fn pick(state: &mut State, picked: Option<Pick>) {
         Some(Pick::Panel(panel)) => state.panel = panel,
         Some(Pick::Track(track)) => time::select(state, track),
         Some(Pick::Frame(frame)) => time::go(state, frame),
+        Some(Pick::Entry(row)) => {
+            if !matches!(state.mode, Mode::History { .. }) {
+                history::toggle(state);
+            }
+            if let Mode::History { at, .. } = &mut state.mode {
+                *at = row;
+            }
+        }
         None => {}
     }
 }

@@ -65,6 +65,7 @@ fn line(state: &State, effects: &[Effect]) -> String {
                 state.motion.full_px_s()
             )
         }
+        Mode::History { at, .. } => format!("history row {at}"),
         Mode::Label(typed) => format!("label {typed}"),
         Mode::Prompt(typed) => format!("prompt {typed:?}"),
     }];
@@ -405,6 +406,7 @@ fn every_binding_answers() {
         (Context::Prompt, "g f"),
         (Context::Dial, "v d"),
         (Context::Label, "g l"),
+        (Context::History, "U j"),
     ];
     for binding in crate::app::keymap::KeyMap::default().bindings() {
         let (_, way) = reach.iter().find(|(context, _)| *context == binding.context).unwrap();
@@ -456,6 +458,19 @@ fn finding_by_letters_and_in_lists() {
         ("v m", "review | frame 20 track 1 | said the mouse is the terminal's | Mouse(false)"),
     ] {
         check("frame=20", keys, expect);
+    }
+}
+
+#[test]
+fn going_about_in_the_undo_tree() {
+    for (keys, expect) in [
+        ("U", "history row 1 | frame 0 track 1"),
+        ("U k Enter", "history row 0 | frame 0 track 1 | Jump(EntryId(4))"),
+        ("U 9 j Enter", "history row 4 | frame 0 track 1 | Jump(EntryId(0))"),
+        ("U j Esc", "review | frame 0 track 1"),
+        ("U U", "review | frame 0 track 1"),
+    ] {
+        check("", keys, expect);
     }
 }
 
@@ -588,7 +603,7 @@ fn deleting_what_was_selected_selects_another() {
 fn a_paste_is_typed_at_once_as_far_as_there_is_room() {
     let long = "un\tdo ".repeat(1000);
     for (keys, text, expect) in [
-        (":", " undo\n", "menu Some(\"undo\") of 3 | frame 0 track 1"),
+        (":", " undo\n", "menu Some(\"undo\") of 4 | frame 0 track 1"),
         (":", &long, "menu None of 0 | frame 0 track 1"),
         ("g f", "frame 42", "prompt \"42\" | frame 0 track 1"),
         ("g f", "12345678901234", "prompt \"123456789\" | frame 0 track 1"),

@@ -4,6 +4,7 @@
 //! column scrolls them so that the current row is seen.
 
 mod groups;
+mod history;
 mod key_frames;
 mod tracks;
 
@@ -26,6 +27,8 @@ pub enum Pick {
     Track(TrackId),
     /// A frame of the clip.
     Frame(u32),
+    /// A row of the undo tree.
+    Entry(usize),
 }
 
 /// A panel that lists something.
@@ -49,6 +52,7 @@ fn list<'a>(state: &'a State, panel: Panel) -> Box<dyn List + 'a> {
         Panel::Tracks => Box::new(tracks::Tracks::of(state)),
         Panel::Groups => Box::new(groups::GroupList::of(state)),
         Panel::KeyFrames => Box::new(key_frames::KeyFrames::of(state)),
+        Panel::History => Box::new(history::History(state)),
     }
 }
 

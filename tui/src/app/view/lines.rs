@@ -178,6 +178,11 @@ pub(super) fn hints(state: &State, area: Rect, frame: &mut Frame) {
         let moved = (to[0] - from[0]).hypot(to[1] - from[1]);
         left.push_str(&format!("  track {} moved {moved:.2} px", row.id));
     }
+    if let Mode::History { at, .. } = state.mode
+        && let Some((entry, _)) = state.history.row(at)
+    {
+        left = format!("edit {}  {}  {}", entry.id, entry.author, entry.time);
+    }
     if let Mode::Dial(_) = state.mode {
         let dial = state.motion.dial_words();
         left.push_str(&format!("  showing {}", dial.as_deref().unwrap_or("all directions")));

@@ -118,6 +118,7 @@ fn screens() {
     check("crowded_80x24", small, "", fixture::crowd);
     check("typing_80x24", small, "t j j 2 5", |_| {});
     check("prefix_80x24", small, "g", |_| {});
+    check("history_120x40", large, "U j", |_| {});
     check("labels_80x24", small, "g l", fixture::crowd);
     check("light_80x24", small, "v t g k", |_| {});
     check("palette_80x24", small, ": f r a m e", |_| {});
