@@ -4,14 +4,16 @@
 //! *soft* (the picture: painted by largest error on screen, as far as the byte budget goes). Paused, the soft
 //! cells converge to exact; while the picture moves, what is nearly right stays as it is.
 
+mod motion;
 mod pen;
 
 use ratatui::buffer::{Buffer, Cell, CellWidth};
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier};
 
-use super::colour::{Depth, rgb};
+use super::colour::{Depth, distance, rgb};
 use super::glyph;
+use motion::{Glyph, Motion, Spot};
 use pen::Pen;
 
 pub use super::glyph::HALF_BLOCK;
@@ -40,6 +42,8 @@ impl Frame {
 const DEAD_BAND: u8 = 6;
 /// While the picture moves, a colour already set is taken for a wanted one within this, channel by channel.
 const REUSE_BAND: u8 = 3;
+/// Squared error of a picture's cell that shows something else.
+const NOTHING_RIGHT: f32 = 1e6;
 /// From dark to bright, where there are no colours and the background is dark.
 const RAMP: &[u8] = b" .:-=+*#%@";
 /// In place of cells of which nothing is known: a private character that nobody wants.
@@ -57,6 +61,8 @@ pub struct Encoder {
     columns: usize,
     shown: Vec<Cell>,
     pen: Pen,
+    /// How half blocks of 24-bit colours are chosen.
+    motion: Motion,
     /// Bytes really spent on soft cells over bytes expected, from the frames before.
     thrift: f32,
 }
@@ -71,7 +77,15 @@ impl Encoder {
     /// An encoder for a terminal of which nothing is known.
     #[must_use]
     pub fn new(depth: Depth) -> Self {
-        Self { depth, is_light: false, columns: 0, shown: Vec::new(), pen: Pen::default(), thrift: 1.0 }
+        Self {
+            depth,
+            is_light: false,
+            columns: 0,
+            shown: Vec::new(),
+            pen: Pen::default(),
+            motion: Motion::default(),
+            thrift: 1.0,
+        }
     }
 
     /// The colours it paints in.
@@ -123,7 +137,7 @@ impl Encoder {
             bytes.extend_from_slice(b"\x1b[m\x1b[2J");
         }
         self.pen.lose_cursor();
-        let mut wrong = Vec::new();
+        let (mut wrong, mut spots) = (Vec::new(), Vec::new());
         let mut index = 0;
         while index < wanted.len() {
             let cell = &wanted[index];
@@ -132,6 +146,8 @@ impl Encoder {
                 if self.shown[index] != *cell {
                     self.put(index, cell, 0, bytes);
                 }
+            } else if let Some([above, below]) = pixels(cell) {
+                spots.extend(self.spot(index, above, below, frame.softness[index].into()));
             } else if let Some(error) = self.error(index, cell, moving) {
                 wrong.push(Wrong { error: error.saturating_mul(frame.softness[index].into()), index });
             }
@@ -139,7 +155,65 @@ impl Encoder {
         }
         let band = if moving { REUSE_BAND } else { 0 };
         let left = budget.saturating_sub(bytes.len() - start);
-        self.put_worst(&wanted, wrong, left, band, bytes)
+        let n_wrong = self.put_worst(&wanted, wrong, left, band, bytes);
+        let left = budget.saturating_sub(bytes.len() - start);
+        n_wrong + self.put_picture(&wanted, spots, left, moving, bytes)
+    }
+
+    /// A cell of the picture, unless it is right on screen.
+    fn spot(&self, index: usize, above: [u8; 3], below: [u8; 3], weight: f32) -> Option<Spot> {
+        let error = match pixels(&self.shown[index]) {
+            Some(shown) if shown == [above, below] => return None,
+            Some(shown) => (distance(shown[0], above) + distance(shown[1], below)) as f32,
+            None => NOTHING_RIGHT,
+        };
+        Some(Spot { index, above, below, weight, error: error * weight })
+    }
+
+    /// Paints what takes most error off the picture within `budget` bytes; returns how many cells stay wrong.
+    fn put_picture(
+        &mut self,
+        wanted: &[Cell],
+        mut spots: Vec<Spot>,
+        budget: usize,
+        moving: bool,
+        bytes: &mut Vec<u8>,
+    ) -> usize {
+        let mut n_wrong = spots.len();
+        if spots.is_empty() {
+            return 0;
+        }
+        let start = bytes.len();
+        let colours = self.pen.plain(bytes);
+        self.pen.lose_cursor();
+        let left = budget.saturating_sub(bytes.len() - start);
+        for paint in self.motion.choose(&mut spots, colours, self.columns, left, moving) {
+            if bytes.len() - start + pen::LONGEST > budget {
+                break;
+            }
+            let (x, y) = (paint.index % self.columns, paint.index / self.columns);
+            let symbol = match paint.glyph {
+                Glyph::Upper => HALF_BLOCK,
+                Glyph::Lower => "▄",
+                Glyph::Blank => " ",
+            };
+            self.break_wide(paint.index, 1);
+            let (fg, bg) = self.pen.put_glyph((x, y), symbol, (paint.fg, paint.bg), bytes);
+            if x + 1 >= self.columns {
+                self.pen.lose_cursor();
+            }
+            // Kept as if it were an upper half block, whatever the glyph.
+            let [above, below] = match paint.glyph {
+                Glyph::Upper => [fg, bg],
+                Glyph::Lower => [bg, fg],
+                Glyph::Blank => [bg; 2],
+            };
+            let cell = &mut self.shown[paint.index];
+            cell.reset();
+            cell.set_symbol(HALF_BLOCK).set_fg(above).set_bg(below);
+            n_wrong -= usize::from(*cell == wanted[paint.index]);
+        }
+        n_wrong
     }
 
     /// The frame in the colours that the terminal has.
@@ -219,6 +293,17 @@ impl Encoder {
     fn put(&mut self, index: usize, cell: &Cell, band: u8, bytes: &mut Vec<u8>) {
         let (x, y) = (index % self.columns, index / self.columns);
         let width = usize::from(cell.cell_width()).max(1);
+        self.break_wide(index, width);
+        let painted = self.pen.put(x, y, cell, band, bytes);
+        if x + width >= self.columns {
+            self.pen.lose_cursor();
+        }
+        self.shown[index] = painted;
+    }
+
+    /// Says what becomes of wide glyphs when so many cells are painted over.
+    fn break_wide(&mut self, index: usize, width: usize) {
+        let (x, y) = (index % self.columns, index / self.columns);
         // A wide glyph that loses one of its cells loses both.
         let old_width = usize::from(self.shown[index].cell_width()).max(1);
         for covered in index + 1..(index + old_width.max(width)).min((y + 1) * self.columns) {
@@ -231,11 +316,16 @@ impl Encoder {
         if end < (y + 1) * self.columns && self.shown[end - 1].cell_width() > 1 {
             self.shown[end] = UNKNOWN;
         }
-        let painted = self.pen.put(x, y, cell, band, bytes);
-        if x + width >= self.columns {
-            self.pen.lose_cursor();
+    }
+}
+
+/// The two pixels of a half block in 24-bit colours.
+fn pixels(cell: &Cell) -> Option<[[u8; 3]; 2]> {
+    match (cell.symbol(), cell.fg, cell.bg) {
+        (HALF_BLOCK, Color::Rgb(..), Color::Rgb(..)) if cell.modifier.is_empty() => {
+            Some([rgb(cell.fg), rgb(cell.bg)])
         }
-        self.shown[index] = painted;
+        _ => None,
     }
 }
 

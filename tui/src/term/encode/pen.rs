@@ -46,10 +46,66 @@ fn digits(n: u8) -> usize {
     }
 }
 
+/// Bytes of a 24-bit colour's parameters, `38;2;r;g;b`.
+pub(super) fn rgb_bytes(rgb: [u8; 3]) -> usize {
+    7 + rgb.map(digits).iter().sum::<usize>()
+}
+
+/// Bytes of going to a cell, from a place where the cursor is or from anywhere; cells are counted row by row.
+pub(super) fn move_bytes(cursor: Option<usize>, to: usize, columns: usize) -> usize {
+    let digits = |n: usize| {
+        if n < 10 {
+            1
+        } else if n < 100 {
+            2
+        } else {
+            3
+        }
+    };
+    let (x, y) = (to % columns, to / columns);
+    match cursor {
+        // At the end of a row the cursor is nowhere.
+        Some(here) if here / columns == y && here <= to && here % columns > 0 => match to - here {
+            0 => 0,
+            1 => 3,
+            n => 3 + digits(n),
+        },
+        _ => 4 + digits(x + 1) + digits(y + 1),
+    }
+}
+
 impl Pen {
     /// Says that the cursor may be anywhere.
     pub(super) fn lose_cursor(&mut self) {
         self.cursor = None;
+    }
+
+    /// The colours that are set, where they are 24-bit ones; attributes are taken off.
+    pub(super) fn plain(&mut self, bytes: &mut Vec<u8>) -> (Option<[u8; 3]>, Option<[u8; 3]>) {
+        if !self.modifier.is_empty() {
+            bytes.extend_from_slice(b"\x1b[m");
+            *self = Self { cursor: self.cursor, ..Self::default() };
+        }
+        let known = |colour| match colour {
+            Color::Rgb(r, g, b) => Some([r, g, b]),
+            _ => None,
+        };
+        (known(self.fg), known(self.bg))
+    }
+
+    /// Paints a glyph with these colours, or those that are set; returns the colours.
+    pub(super) fn put_glyph(
+        &mut self,
+        (x, y): (usize, usize),
+        symbol: &'static str,
+        (fg, bg): (Option<[u8; 3]>, Option<[u8; 3]>),
+        bytes: &mut Vec<u8>,
+    ) -> (Color, Color) {
+        let colour = |wanted: Option<[u8; 3]>, set| wanted.map_or(set, |[r, g, b]| Color::Rgb(r, g, b));
+        let mut cell = Cell::new(symbol);
+        (cell.fg, cell.bg) = (colour(fg, self.fg), colour(bg, self.bg));
+        self.put(x, y, &cell, 0, bytes);
+        (cell.fg, cell.bg)
     }
 
     /// Paints a cell; returns it as it is on screen, where a colour within `band` of the wanted may stand.
