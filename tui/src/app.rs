@@ -20,6 +20,7 @@ pub mod layout;
 pub mod menu;
 pub mod motion;
 pub mod opening;
+mod pace;
 pub mod panel;
 mod pictures;
 mod run;

@@ -150,6 +150,9 @@ impl<'a> Suite<'a> {
         if pid.exists() {
             fs::remove_file(&pid)?;
         }
+        // Anew for every session: a project remembers where its user was.
+        let project = self.clip(case.clip).with_extension("honami");
+        fs::copy(&project, self.file("case.honami")).with_context(|| project.display().to_string())?;
         let many = self.file("many.honami");
         if case.program == Program::ManyTracks && !many.exists() {
             let example = self.programs.join("examples/many_tracks");
@@ -185,7 +188,7 @@ impl<'a> Suite<'a> {
         let folder = self.lab.folder().display();
         let program = match case.program {
             Program::Honami => {
-                let project = self.clip(case.clip).with_extension("honami");
+                let project = self.file("case.honami");
                 format!("{} {}", self.programs.join("honami").display(), project.display())
             }
             Program::ManyTracks => {

@@ -13,6 +13,9 @@ use crate::term::signals::Waker;
 /// While the clip is being decoded, a wished frame is looked for this often.
 const LOOK: Duration = Duration::from_millis(20);
 
+/// A picture that comes within this is waited for: else the frame would be painted twice, once without it.
+const NEARLY: Duration = Duration::from_millis(10);
+
 /// What the screen and the thread share: one wish, one fulfilment. The newest wish wins.
 #[derive(Default)]
 struct Desk {
@@ -83,16 +86,17 @@ impl Pictures {
     /// Takes a frame from the desk, or puts the wish for it there.
     fn ask(&self, frame: u32) -> Result<Option<FrameRef>, MediaError> {
         let mut desk = lock(&self.shared);
-        if desk.here.as_ref().is_some_and(|(n, _)| *n == frame)
-            && let Some((_, picture)) = desk.here.take()
-        {
-            return picture.map(Some);
-        }
-        if desk.wish != Some(frame) {
+        let is_here = |desk: &Desk| desk.here.as_ref().is_some_and(|(n, _)| *n == frame);
+        if !is_here(&desk) && desk.wish != Some(frame) {
             desk.wish = Some(frame);
             self.shared.1.notify_one();
+            let waited = self.shared.1.wait_timeout_while(desk, NEARLY, |desk| !is_here(desk));
+            desk = waited.unwrap_or_else(PoisonError::into_inner).0;
         }
-        Ok(None)
+        if !is_here(&desk) {
+            return Ok(None);
+        }
+        desk.here.take().map(|(_, picture)| picture).transpose()
     }
 }
 
@@ -125,6 +129,7 @@ fn fulfil(shared: &Shared, media: &Media, waker: &Waker) {
         if desk.wish == Some(frame) {
             desk.wish = None;
         }
+        shared.1.notify_all();
         waker.wake();
     }
 }

@@ -9,6 +9,7 @@ use super::config::Config;
 use super::effects::World;
 use super::layout::{Layout, Lens};
 use super::opening::{Opened, Opening, Plan};
+use super::pace::Pace;
 use super::pictures::Pictures;
 use super::seat::Seat;
 use super::state::{Display, Link, Notice, State};
@@ -77,6 +78,7 @@ struct App {
     /// What the screen should show; `None` when the state has changed since.
     frame: Option<Frame>,
     is_exact: bool,
+    pace: Pace,
     /// Pictures dropped while playing.
     tally: Tally,
     /// When the figures of the link were last looked at.
@@ -95,6 +97,7 @@ impl App {
             stills,
             frame: None,
             is_exact: false,
+            pace: Pace::default(),
             tally: Tally::default(),
             link_seen: Duration::ZERO,
             seat_due: None,
@@ -251,7 +254,9 @@ impl App {
             }
         }
         self.look_at_still(screen);
-        if !screen.has_slot() {
+        let now = screen.now();
+        let is_resting = self.frame.is_some() && !self.is_exact && self.pace.rest(now).is_some();
+        if is_resting || !screen.has_slot() {
             return Ok(());
         }
         if self.frame.is_some() && self.is_exact {
@@ -262,8 +267,13 @@ impl App {
         }
         let (state, shot) = (&self.state, self.pictures.shot());
         let frame = self.frame.get_or_insert_with(|| view::draw(state, shot));
-        self.is_exact = screen.paint(frame, state.play.is_some())?;
-        shot.iter().for_each(|shot| self.tally.painted(shot.frame));
+        let picture = shot.map(|shot| (shot.frame, shot.lens));
+        let is_moving = self.pace.is_moving(now, picture);
+        self.is_exact = screen.paint(frame, is_moving)? && !is_moving;
+        if let Some((frame, lens)) = picture {
+            self.pace.painted(now, (frame, lens));
+            self.tally.painted(frame);
+        }
         Ok(())
     }
 

@@ -72,10 +72,11 @@ struct Survivor {
     last: Option<u32>,
 }
 
-/// Chooses paints; remembers the price of a byte.
+/// Chooses paints; remembers what a byte was worth.
 #[derive(Debug, Default)]
 pub(super) struct Motion {
-    price: f32,
+    /// While the picture rests, and while it moves.
+    prices: [f32; 2],
     /// Paints of all survivors, each with its predecessor.
     paints: Vec<(Paint, Option<u32>)>,
 }
@@ -101,7 +102,7 @@ impl Motion {
         }
         let worst = spots.iter().map(|spot| spot.error).fold(0.0, f32::max);
         let least = if moving { PRICE_MIN } else { 0.0 };
-        let (mut price, mut dear, mut cheap) = (self.price.max(least), None, None);
+        let (mut price, mut dear, mut cheap) = (self.prices[usize::from(moving)].max(least), None, None);
         let mut best: Option<(u32, Vec<Paint>)> = None;
         for _ in 0..TRIALS {
             let walk = Walk { spots, columns, price, moving };
@@ -114,7 +115,7 @@ impl Motion {
             };
             if is_better && n_bytes > 0 {
                 best = Some((n_bytes, self.path(last)));
-                self.price = price;
+                self.prices[usize::from(moving)] = price;
             }
             let part = n_bytes as f32 / budget.max(1) as f32;
             if fits && (part >= SPENT || price <= least) {

@@ -101,7 +101,11 @@ fn assert_shows(screen: &vt100::Screen, frame: &Frame) {
         covered = cell.cell_width().max(1) - 1;
         let there = screen.cell(y, x).unwrap();
         if let Some(wanted) = pixels(cell) {
-            assert_eq!(pixels_of(there), wanted.map(|[r, g, b]| vt100::Color::Rgb(r, g, b)), "pixels at {x},{y}");
+            assert_eq!(
+                pixels_of(there),
+                wanted.map(|[r, g, b]| vt100::Color::Rgb(r, g, b)),
+                "pixels at {x},{y}"
+            );
             continue;
         }
         let glyph = if there.contents().is_empty() { " " } else { there.contents() };
