@@ -53,7 +53,8 @@ mod tests {
 
     #[test]
     fn single_pictures_are_refined_at_once_and_streams_when_they_end() {
-        let lens = Lens { x: 0.0, y: 0.0, width: 1.0, height: 1.0, area: Rect::new(0, 0, 1, 1) };
+        let area = Rect::new(0, 0, 1, 1);
+        let lens = Lens { x: 0.0, y: 0.0, width: 1.0, height: 1.0, area, grid: (1, 2) };
         let at = Duration::from_millis;
         // When each picture comes, and until when it is left as it is.
         for (pictures, rest) in [

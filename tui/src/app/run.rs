@@ -125,13 +125,13 @@ impl App {
             return Ok(None);
         }
         loop {
-            let until =
-                [self.state.next_tick(), self.decoding_tick(screen, world), self.seat_due, self.stills.due()]
-                    .into_iter()
-                    .flatten()
-                    .min();
-            let wants_slot = self.frame.is_none() || !self.is_exact || screen.is_sending();
-            let happened = screen.wait(until, wants_slot)?;
+            // A frame at rest waits for a slot only once no other is expected.
+            let rest = self.pace.rest(screen.now()).filter(|_| self.frame.is_some() && !self.is_exact);
+            let decoding = self.decoding_tick(screen, world);
+            let times = [self.state.next_tick(), decoding, self.seat_due, self.stills.due(), rest];
+            let wants_slot =
+                self.frame.is_none() || (rest.is_none() && (!self.is_exact || screen.is_sending()));
+            let happened = screen.wait(times.into_iter().flatten().min(), wants_slot)?;
             self.tell(Msg::Clock(screen.now()), screen, world)?;
             let mut is_leaving = happened.end.is_some();
             if happened.resized {
@@ -164,7 +164,10 @@ impl App {
         if !world.has_moved(&seat) || self.state.play.is_some() || self.state.job.is_some() {
             self.seat_due = None;
         } else if self.seat_due.is_some_and(|due| due <= now) {
-            self.seat_due = None;
+            self.seat_due = self.pace.rest(now);
+            if self.seat_due.is_some() {
+                return;
+            }
             if let Err(error) = world.keep(seat) {
                 let text = format!("where you are is not kept: {error}");
                 self.state.notice = Some(Notice { text, is_error: true });

@@ -137,6 +137,9 @@ impl Encoder {
             bytes.extend_from_slice(b"\x1b[m\x1b[2J");
         }
         self.pen.lose_cursor();
+        // Both ways of choosing would compete for the budget: it is one or the other.
+        let mut soft = wanted.iter().zip(&frame.softness).filter(|(_, softness)| **softness > 0);
+        let all_halves = soft.all(|(cell, _)| pixels(cell).is_some());
         let (mut wrong, mut spots) = (Vec::new(), Vec::new());
         let mut index = 0;
         while index < wanted.len() {
@@ -146,7 +149,7 @@ impl Encoder {
                 if self.shown[index] != *cell {
                     self.put(index, cell, 0, bytes);
                 }
-            } else if let Some([above, below]) = pixels(cell) {
+            } else if let Some([above, below]) = pixels(cell).filter(|_| all_halves) {
                 spots.extend(self.spot(index, above, below, frame.softness[index].into()));
             } else if let Some(error) = self.error(index, cell, moving) {
                 wrong.push(Wrong { error: error.saturating_mul(frame.softness[index].into()), index });
