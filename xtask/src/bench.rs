@@ -11,7 +11,8 @@ use crate::{BUILD, SHIPPED};
 /// Name, what it measures, and how to run it.
 type Bench = (&'static str, &'static str, fn(&[&str]) -> anyhow::Result<()>);
 
-const BENCHES: [Bench; 8] = [
+const BENCHES: [Bench; 9] = [
+    ("encode", "the encoder's time, bytes and likeness: `bench encode [BYTES] [CLIP…]`", encode),
     ("trackers", "KLT against OpenCV's calcOpticalFlowPyrLK, same frames, alternating", trackers),
     ("accuracy", "δavg of KLT and of OpenCV's on calm, wind and storm: `bench accuracy [SEED]`", accuracy),
     ("cluster", "composite distance + Ward, N = 2000, T = 500, against SciPy's linkage", cluster),
@@ -97,6 +98,10 @@ fn cluster(args: &[&str]) -> anyhow::Result<()> {
 
 fn media(args: &[&str]) -> anyhow::Result<()> {
     example("honami-media", "media_bench", args).run()
+}
+
+fn encode(args: &[&str]) -> anyhow::Result<()> {
+    example("honami", "encode_bench", args).run()
 }
 
 fn store(args: &[&str]) -> anyhow::Result<()> {
