@@ -47,6 +47,14 @@ fn the_whole_job_on_every_kind_of_clip() {
         let n_tracks = track["tracks"].as_u64().unwrap();
         assert!(n_tracks > 20 && track["stopped"] == false, "{clip}: {track}");
 
+        let review = bench.json("review p.honami");
+        assert_keys(&review, "open total verdicts queue effort");
+        let items = review["queue"].as_array().unwrap();
+        assert_eq!(review["open"], items.len());
+        items.iter().for_each(|item| {
+            assert_keys(item, "track first_frame end_frame worst suspicion reasons later fb_px ncc nbr_px");
+        });
+
         let cluster = bench.json("cluster p.honami --groups 5");
         assert_keys(&cluster, "clustering tracks groups outlier_frames seconds");
         let sizes = cluster["groups"].as_array().unwrap().iter().map(|size| size.as_u64().unwrap());

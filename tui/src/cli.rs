@@ -10,6 +10,7 @@ mod keys;
 mod log;
 mod project;
 mod report;
+mod review;
 mod spectrum;
 mod synth;
 mod track;
@@ -163,6 +164,7 @@ fn run(command: Command, common: &Common) -> anyhow::Result<Outcome> {
         Command::Synth(args) => synth::synth(&args)?,
         Command::Demo(args) => return synth::demo(&args, common),
         Command::Plugin(args) => help::plugin(&args, common)?,
+        Command::Review(args) => review::review(&args, common)?,
         Command::Log(args) => log::log(&args)?,
         Command::Keys(args) => keys::keys(&args),
         Command::Doctor => help::doctor(common),

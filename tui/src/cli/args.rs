@@ -66,6 +66,8 @@ pub(super) enum Command {
     /// What plugins there are and what they take.
     #[command(subcommand)]
     Plugin(Plugin),
+    /// The segments worth a look, the most doubtful first; how far the review is and what it has taken.
+    Review(Project),
     /// Everything that was done to a project: runs, clusterings, edits.
     Log(Project),
     /// The keys of the terminal UI as they are now, your own included.
@@ -258,6 +260,10 @@ pub(super) enum ExportWhat {
     Tracks,
     /// The group of every track, numbered as on the screen: track,group,name.
     Groups,
+    /// What reviewers have found: track,first_frame,end_frame,verdict,reasons,reviewer,time,keystrokes,key_frames,seconds.
+    Verdicts,
+    /// What the review of every track has taken: track,segments,keystrokes,key_frames,seconds.
+    Effort,
 }
 
 #[derive(Args, Debug)]

@@ -63,7 +63,22 @@ pub(super) fn export(args: &Export) -> anyhow::Result<Answer> {
     match args.what {
         ExportWhat::Tracks => tracks(args),
         ExportWhat::Groups => groups(args),
+        ExportWhat::Verdicts => of_review(args, review::tables::verdicts, "verdicts"),
+        ExportWhat::Effort => of_review(args, review::tables::efforts, "reviewed tracks"),
     }
+}
+
+/// Writes a table of the review; these are CSV.
+fn of_review(
+    args: &Export,
+    write: fn(&Project, &Path) -> Result<usize, WorkbenchError>,
+    what: &str,
+) -> anyhow::Result<Answer> {
+    let is_csv = args.out.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
+    want(is_csv, || format!("{what} are written as .csv, not as {}", args.out.display()))?;
+    let n = write(&look(&args.project)?, &args.out)?;
+    let text = format!("{}: {n} {what}", args.out.display());
+    Ok(Answer { json: json!({ "file": args.out, "rows": n }), text, done: true })
 }
 
 fn tracks(args: &Export) -> anyhow::Result<Answer> {
