@@ -129,6 +129,15 @@ impl Queue {
         self.items.range(..rank).next_back().map(|(_, item)| item)
     }
 
+    /// The items about a place in their order: so many before it, and so many from it on.
+    #[must_use]
+    pub fn about(&self, rank: Rank, reach: usize) -> Vec<&Item> {
+        let mut about: Vec<&Item> = self.items.range(..rank).rev().take(reach).map(|(_, item)| item).collect();
+        about.reverse();
+        about.extend(self.items.range(rank..).take(reach).map(|(_, item)| item));
+        about
+    }
+
     /// The items of a track, most doubtful first.
     pub fn of_track(&self, track: TrackId) -> impl Iterator<Item = &Item> {
         self.of_track.get(&track).into_iter().flatten().filter_map(|rank| self.items.get(rank))

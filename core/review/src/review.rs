@@ -13,12 +13,22 @@ use crate::suspicion;
 /// What is known of a track.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Standing {
-    /// Suspicion of every sample, from the first of the span.
+    /// Frame of the first of `suspicions`.
+    pub first_frame: u32,
+    /// Suspicion of every sample.
     pub suspicions: Arc<[f32]>,
     /// Suspicion of the track: what is left of it, judged segments aside.
     pub suspicion: f32,
     /// What was found of its judged segments.
     pub judged: Tally,
+}
+
+impl Standing {
+    /// Suspicion of the sample in a frame, if the track has one there.
+    #[must_use]
+    pub fn at(&self, frame: u32) -> Option<f32> {
+        self.suspicions.get(frame.checked_sub(self.first_frame)? as usize).copied()
+    }
 }
 
 /// The review of all tracks.
@@ -36,12 +46,12 @@ impl Review {
         if let Some(old) = self.tracks.remove(&track) {
             self.judged -= old.judged;
         }
-        let Segments { items, suspicions, judged } = segments.unwrap_or_default();
+        let Segments { items, first_frame, suspicions, judged } = segments.unwrap_or_default();
         if !suspicions.is_empty() {
             let open: Vec<f32> = items.iter().map(|item| item.suspicion).collect();
             let suspicion = suspicion::of_track(&open);
             self.judged += judged;
-            self.tracks.insert(track, Standing { suspicions: suspicions.into(), suspicion, judged });
+            self.tracks.insert(track, Standing { first_frame, suspicions: suspicions.into(), suspicion, judged });
         }
         self.queue.set(track, items);
     }

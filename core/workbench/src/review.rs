@@ -12,13 +12,13 @@ use honami_model::judgement::Judgement;
 use honami_model::track::{Span, TrackId};
 use honami_store::Project;
 
-pub use honami_review::evidence::Parts;
+pub use honami_review::evidence::{Evidence, Parts, Subject};
 pub use honami_review::queue::{
     Item, Progress as ReviewProgress, Queue, Rank, Reasons, Segments, Tally, effort,
 };
 pub use honami_review::{Review, Standing};
 
-use honami_review::evidence::{Correlator, Evidence, Subject};
+use honami_review::evidence::Correlator;
 
 use crate::error::WorkbenchError;
 use crate::progress::{Flow, Progress};

@@ -115,7 +115,7 @@ table! {
     FineUp "fine-up" ["K" "Shift-Up"] [Place ".25" Move ".25"] "a quarter of a pixel up"
     FineRight "fine-right" ["L" "Shift-Right"] [Place ".25" Move ".25" Form ""] "a quarter of a pixel right, or a tenth of a value's range up"
     Accept "accept" ["Enter"] [Place "place" Move "keep" Form "run" Menu "choose" Prompt "go" Review "" Dial "keep" History "go there"]
-        "accept: keep, place, run or go; while reviewing, confirm the sample here as a key-frame"
+        "accept: keep, place, run or go; while reviewing, the open item, or the sample here as a key-frame"
     Back "back" ["Esc" "Ctrl-c"] [Place "back" Move "back" Form "back" Menu "back" Prompt "back" Label "back" Review "" Dial "back" History "back"]
         "back: leave what is open, undone; while reviewing, stop the job or the clip"
     // Time.
@@ -124,10 +124,13 @@ table! {
     SlowForward "play-slow" [";"] [Review ""] "play slowly or pause; 25 ; : at 25 %, from now on"
     SlowBackward "play-slow-backwards" ["'"] [Review ""] "play slowly backwards, or pause"
     Loop "loop" ["b"] [Review ""] "loop round this frame, or stop; 12 b: 12 frames to both sides"
-    NextTrack "next-track" ["n"] [Review "next"] "select the next track"
-    PreviousTrack "previous-track" ["p"] [Review ""] "select the previous track"
+    NextItem "next-item" ["n"] [Review "next"] "open the next item of the queue, at its worst frame"
+    PreviousItem "previous-item" ["p"] [Review ""] "open the previous item of the queue"
     WorstFrame "worst-frame" ["w"] [Review "worst"]
-        "go to the worst frame of the track; again, to the next worst"
+        "go to the worst frame of the item; again, to those of the track's other items"
+    Bisect "bisect" ["|"] [Review ""] "go half-way between the key-frames around"
+    Reject "reject" ["R"] [Review ""] "the open item's track is of no use; on to the next item"
+    Later "later" ["E"] [Review ""] "put the open item off; on to the next item"
     StepForward "step" ["."] [Review ""] "one frame forward; a number before it steps so many"
     StepBack "step-back" [","] [Review ""] "one frame back"
     LeapForward "leap" [">"] [Review ""] "ten frames forward"
@@ -169,6 +172,7 @@ table! {
     MotionDial "motion-dial" ["v d"] [Review ""] "choose the directions of motion that are shown"
     Marks "marks" ["M"] [Review ""] "mark all tracks in the picture, or only the selected one"
     Column "next-panel" ["Tab"] [Review ""] "show the next panel beside the picture; after the last, none"
+    PanelQueue "panel-queue" ["P q"] [Review ""] "show or hide the queue of doubtful segments"
     PanelTracks "panel-tracks" ["P t"] [Review ""] "show or hide the tracks"
     PanelGroups "panel-groups" ["P g"] [Review ""] "show or hide the groups"
     PanelKeyFrames "panel-key-frames" ["P k"] [Review ""] "show or hide the key-frames of the selected track"

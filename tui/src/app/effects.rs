@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use honami_model::edit::Transaction;
 use honami_model::history::{Entry, EntryId, Step};
+use honami_model::judgement::Judgement;
 use honami_model::track::TrackId;
 use honami_workbench::WorkbenchError;
 use honami_workbench::cluster::{self, ClusterRequest};
@@ -17,10 +18,11 @@ use honami_workbench::track::{self, TrackRequest};
 
 use super::form::{Plugin, Task};
 use super::jobs::{Done, Running, Work};
+use super::reviewing::Reviewing;
 use super::seat::Seat;
 use super::state::{Job, Notice, State};
 use super::tracks::{Groups, TrackRow};
-use super::update::{Effect, Fact, Hint};
+use super::update::{Effect, Fact, Hint, Judge};
 use crate::term::signals::Waker;
 
 /// The world: the project, the clip, the plugins, and the job that runs.
@@ -28,6 +30,8 @@ pub(super) struct World {
     session: Session,
     waker: Waker,
     running: Option<(Running, Job)>,
+    /// Measures suspicion; `None` where there is no thread for it.
+    reviewing: Option<Reviewing>,
     rows: BTreeMap<TrackId, TrackRow>,
     /// Entries of the undo tree that the state has been told of.
     n_told: usize,
@@ -40,7 +44,9 @@ type Facts = Result<Vec<Fact>, WorkbenchError>;
 
 impl World {
     pub(super) fn new(session: Session, waker: Waker) -> Self {
-        Self { session, waker, running: None, rows: BTreeMap::new(), n_told: 0, seat: Seat::default() }
+        let reviewing = Reviewing::start(Arc::clone(&session.media), waker.clone()).ok();
+        let (rows, seat) = (BTreeMap::new(), Seat::default());
+        Self { session, waker, running: None, reviewing, rows, n_told: 0, seat }
     }
 
     /// The state to begin with, of the usual size.
@@ -57,6 +63,7 @@ impl World {
         let mut notes = self.session.notes.clone();
         notes.extend_from_slice(self.session.media.notes());
         notes.extend(state.read_only.iter().map(|holder| format!("read only: {holder} holds this project")));
+        notes.extend(self.reviewing.is_none().then(|| "no thread: suspicion is not measured".to_owned()));
         if !notes.is_empty() {
             state.notice = Some(Notice { text: notes.join(" · "), is_error: false });
         }
@@ -104,6 +111,7 @@ impl World {
     pub(super) fn carry_out(&mut self, effect: Effect, now: Duration) -> Vec<Fact> {
         let done = match effect {
             Effect::Commit(transaction, hint) => self.commit(transaction, hint),
+            Effect::Judge(found) => self.judge(found),
             Effect::AddFeature { frame, at } => self.add_feature(frame, at),
             Effect::Undo(n) => self.travel("undone", n, Project::undo),
             Effect::Jump(to) => self.jump(to),
@@ -124,6 +132,16 @@ impl World {
         let line = format!("{} ({hint})", transaction.label);
         self.session.project.commit(transaction)?;
         self.shown_and(said(line))
+    }
+
+    fn judge(&mut self, found: Judge) -> Facts {
+        let project = &self.session.project;
+        let Judge { track, frames, verdict, reasons, effort } = found;
+        let seal = project.shown(track)?.map(|span| span.seal(frames.clone()));
+        let reviewer = project.holder().map_or_else(String::new, |holder| holder.user.clone());
+        let time = honami_workbench::store::now();
+        let judgement = Judgement { end_frame: frames.end, verdict, reasons, reviewer, time, effort, seal };
+        self.commit(Transaction::judge(track, frames.start, judgement), "u undoes")
     }
 
     fn add_feature(&mut self, frame: u32, [x, y]: [f32; 2]) -> Facts {
@@ -194,8 +212,16 @@ impl World {
         }
     }
 
-    /// What has become of the running job.
+    /// What has become of the review, and of the running job.
     pub(super) fn news(&mut self) -> Vec<Fact> {
+        let (told, failed) = self.reviewing.as_ref().map(Reviewing::told).unwrap_or_default();
+        let mut news: Vec<Fact> = (!told.is_empty()).then_some(Fact::Review(told)).into_iter().collect();
+        news.extend(failed.map(|error| said_wrong(format!("suspicion cannot be measured: {error}"))));
+        news.extend(self.job_news());
+        news
+    }
+
+    fn job_news(&mut self) -> Vec<Fact> {
         let Some((running, job)) = &mut self.running else { return Vec::new() };
         if !running.is_finished() {
             let step = running.step();
@@ -269,6 +295,9 @@ impl World {
                 _ => TrackRow::new(id, name, span),
             };
             self.rows.insert(id, row);
+        }
+        if let Some(reviewing) = &mut self.reviewing {
+            reviewing.look_at(project)?;
         }
         let groups = match project.document().clustering() {
             None => None,

@@ -7,6 +7,7 @@ use honami_model::hierarchy::{Dendrogram, Merge};
 use honami_model::history::{Entry, EntryId};
 use honami_model::track::{Quality, Sample, Source, Span, Status, TrackId};
 use honami_workbench::plugins::Param;
+use honami_workbench::review::{Evidence, Review, Subject};
 use ratatui::layout::Rect;
 
 use super::form::{Plugin, Task};
@@ -27,6 +28,7 @@ pub(super) fn state() -> State {
     state.plugins = plugins();
     state.n_ready = 100;
     state.history.grow(edits(), EntryId(3));
+    review(&mut state);
     state
 }
 
@@ -43,6 +45,16 @@ fn edits() -> Vec<Entry> {
         time: "2026-11-21T14:03:00Z".to_owned(),
     };
     (0..).zip(labels.into_iter().zip(parents)).map(entry).collect()
+}
+
+/// What there is to review, without pictures: forward-backward errors, losses and jumps.
+pub(super) fn review(state: &mut State) {
+    let subject = |row: &TrackRow| Subject { track: row.id, span: Arc::clone(&row.span), rivals: Vec::new() };
+    let evidence = Evidence::new(state.tracks.iter().map(subject).collect(), 1);
+    state.review = Review::default();
+    for row in &state.tracks {
+        state.review.set(row.id, evidence.segments(row.id, &Default::default()));
+    }
 }
 
 /// A track on a sway, with key-frames; frames 70 to 79 of it are lost, 40 is doubtful.

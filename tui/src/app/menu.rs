@@ -76,7 +76,8 @@ impl Menu {
     pub fn of_tracks(state: &State) -> Self {
         let rows = state.listed().into_iter().map(|row| {
             let group = state.groups.as_ref().and_then(|g| g.of(row.id));
-            let doubt = row.worst.first().map_or_else(String::new, |w| format!("worst at {w}"));
+            let doubt = state.review.queue.of_track(row.id).next();
+            let doubt = doubt.map_or_else(String::new, |item| format!("worst at {}", item.worst));
             Row {
                 label: format!("track {} {}", row.id, row.name.as_deref().unwrap_or_default()),
                 detail: group.map_or(doubt.clone(), |g| format!("group {}  {doubt}", g + 1)),

@@ -3,6 +3,8 @@
 /// What the column shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Panel {
+    /// The queue of doubtful segments.
+    Queue,
     /// The tracks, with their doubt over the clip.
     Tracks,
     /// The groups of the shown clustering.
@@ -15,12 +17,13 @@ pub enum Panel {
 
 impl Panel {
     /// All of them, in the order in which they follow each other.
-    pub const ALL: &[Self] = &[Self::Tracks, Self::Groups, Self::KeyFrames, Self::History];
+    pub const ALL: &[Self] = &[Self::Queue, Self::Tracks, Self::Groups, Self::KeyFrames, Self::History];
 
     /// What its title calls it.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
+            Self::Queue => "queue",
             Self::Tracks => "tracks",
             Self::Groups => "groups",
             Self::KeyFrames => "key-frames",

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use honami_model::clip::Clip;
 use honami_model::track::TrackId;
+use honami_workbench::review::Review;
 
 use super::action::Context;
 use super::clock::Play;
@@ -13,6 +14,7 @@ use super::keymap::KeyMap;
 use super::menu::Menu;
 use super::motion::Motion;
 use super::panel::Panel;
+use super::queue::Opened;
 use super::tracks::{Groups, TrackRow};
 use super::view::theme::Theme;
 use crate::term::capabilities::Pixels;
@@ -45,6 +47,10 @@ pub struct State {
     pub corrected: Option<TrackId>,
     /// Whether tracks are listed by doubt, not by number.
     pub by_doubt: bool,
+    /// What there is to review.
+    pub review: Review,
+    /// The item of the queue that is being looked at.
+    pub opened: Option<Opened>,
     /// The shown clustering.
     pub groups: Option<Groups>,
     /// The tracker whose run is on top, with its version.
@@ -220,6 +226,8 @@ impl State {
             selected: None,
             corrected: None,
             by_doubt: false,
+            review: Review::default(),
+            opened: None,
             groups: None,
             tracker: None,
             plugins: Vec::new(),
@@ -275,7 +283,8 @@ impl State {
     pub fn listed(&self) -> Vec<&TrackRow> {
         let mut rows: Vec<&TrackRow> = self.tracks.iter().collect();
         if self.by_doubt {
-            rows.sort_by(|a, b| b.doubt.total_cmp(&a.doubt));
+            let suspicion = |row: &TrackRow| self.review.track(row.id).map_or(0.0, |standing| standing.suspicion);
+            rows.sort_by(|a, b| suspicion(b).total_cmp(&suspicion(a)));
         }
         rows
     }

@@ -8,6 +8,7 @@ mod look;
 mod motion;
 mod mouse;
 mod pick;
+mod queue;
 mod time;
 
 use std::time::Duration;
@@ -21,10 +22,11 @@ use super::action::{Action, Context};
 use super::keymap::Found;
 use super::menu::{Choice, Menu};
 use super::state::{Mode, Notice, State};
-use crate::term::input::Mouse;
+use crate::term::input::{Mouse, MouseKind};
 use crate::term::key::Key;
 
 pub use facts::Fact;
+pub use queue::Judge;
 pub(super) use time::RATES;
 
 /// Something that happens to the state.
@@ -62,6 +64,8 @@ pub enum Effect {
         /// Where, image pixels.
         at: [f32; 2],
     },
+    /// Keep a verdict on a segment.
+    Judge(Judge),
     /// Take back so many edits.
     Undo(u32),
     /// Do so many again.
@@ -87,8 +91,17 @@ pub enum Effect {
 /// The next state, and what is to be done.
 pub fn update(state: &mut State, msg: Msg) -> Vec<Effect> {
     match msg {
-        Msg::Key(key) => on_key(state, key),
-        Msg::Mouse(mouse) => mouse::on_mouse(state, mouse),
+        Msg::Key(key) => {
+            let now = state.now;
+            state.opened.iter_mut().for_each(|opened| opened.pressed(now));
+            on_key(state, key)
+        }
+        Msg::Mouse(mouse) => {
+            let now = state.now;
+            let is_press = matches!(mouse.kind, MouseKind::Press(_));
+            state.opened.iter_mut().filter(|_| is_press).for_each(|opened| opened.pressed(now));
+            mouse::on_mouse(state, mouse)
+        }
         Msg::Paste(text) => {
             let text: String = text.trim().chars().filter(|c| !c.is_control()).collect();
             on_text(state, &text);

@@ -64,6 +64,8 @@ impl fmt::Display for Reasons {
 pub struct Segments {
     /// Its doubtful segments.
     pub items: Vec<Item>,
+    /// Frame of the first of `suspicions`.
+    pub first_frame: u32,
     /// Suspicion of every sample.
     pub suspicions: Vec<f32>,
     /// What was found of the judged segments whose samples are still those that were judged.
@@ -109,7 +111,7 @@ pub fn segments<'a>(
     found.retain(|frames| !is_rest(frames));
     let item = |frames: Range<u32>| item(track, frames, (span, parts, &suspicions), &later);
     let items = found.into_iter().map(item).collect();
-    Segments { items, judged: standing.iter().map(|(_, verdict)| *verdict).collect(), suspicions }
+    Segments { items, first_frame: span.first_frame, judged: standing.iter().map(|(_, verdict)| *verdict).collect(), suspicions }
 }
 
 /// A person's word between two segments.

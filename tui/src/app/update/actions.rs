@@ -1,8 +1,10 @@
 //! Actions, each by its place.
 
 use super::{
-    Action, Effect, Mode, State, choose, complain, edit, history, look, motion, open_menu, pick, say, time,
+    Action, Effect, Mode, State, choose, complain, edit, history, look, motion, open_menu, pick, queue, say,
+    time,
 };
+use honami_model::judgement::Verdict;
 use honami_model::track::TrackSet;
 use honami_workbench::cluster::ClusterRequest;
 use honami_workbench::track::{Area, PointSource, TrackRequest};
@@ -44,9 +46,12 @@ pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {
             None => state.mode = Mode::Prompt(String::new()),
         },
         Action::GoTrack => time::go_track(state),
-        Action::NextTrack => time::step_track(state, count(state)),
-        Action::PreviousTrack => time::step_track(state, -count(state)),
-        Action::WorstFrame => time::go_worst(state),
+        Action::NextItem => queue::step(state, count(state)),
+        Action::PreviousItem => queue::step(state, -count(state)),
+        Action::WorstFrame => queue::go_worst(state),
+        Action::Bisect => queue::bisect(state),
+        Action::Reject => return queue::judge(state, Some(Verdict::Rejected)),
+        Action::Later => return queue::judge(state, Some(Verdict::Later)),
         Action::NextKey => time::go_key(state, count(state)),
         Action::PreviousKey => time::go_key(state, -count(state)),
         Action::MoveSample => edit::begin_move(state),
@@ -93,6 +98,7 @@ fn look_about(state: &mut State, action: Action) {
         Action::MotionDial => motion::open_dial(state),
         Action::Marks => state.marks_all = !state.marks_all,
         Action::Column => state.panel = Panel::after(state.panel),
+        Action::PanelQueue => show_panel(state, Panel::Queue),
         Action::PanelTracks => show_panel(state, Panel::Tracks),
         Action::PanelGroups => show_panel(state, Panel::Groups),
         Action::PanelKeyFrames => show_panel(state, Panel::KeyFrames),
@@ -132,7 +138,10 @@ fn steer(state: &mut State, dx: f32, dy: f32, px: f32) -> Vec<Effect> {
 
 fn accept(state: &mut State) -> Vec<Effect> {
     match &mut state.mode {
-        Mode::Review => edit::confirm(state),
+        Mode::Review => match state.opened() {
+            Some(_) => queue::judge(state, None),
+            None => edit::confirm(state),
+        },
         Mode::Place(_) => edit::place(state),
         Mode::Move { .. } => edit::keep(state),
         Mode::Menu(_) => choose(state),

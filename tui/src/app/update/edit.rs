@@ -42,7 +42,7 @@ pub(super) fn begin_move(state: &mut State) {
         return;
     }
     let Some(row) = state.selected_row() else {
-        return complain(state, "select a track first: n takes the next, a click takes the nearest");
+        return complain(state, "select a track first: j takes the next, a click takes the nearest");
     };
     // Before its first and after its last sample a track can be continued from the nearest.
     let frames = row.span.frames();
@@ -68,7 +68,7 @@ pub(super) fn confirm(state: &mut State) -> Vec<Effect> {
         return Vec::new();
     }
     let Some(row) = state.selected_row() else {
-        say(state, "n selects a track; Enter confirms its sample here");
+        say(state, "j selects a track; Enter confirms its sample here");
         return Vec::new();
     };
     let id = row.id;
@@ -110,7 +110,7 @@ pub(super) fn delete(state: &mut State) -> Vec<Effect> {
     }
     let listed: Vec<TrackId> = state.listed().iter().map(|row| row.id).collect();
     let Some(at) = listed.iter().position(|id| Some(*id) == state.selected) else {
-        complain(state, "select a track first: n takes the next");
+        complain(state, "select a track first: j takes the next");
         return Vec::new();
     };
     let track = listed[at];

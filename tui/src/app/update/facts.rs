@@ -1,6 +1,7 @@
 //! What the world tells the state.
 
 use honami_model::history::{Entry, EntryId};
+use honami_workbench::review::Told;
 
 use super::{Mode, State};
 use crate::app::state::{Display, Job, Link, Notice};
@@ -11,6 +12,8 @@ use crate::app::tracks::{Groups, TrackRow};
 pub enum Fact {
     /// The tracks are these now, in order of their numbers.
     Tracks(Vec<TrackRow>),
+    /// This has changed of the review.
+    Review(Vec<Told>),
     /// The shown clustering is this now.
     Groups(Option<Groups>),
     /// The tracker whose run is on top.
@@ -44,6 +47,9 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
             if matches!(state.mode, Mode::Move { .. }) && state.selected_row().is_none() {
                 state.mode = Mode::Review;
             }
+        }
+        Fact::Review(told) => {
+            told.into_iter().for_each(|(track, segments)| state.review.set(track, segments));
         }
         Fact::Groups(groups) => state.groups = groups,
         Fact::Tracker(tracker) => state.tracker = tracker,

@@ -1,6 +1,6 @@
 //! The mouse: selects, places, scrubs; whatever it does, keys do too.
 
-use super::{Effect, Mode, State, history, look, time};
+use super::{Effect, Mode, State, history, look, queue, time};
 use crate::app::layout::{Layout, Lens, bar, frame_at};
 use crate::app::view::column::{self, Pick};
 use crate::term::input::{Mouse, MouseKind};
@@ -63,6 +63,7 @@ pub(super) fn on_mouse(state: &mut State, mouse: Mouse) -> Vec<Effect> {
 fn pick(state: &mut State, picked: Option<Pick>) {
     match picked {
         Some(Pick::Panel(panel)) => state.panel = panel,
+        Some(Pick::Item(rank)) => queue::open_rank(state, rank),
         Some(Pick::Track(track)) => time::select(state, track),
         Some(Pick::Frame(frame)) => time::go(state, frame),
         Some(Pick::Entry(row)) => {

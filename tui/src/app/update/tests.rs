@@ -25,6 +25,7 @@ fn start(words: &str) -> State {
                 state.tracks.clear();
                 state.selected = None;
                 state.groups = None;
+                state.review = Default::default();
             }
             "locked" => state.read_only = Some("ada on lab2".to_owned()),
             "playing" => {
@@ -89,6 +90,10 @@ fn line(state: &State, effects: &[Effect]) -> String {
                 other => format!("{other:?}"),
             };
             format!("{plugin} follows {points}, every {every:?} {}", params.join(" "))
+        }
+        Effect::Judge(Judge { track, frames, verdict, effort, .. }) => {
+            let (word, n) = (verdict.word(), effort.keystrokes);
+            format!("track {track} {}-{} {word} with {n} keys", frames.start, frames.end - 1)
         }
         Effect::Cluster(ClusterRequest { plugin, .. }) => format!("{plugin} groups"),
         other => format!("{other:?}"),
@@ -219,14 +224,14 @@ fn the_next_tick_shows_the_next_frame() {
 #[test]
 fn selecting_tracks() {
     for (from, keys, expect) in [
-        ("", "n", "review | frame 0 track 2"),
-        ("", "p", "review | frame 0 track 7"),
-        ("", "2 n", "review | frame 0 track 7"),
+        ("", "j", "review | frame 0 track 2"),
+        ("", "k", "review | frame 0 track 7"),
+        ("", "2 j", "review | frame 0 track 7"),
         ("", "S", "review | frame 0 track 1 | said tracks are listed by doubt, the worst first"),
-        ("track=7", "S n", "review | frame 0 track 2"),
-        ("track=1", "S n", "review | frame 0 track 7"),
+        ("track=7", "S j", "review | frame 0 track 2"),
+        ("track=1", "S j", "review | frame 0 track 7"),
         ("track=2", "S / Enter", "review | frame 0 track 1"),
-        ("", "S S n", "review | frame 0 track 2"),
+        ("", "S S j", "review | frame 0 track 2"),
         ("", "j j k", "review | frame 0 track 2"),
         ("", "7 g t", "review | frame 0 track 7"),
         ("", "3 g t", "review | frame 0 track 1 | error there is no track 3"),
@@ -234,12 +239,77 @@ fn selecting_tracks() {
         ("track=7", "/ b u d Enter", "review | frame 0 track 1"),
         (
             "empty",
-            "n",
+            "j",
             "review | frame 0 track - | error there are no tracks yet: t follows features, a adds one by hand",
         ),
     ] {
         check(from, keys, expect);
     }
+}
+
+#[test]
+fn the_queue() {
+    let first = "review | frame 70 track 1";
+    let second = "review | frame 70 track 7 | said track 7: frames 40-99, FB LOST (0.85)";
+    for (from, keys, expect) in [
+        ("", "n", &*format!("{first} | said track 1: frames 70-79, LOST (0.85)")),
+        ("", "n n", second),
+        ("", "2 n", second),
+        ("", "n p", &format!("{first} | said this is the first item, the most doubtful")),
+        ("", "9 n n", "review | frame 56 track 2 | said this was the last item; 5 are left, p goes back"),
+        // A segment in which it is lost is accepted as lost.
+        ("", "n Enter", &format!("{second} | track 1 70-79 lost with 1 keys")),
+        ("", "n . , Enter", &format!("{second} | track 1 70-79 lost with 3 keys")),
+        ("", "n n Enter", "review | frame 56 track 1 | said track 1: frames 56-69 | track 7 40-99 accepted with 1 keys"),
+        ("", "n R", &format!("{second} | track 1 0-99 rejected with 1 keys")),
+        ("", "n E", &format!("{second} | track 1 70-79 later with 1 keys")),
+        // Another track is selected: the item is no longer the one that Enter speaks of.
+        ("", "n j Enter", "review | frame 70 track 2 | error track 2 has no sample at 70; m places one"),
+        ("", "n . . w", &format!("{first} | said track 1: doubtful frame 1 of 2")),
+        ("", "R", "review | frame 0 track 1 | error no item is open: n opens the most doubtful"),
+        (
+            "locked",
+            "n Enter",
+            &format!("{first} | error read only: ada on lab2 holds this project; nothing can be changed here"),
+        ),
+        ("frame=20", "|", "review | frame 30 track 1 | said half-way between 10 and 50"),
+        ("frame=60", "|", "review | frame 74 track 1 | said half-way between 50 and 99"),
+        (
+            "empty",
+            "n",
+            "review | frame 0 track - | said there are no tracks yet: t follows features, a adds one by hand",
+        ),
+        ("empty", "|", "review | frame 0 track - | error select a track first: j takes the next"),
+    ] {
+        check(from, keys, expect);
+    }
+}
+
+#[test]
+fn what_an_item_takes_is_counted_without_pauses() {
+    let mut state = start("");
+    let at = |state: &mut State, secs: u64, keys: &str| {
+        update(state, Msg::Clock(Duration::from_secs(secs)));
+        press(state, keys)
+    };
+    at(&mut state, 10, "n");
+    at(&mut state, 14, ".");
+    // Two minutes at the coffee machine.
+    at(&mut state, 134, ",");
+    // The world answers the correction: frame 75 has become a key-frame.
+    let row = &mut state.tracks[0];
+    let mut span = (*row.span).clone();
+    span.samples[75].source = honami_model::track::Source::Key;
+    span.samples[75].status = honami_model::track::Status::Tracked;
+    *row = crate::app::tracks::TrackRow::new(row.id, row.name.clone(), span.into());
+    let effects = at(&mut state, 137, "Enter");
+    let [Effect::Judge(found)] = &effects[..] else { panic!("{effects:?}") };
+    assert_eq!((found.track, found.frames.clone(), found.verdict.word()), (TrackId(1), 70..80, "fixed"));
+    assert_eq!((found.effort.keystrokes, found.effort.key_frames), (3, 1));
+    assert!((found.effort.seconds - 7.0).abs() < 1e-3, "{:?}", found.effort);
+    assert_eq!(found.reasons, ["LOST"]);
+    // It has left at once.
+    assert!(state.review.queue.of_track(TrackId(1)).all(|item| item.frames.start != 70));
 }
 
 #[test]
@@ -280,7 +350,7 @@ fn editing() {
         (
             "empty",
             "m",
-            "review | frame 0 track - | error select a track first: n takes the next, a click takes the nearest",
+            "review | frame 0 track - | error select a track first: j takes the next, a click takes the nearest",
         ),
         (
             "locked",
@@ -363,7 +433,7 @@ fn a_run_after_work_by_hand_is_for_that_track() {
     assert_eq!(followed(&mut state), PointSource::Existing, "the run was for it; the next is not");
     press(&mut state, "m l Enter u");
     assert_eq!(followed(&mut state), PointSource::Existing, "it was undone");
-    press(&mut state, "m l Enter n");
+    press(&mut state, "m l Enter j");
     assert_eq!(followed(&mut state), PointSource::Existing, "another is selected");
     update(&mut state, Msg::Fact(Fact::Placed(TrackId(7))));
     assert_eq!(followed(&mut state), only(7));

@@ -147,27 +147,10 @@ pub(super) fn go_track(state: &mut State) {
     }
 }
 
-/// Goes to the most doubtful frame of the selected track, from there to the next worst, and round again.
-pub(super) fn go_worst(state: &mut State) {
-    let Some(row) = state.selected_row() else {
-        return complain(state, "select a track first: n takes the next");
-    };
-    let (id, n) = (row.id, row.worst.len());
-    let here = row.worst.iter().position(|&frame| frame == state.frame);
-    let at = here.map_or(0, |at| (at + 1) % n);
-    match row.worst.get(at).copied() {
-        Some(frame) => {
-            go(state, frame);
-            say(state, format!("track {id}: doubtful frame {} of {n}", at + 1));
-        }
-        None => say(state, format!("track {id}: nothing is doubtful")),
-    }
-}
-
 /// Goes to the key-frame so many further on.
 pub(super) fn go_key(state: &mut State, by: i64) {
     let Some(row) = state.selected_row() else {
-        return complain(state, "select a track first: n takes the next");
+        return complain(state, "select a track first: j takes the next");
     };
     let id = row.id;
     let nth = usize::try_from(by.unsigned_abs()).unwrap_or(usize::MAX).saturating_sub(1);

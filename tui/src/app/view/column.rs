@@ -6,12 +6,14 @@
 mod groups;
 mod history;
 mod key_frames;
+mod queue;
 mod tracks;
 
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 
 use honami_model::track::TrackId;
+use honami_workbench::review::Rank;
 
 use super::{fill, put, style};
 use crate::app::panel::Panel;
@@ -23,6 +25,8 @@ use crate::term::encode::Frame;
 pub enum Pick {
     /// This panel is to be shown, or none.
     Panel(Option<Panel>),
+    /// An item of the queue.
+    Item(Rank),
     /// A track.
     Track(TrackId),
     /// A frame of the clip.
@@ -49,6 +53,7 @@ trait List {
 
 fn list<'a>(state: &'a State, panel: Panel) -> Box<dyn List + 'a> {
     match panel {
+        Panel::Queue => Box::new(queue::QueueList::of(state)),
         Panel::Tracks => Box::new(tracks::Tracks::of(state)),
         Panel::Groups => Box::new(groups::GroupList::of(state)),
         Panel::KeyFrames => Box::new(key_frames::KeyFrames::of(state)),

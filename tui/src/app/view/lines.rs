@@ -3,7 +3,8 @@
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 
-use honami_model::track::{Source, Status};
+use honami_model::track::{Source, Status, TrackId};
+use honami_workbench::review::Parts;
 
 use super::picture::marks_nth;
 use super::{fill, put, style};
@@ -12,7 +13,7 @@ use crate::app::clock::rate_words;
 use crate::app::keymap::shown;
 use crate::app::layout::{Layout, Lens, bar, column_of, frame_at};
 use crate::app::state::{Job, Mode, State};
-use crate::app::tracks::{TrackRow, doubt};
+use crate::app::tracks::TrackRow;
 use crate::term::encode::Frame;
 
 /// Eight levels of a bar.
@@ -24,6 +25,10 @@ pub(super) fn title(state: &State, area: Rect, frame: &mut Frame) {
         n => format!("{n} tracks"),
     }];
     facts.extend(state.tracker.clone());
+    let progress = state.review.progress();
+    if progress.total() > 0 {
+        facts.push(format!("{} of {} to review", progress.open, progress.total()));
+    }
     facts.extend(state.groups.as_ref().map(|groups| match groups.k {
         1 => "1 group".to_owned(),
         k => format!("{k} groups"),
@@ -65,7 +70,7 @@ pub(super) fn track(state: &State, area: Rect, frame: &mut Frame) {
         let line = if state.tracks.is_empty() {
             "no tracks yet: t follows features, a adds one by hand"
         } else {
-            "n selects a track"
+            "j selects a track"
         };
         put(frame, area, 0, &Line::styled(line, style::DIM));
         return;
@@ -76,20 +81,21 @@ pub(super) fn track(state: &State, area: Rect, frame: &mut Frame) {
         Span::styled(format!("track {}", row.id), style::BOLD),
     ];
     spans.extend(row.name.iter().map(|name| Span::raw(format!("  {name}"))));
-    let right = Line::styled(sample_words(row, state.frame), style::DIM);
+    let right = Line::styled(words(state, row), style::DIM);
     let left = Line::from(spans);
     let free = usize::from(area.width).saturating_sub(left.width() + right.width() + 5);
     put(frame, area, 0, &left);
     put_right(frame, area, &right, left.width());
     if free >= 8 {
-        let bars = sparkline(row, state.clip.n_frames(), free.min(40));
+        let bars = sparkline(state, row.id, free.min(40));
         frame.cells.set_string(area.x + left.width() as u16 + 2, area.y, bars, style::DIM);
     }
 }
 
-/// What is known of the sample here, and where the worst one is.
-fn sample_words(row: &TrackRow, frame: u32) -> String {
-    let mut words = vec![match row.span.get(frame) {
+/// What is known of the sample here; and of the track's doubtful segment, where it has one, instead of its numbers.
+fn words(state: &State, row: &TrackRow) -> String {
+    let sample = row.span.get(state.frame);
+    let mut words = vec![match sample {
         None => "not here".to_owned(),
         Some(sample) if sample.source == Source::Key => "key-frame".to_owned(),
         Some(sample) if sample.source == Source::Interpolated && sample.status.is_seen() => {
@@ -104,23 +110,49 @@ fn sample_words(row: &TrackRow, frame: u32) -> String {
         }
         .to_owned(),
     }];
-    if let Some(quality) = row.span.get(frame).map(|s| s.quality) {
-        let digits = |fb: f32| if fb < 0.1 { 3 } else { 2 };
-        words.extend(quality.fb_px.map(|fb| format!("FB {fb:.*} px", digits(fb))));
-        words.extend(quality.ncc.map(|ncc| format!("NCC {ncc:.2}").replace("0.", ".")));
+    match state.current_item() {
+        Some(item) => {
+            words.push(format!("worst {}", item.worst));
+            words.extend(item.reasons.codes().map(|code| measured(code, &item.parts)));
+        }
+        None => {
+            let quality = sample.map(|sample| sample.quality).unwrap_or_default();
+            words.extend(quality.fb_px.map(fb_words));
+            words.extend(quality.ncc.map(ncc_words));
+        }
     }
-    words.extend(row.worst.first().map(|frame| format!("worst {frame}")));
     words.join(" · ")
 }
 
-/// Largest doubt over the clip, so many cells wide; blank where the track is not.
-pub(super) fn sparkline(row: &TrackRow, n_frames: u32, width: usize) -> String {
-    let n = n_frames as usize;
+fn fb_words(fb_px: f32) -> String {
+    format!("FB {fb_px:.*} px", if fb_px < 0.1 { 3 } else { 2 })
+}
+
+fn ncc_words(ncc: f32) -> String {
+    format!("NCC {ncc:.2}").replace("0.", ".")
+}
+
+/// A reason with what was measured of it.
+fn measured(code: &str, parts: &Parts) -> String {
+    let words = match code {
+        "FB" => parts.fb_px.map(|px| format!("FB {px:.1} px")),
+        "NCC" => parts.ncc.map(ncc_words),
+        "NBR" => parts.nbr_px.map(|px| format!("NBR {px:.0} px")),
+        "DIS" => parts.dis_px.map(|px| format!("DIS {px:.0} px")),
+        _ => None,
+    };
+    words.unwrap_or_else(|| code.to_owned())
+}
+
+/// Largest suspicion over the clip, so many cells wide; blank where the track is not.
+pub(super) fn sparkline(state: &State, track: TrackId, width: usize) -> String {
+    let n = state.clip.n_frames() as usize;
+    let Some(standing) = state.review.track(track) else { return " ".repeat(width) };
     (0..width)
         .map(|i| {
             let frames = i * n / width..((i + 1) * n / width).max(i * n / width + 1);
-            let worst = frames.filter_map(|f| row.span.get(u32::try_from(f).ok()?)).map(doubt);
-            worst.reduce(f32::max).map_or(" ", |d| BARS[((d * 8.0) as usize).min(7)])
+            let suspicions = frames.filter_map(|f| standing.at(u32::try_from(f).ok()?));
+            suspicions.reduce(f32::max).map_or(" ", |p| BARS[((p * 8.0) as usize).min(7)])
         })
         .collect()
 }
@@ -250,9 +282,9 @@ fn is_useful(state: &State, action: Action) -> bool {
         return true;
     }
     match action {
-        Action::NextTrack => !state.tracks.is_empty(),
+        Action::NextItem => !state.review.queue.is_empty(),
         Action::MoveSample => !state.tracks.is_empty() && state.read_only.is_none(),
-        Action::WorstFrame => state.selected_row().is_some_and(|row| !row.worst.is_empty()),
+        Action::WorstFrame => state.current_item().is_some(),
         Action::RunTracker => state.job.is_none() && state.read_only.is_none(),
         Action::RunClusterer => state.tracks.len() > 1 && state.job.is_none() && state.read_only.is_none(),
         Action::AddFeature => state.read_only.is_none(),

@@ -92,11 +92,13 @@ fn screens() {
     };
     check("review_80x24", small, "", |_| {});
     check("review_120x40", large, "", |_| {});
-    check("column_120x40", large, "n Tab", |_| {});
-    check("groups_80x24", small, "n P g", |_| {});
+    check("column_120x40", large, "j Tab", |_| {});
+    check("groups_80x24", small, "j P g", |_| {});
     check("key_frames_80x24", small, "P k", |_| {});
     check("panel_60x16", (60, 16), "Tab", fixture::crowd);
     check("panel_40x12", (40, 12), "Tab", |_| {});
+    check("queue_120x40", large, "P q n n", |_| {});
+    check("queue_80x24", small, "P q", fixture::crowd);
     check("playing_80x24", small, "space", |_| {});
     check("loop_80x24", small, "", |state| {
         press(state, "; b");
@@ -104,6 +106,7 @@ fn screens() {
     });
     check("empty_80x24", small, "", |state| {
         state.tracks.clear();
+        state.review = Default::default();
         state.selected = None;
         state.groups = None;
         state.tracker = None;

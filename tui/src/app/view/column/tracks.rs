@@ -43,11 +43,12 @@ impl List for Tracks<'_> {
         let row = self.listed[i];
         let group = self.state.groups.as_ref().and_then(|g| g.of(row.id));
         let name: String = row.name.as_deref().unwrap_or_default().chars().take(8).collect();
-        let worst = row.worst.first().map_or_else(String::new, u32::to_string);
+        let worst = self.state.review.queue.of_track(row.id).next();
+        let worst = worst.map_or_else(String::new, |item| item.worst.to_string());
         Line::from(vec![
             Span::styled("●", style::group_text(group)),
             Span::raw(format!("{:>5} {name:<8} ", row.id.to_string())),
-            Span::styled(sparkline(row, self.state.clip.n_frames(), BARS), style::DIM),
+            Span::styled(sparkline(self.state, row.id, BARS), style::DIM),
             Span::styled(format!(" {worst:>6}"), style::DIM),
         ])
     }

@@ -1,0 +1,144 @@
+//! The queue: from item to item, and what is found of them.
+
+use std::ops::Range;
+
+use honami_model::judgement::{Effort, Verdict};
+use honami_model::track::TrackId;
+use honami_workbench::review::{Item, Rank};
+
+use super::{Effect, State, complain, edit, say, time};
+use crate::app::queue::Opened;
+
+/// A verdict to be kept: the world adds who and when.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Judge {
+    /// The track.
+    pub track: TrackId,
+    /// The segment.
+    pub frames: Range<u32>,
+    /// What was found.
+    pub verdict: Verdict,
+    /// Why it was looked at.
+    pub reasons: Vec<String>,
+    /// What it took.
+    pub effort: Effort,
+}
+
+/// Opens the item so many further on, from where the last one was or is.
+pub(super) fn step(state: &mut State, by: i64) {
+    let queue = &state.review.queue;
+    let mut found = None;
+    let mut from = state.opened.as_ref().map(|opened| opened.item.rank());
+    for _ in 0..by.unsigned_abs().min(queue.len() as u64) {
+        let next = match from {
+            None => queue.first(),
+            Some(rank) if by > 0 => queue.after(rank),
+            Some(rank) => queue.before(rank),
+        };
+        let Some(item) = next else { break };
+        (found, from) = (Some(item.clone()), Some(item.rank()));
+    }
+    match found {
+        Some(item) => open(state, item),
+        None => nothing(state, by),
+    }
+}
+
+fn nothing(state: &mut State, by: i64) {
+    let progress = state.review.progress();
+    let line = match () {
+        () if state.tracks.is_empty() => "there are no tracks yet: t follows features, a adds one by hand".to_owned(),
+        () if state.review.queue.is_empty() && progress.total() > 0 => {
+            format!("nothing is left to review: {} of {} done", progress.judged.done(), progress.total())
+        }
+        () if state.review.queue.is_empty() => "nothing is doubtful".to_owned(),
+        () if by > 0 => format!("this was the last item; {} are left, p goes back", state.review.queue.len()),
+        () => "this is the first item, the most doubtful".to_owned(),
+    };
+    say(state, line);
+}
+
+/// Opens the item with this rank, where it is still there.
+pub(super) fn open_rank(state: &mut State, rank: Rank) {
+    if let Some(item) = state.review.queue.get(rank).cloned() {
+        open(state, item);
+    }
+}
+
+fn open(state: &mut State, item: Item) {
+    let Some(row) = state.row(item.track) else { return };
+    let opened = Opened::new(item.clone(), row, state.now);
+    state.opened = Some(opened);
+    time::stop(state);
+    time::select(state, item.track);
+    time::go(state, item.worst);
+    let (first, last) = (item.frames.start, item.frames.end - 1);
+    say(state, format!("track {}: frames {first}-{last}, {} ({:.2})", item.track, item.reasons, item.suspicion));
+}
+
+/// Says what was found of the open item, and goes on to the next; `None`: what its samples say of themselves.
+pub(super) fn judge(state: &mut State, verdict: Option<Verdict>) -> Vec<Effect> {
+    if !edit::is_writable(state) {
+        return Vec::new();
+    }
+    let found = state.opened().zip(state.selected_row()).map(|(opened, row)| {
+        let verdict = verdict.unwrap_or_else(|| opened.verdict(row));
+        // A track of no use is so as a whole.
+        let frames = if verdict == Verdict::Rejected { row.span.frames() } else { opened.item.frames.clone() };
+        let reasons = opened.item.reasons.codes().map(str::to_owned).collect();
+        Judge { track: row.id, frames, verdict, reasons, effort: opened.effort(row) }
+    });
+    let Some(found) = found else {
+        complain(state, "no item is open: n opens the most doubtful");
+        return Vec::new();
+    };
+    let rank = state.opened.take().map(|opened| opened.item.rank());
+    // It has left, also before the world has noticed.
+    let rest = state.review.queue.of_track(found.track).filter(|item| !overlap(&item.frames, &found.frames));
+    let rest: Vec<Item> = rest.cloned().collect();
+    state.review.queue.set(found.track, rest);
+    let queue = &state.review.queue;
+    if let Some(next) = rank.and_then(|rank| queue.after(rank)).or_else(|| queue.first()).cloned() {
+        open(state, next);
+    }
+    vec![Effect::Judge(found)]
+}
+
+fn overlap(a: &Range<u32>, b: &Range<u32>) -> bool {
+    a.start < b.end && b.start < a.end
+}
+
+/// Goes to the worst frame of the open item; again, to those of the track's other items.
+pub(super) fn go_worst(state: &mut State) {
+    let Some(track) = state.selected else {
+        return complain(state, "select a track first: j takes the next");
+    };
+    let mut worst: Vec<u32> = state.opened().map(|opened| opened.item.worst).into_iter().collect();
+    for item in state.review.queue.of_track(track) {
+        if !worst.contains(&item.worst) {
+            worst.push(item.worst);
+        }
+    }
+    let at = worst.iter().position(|&frame| frame == state.frame).map_or(0, |at| (at + 1) % worst.len());
+    match worst.get(at).copied() {
+        Some(frame) => {
+            time::go(state, frame);
+            say(state, format!("track {track}: doubtful frame {} of {}", at + 1, worst.len()));
+        }
+        None => say(state, format!("track {track}: nothing is doubtful")),
+    }
+}
+
+/// Goes half-way between the key-frames around, or the ends of the track.
+pub(super) fn bisect(state: &mut State) {
+    let Some(row) = state.selected_row().filter(|row| !row.span.samples.is_empty()) else {
+        return complain(state, "select a track first: j takes the next");
+    };
+    let frames = row.span.frames();
+    let here = state.frame;
+    let before = row.keys.iter().rev().find(|key| **key <= here).copied().unwrap_or(frames.start);
+    let after = row.keys.iter().find(|key| **key > here).copied().unwrap_or(frames.end - 1);
+    let middle = before + after.saturating_sub(before) / 2;
+    time::go(state, middle);
+    say(state, format!("half-way between {before} and {after}"));
+}
