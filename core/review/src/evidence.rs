@@ -197,9 +197,15 @@ impl Row {
             if !is_judged(sample) {
                 return Parts::default();
             }
+            let dis_px = disagreement(sample, rivals, frame);
+            // Where it was given or found it is compared with itself.
+            if self.anchors.around(frame).0.is_some_and(|(at, _)| at == frame) {
+                let none = Some(0.0);
+                return Parts { fb_px: none, ncc: Some(1.0), jump: none, nbr_px: none, dis_px };
+            }
             let ncc = self.correlations.get(at);
             let nbr_px = self.neighbours.deviation_px(at);
-            Parts { fb_px, ncc, jump, nbr_px, dis_px: disagreement(sample, rivals, frame) }
+            Parts { fb_px, ncc, jump, nbr_px, dis_px }
         })
         .collect()
     }

@@ -132,7 +132,8 @@ impl Queue {
     /// The items about a place in their order: so many before it, and so many from it on.
     #[must_use]
     pub fn about(&self, rank: Rank, reach: usize) -> Vec<&Item> {
-        let mut about: Vec<&Item> = self.items.range(..rank).rev().take(reach).map(|(_, item)| item).collect();
+        let mut about: Vec<&Item> =
+            self.items.range(..rank).rev().take(reach).map(|(_, item)| item).collect();
         about.reverse();
         about.extend(self.items.range(rank..).take(reach).map(|(_, item)| item));
         about

@@ -51,7 +51,8 @@ impl Review {
             let open: Vec<f32> = items.iter().map(|item| item.suspicion).collect();
             let suspicion = suspicion::of_track(&open);
             self.judged += judged;
-            self.tracks.insert(track, Standing { first_frame, suspicions: suspicions.into(), suspicion, judged });
+            self.tracks
+                .insert(track, Standing { first_frame, suspicions: suspicions.into(), suspicion, judged });
         }
         self.queue.set(track, items);
     }

@@ -42,7 +42,9 @@ impl Reviewing {
         let desk = Arc::new(Desk { papers, arrived, called, waker });
         let at = Arc::clone(&desk);
         // It ends when the desk is closed; nobody waits for it.
-        std::thread::Builder::new().name("review".to_owned()).spawn(move || at.work(Reviewer::new(media, THREADS)))?;
+        std::thread::Builder::new()
+            .name("review".to_owned())
+            .spawn(move || at.work(Reviewer::new(media, THREADS)))?;
         Ok(Self { known: Known::default(), desk })
     }
 

@@ -283,7 +283,8 @@ impl State {
     pub fn listed(&self) -> Vec<&TrackRow> {
         let mut rows: Vec<&TrackRow> = self.tracks.iter().collect();
         if self.by_doubt {
-            let suspicion = |row: &TrackRow| self.review.track(row.id).map_or(0.0, |standing| standing.suspicion);
+            let suspicion =
+                |row: &TrackRow| self.review.track(row.id).map_or(0.0, |standing| standing.suspicion);
             rows.sort_by(|a, b| suspicion(b).total_cmp(&suspicion(a)));
         }
         rows

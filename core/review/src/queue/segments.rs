@@ -111,7 +111,12 @@ pub fn segments<'a>(
     found.retain(|frames| !is_rest(frames));
     let item = |frames: Range<u32>| item(track, frames, (span, parts, &suspicions), &later);
     let items = found.into_iter().map(item).collect();
-    Segments { items, first_frame: span.first_frame, judged: standing.iter().map(|(_, verdict)| *verdict).collect(), suspicions }
+    Segments {
+        items,
+        first_frame: span.first_frame,
+        judged: standing.iter().map(|(_, verdict)| *verdict).collect(),
+        suspicions,
+    }
 }
 
 /// A person's word between two segments.

@@ -47,7 +47,9 @@ pub(super) fn step(state: &mut State, by: i64) {
 fn nothing(state: &mut State, by: i64) {
     let progress = state.review.progress();
     let line = match () {
-        () if state.tracks.is_empty() => "there are no tracks yet: t follows features, a adds one by hand".to_owned(),
+        () if state.tracks.is_empty() => {
+            "there are no tracks yet: t follows features, a adds one by hand".to_owned()
+        }
         () if state.review.queue.is_empty() && progress.total() > 0 => {
             format!("nothing is left to review: {} of {} done", progress.judged.done(), progress.total())
         }
@@ -73,7 +75,10 @@ fn open(state: &mut State, item: Item) {
     time::select(state, item.track);
     time::go(state, item.worst);
     let (first, last) = (item.frames.start, item.frames.end - 1);
-    say(state, format!("track {}: frames {first}-{last}, {} ({:.2})", item.track, item.reasons, item.suspicion));
+    say(
+        state,
+        format!("track {}: frames {first}-{last}, {} ({:.2})", item.track, item.reasons, item.suspicion),
+    );
 }
 
 /// Says what was found of the open item, and goes on to the next; `None`: what its samples say of themselves.
@@ -84,7 +89,8 @@ pub(super) fn judge(state: &mut State, verdict: Option<Verdict>) -> Vec<Effect> 
     let found = state.opened().zip(state.selected_row()).map(|(opened, row)| {
         let verdict = verdict.unwrap_or_else(|| opened.verdict(row));
         // A track of no use is so as a whole.
-        let frames = if verdict == Verdict::Rejected { row.span.frames() } else { opened.item.frames.clone() };
+        let frames =
+            if verdict == Verdict::Rejected { row.span.frames() } else { opened.item.frames.clone() };
         let reasons = opened.item.reasons.codes().map(str::to_owned).collect();
         Judge { track: row.id, frames, verdict, reasons, effort: opened.effort(row) }
     });

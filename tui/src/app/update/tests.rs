@@ -256,11 +256,15 @@ fn the_queue() {
         ("", "n n", second),
         ("", "2 n", second),
         ("", "n p", &format!("{first} | said this is the first item, the most doubtful")),
-        ("", "9 n n", "review | frame 56 track 2 | said this was the last item; 5 are left, p goes back"),
+        ("", "9 n n", "review | frame 56 track 2 | said this was the last item; 4 are left, p goes back"),
         // A segment in which it is lost is accepted as lost.
         ("", "n Enter", &format!("{second} | track 1 70-79 lost with 1 keys")),
         ("", "n . , Enter", &format!("{second} | track 1 70-79 lost with 3 keys")),
-        ("", "n n Enter", "review | frame 56 track 1 | said track 1: frames 56-69 | track 7 40-99 accepted with 1 keys"),
+        (
+            "",
+            "n n Enter",
+            "review | frame 40 track 1 | said track 1: frames 40-49, FB (0.23) | track 7 40-99 accepted with 1 keys",
+        ),
         ("", "n R", &format!("{second} | track 1 0-99 rejected with 1 keys")),
         ("", "n E", &format!("{second} | track 1 70-79 later with 1 keys")),
         // Another track is selected: the item is no longer the one that Enter speaks of.
@@ -270,7 +274,9 @@ fn the_queue() {
         (
             "locked",
             "n Enter",
-            &format!("{first} | error read only: ada on lab2 holds this project; nothing can be changed here"),
+            &format!(
+                "{first} | error read only: ada on lab2 holds this project; nothing can be changed here"
+            ),
         ),
         ("frame=20", "|", "review | frame 30 track 1 | said half-way between 10 and 50"),
         ("frame=60", "|", "review | frame 74 track 1 | said half-way between 50 and 99"),
