@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
+use honami_workbench::WorkbenchError;
 use honami_workbench::export::{self, ExportRequest};
 use honami_workbench::foreign::Format;
-use honami_workbench::WorkbenchError;
 use honami_workbench::import::{self, ImportRequest};
 use honami_workbench::review;
 use honami_workbench::store::{Access, Project};
