@@ -9,6 +9,7 @@ mod journal_kill;
 mod locks;
 mod real_clips;
 mod retrack;
+mod simulated;
 mod stopped;
 mod tidy;
 mod wrong;

@@ -11,7 +11,7 @@ use crate::{BUILD, SHIPPED};
 /// Name, what it measures, and how to run it.
 type Bench = (&'static str, &'static str, fn(&[&str]) -> anyhow::Result<()>);
 
-const BENCHES: [Bench; 9] = [
+const BENCHES: [Bench; 10] = [
     ("encode", "the encoder's time, bytes and likeness: `bench encode [BYTES] [CLIP…]`", encode),
     ("trackers", "KLT against OpenCV's calcOpticalFlowPyrLK, same frames, alternating", trackers),
     ("accuracy", "δavg of KLT and of OpenCV's on calm, wind and storm: `bench accuracy [SEED]`", accuracy),
@@ -20,6 +20,11 @@ const BENCHES: [Bench; 9] = [
     ("store", "opening, editing and appending to a project of 10,000 tracks", store),
     ("suspicion", "how well suspicion tells bad samples: `bench suspicion [--seed N] [--fit]`", suspicion),
     ("queue", "the review queue with 100,000 items, an edit among 10,000 tracks", queue),
+    (
+        "review",
+        "keys per track that a simulated reviewer needs, a row a correction: `bench review [--tracks N]`",
+        review,
+    ),
     ("plugins", "cost of a plugin call, in process", plugins),
 ];
 
@@ -106,6 +111,17 @@ fn encode(args: &[&str]) -> anyhow::Result<()> {
 
 fn store(args: &[&str]) -> anyhow::Result<()> {
     example("honami-store", "store_bench", args).run()
+}
+
+/// The real corrections in real projects, on clips whose truth is known.
+fn review(args: &[&str]) -> anyhow::Result<()> {
+    cargo(BUILD).args(SHIPPED).run()?;
+    let folder = target_dir()?.join("bench").join("review");
+    fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
+    let plugins = target_dir()?.join("release");
+    example("honami-workbench", "review_bench", args)
+        .args(["--plugin".as_ref(), plugins.as_os_str(), "--folder".as_ref(), folder.as_os_str()])
+        .run()
 }
 
 fn plugins(args: &[&str]) -> anyhow::Result<()> {

@@ -18,6 +18,7 @@ pub mod retrack;
 pub mod review;
 pub mod script;
 pub mod session;
+pub mod simulate;
 pub mod spectra;
 mod stamp;
 pub mod track;

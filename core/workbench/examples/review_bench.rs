@@ -1,0 +1,260 @@
+//! Keys per track that a simulated reviewer needs, a row a correction; `cargo xtask bench review`.
+//!
+//! `[--tracks N] [--seed S] [--level calm|wind|storm] [--tolerance PX] [--frames T] [--json]`; each model works in a
+//! copy of the same project, on the same tracks, with the same trembling hand.
+#![allow(clippy::print_stdout, reason = "a benchmark speaks to a person")]
+
+use std::error::Error;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use honami_model::edit::Transaction;
+use honami_model::track::TrackId;
+use honami_motion::accuracy::TruePath;
+use honami_workbench::compare::{Truth, points_of, read_truth};
+use honami_workbench::generate::generate;
+use honami_workbench::plugins::Values;
+use honami_workbench::session::{Session, SessionOptions};
+use honami_workbench::simulate::{Habits, Model, Pick, Taken, review};
+use honami_workbench::synth::{Level, Settings};
+use honami_workbench::track::{self, Area, PointSource, TrackRequest};
+
+/// More key-frames than anybody places on one track.
+const MAX_KEYS: u32 = 61;
+
+/// What is asked for.
+struct Asked {
+    tracks: usize,
+    seed: u64,
+    levels: Vec<Level>,
+    tolerance_px: f64,
+    n_frames: u32,
+    json: bool,
+    plugin: PathBuf,
+    folder: PathBuf,
+}
+
+fn asked() -> Result<Asked, Box<dyn Error>> {
+    let mut asked = Asked {
+        tracks: 100,
+        seed: 1,
+        levels: vec![Level::Calm, Level::Wind],
+        tolerance_px: 4.0,
+        n_frames: 150,
+        json: false,
+        plugin: PathBuf::from("target/release"),
+        folder: std::env::temp_dir(),
+    };
+    let mut words = std::env::args().skip(1);
+    while let Some(word) = words.next() {
+        let mut value = || words.next().ok_or_else(|| format!("{word} wants a value"));
+        match word.as_str() {
+            "--tracks" => asked.tracks = value()?.parse()?,
+            "--seed" => asked.seed = value()?.parse()?,
+            "--level" => asked.levels = vec![value()?.parse()?],
+            "--tolerance" => asked.tolerance_px = value()?.parse()?,
+            "--frames" => asked.n_frames = value()?.parse()?,
+            "--plugin" => asked.plugin = value()?.into(),
+            "--folder" => asked.folder = value()?.into(),
+            "--json" => asked.json = true,
+            _ => return Err(format!("unknown option {word}").into()),
+        }
+    }
+    Ok(asked)
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let asked = asked()?;
+    for &level in &asked.levels {
+        let begun = std::time::Instant::now();
+        let scene = scene(&asked, level)?;
+        let rows = rows(&asked, &scene)?;
+        print(&asked, level, scene.chosen.len(), &rows);
+        if !asked.json {
+            println!("{:.0} s", begun.elapsed().as_secs_f64());
+        }
+    }
+    Ok(())
+}
+
+/// A project with tracks, and the truth of those that are reviewed.
+struct Scene {
+    project: PathBuf,
+    chosen: Vec<(TrackId, TruePath)>,
+}
+
+fn options(asked: &Asked) -> SessionOptions {
+    SessionOptions { plugin_paths: vec![asked.plugin.clone()], read_only: false }
+}
+
+/// Renders the clip, gives the tracker the leaves that can be seen at first, and chooses evenly among them.
+fn scene(asked: &Asked, level: Level) -> Result<Scene, Box<dyn Error>> {
+    let folder = asked.folder.join(format!("{level}-{}-{}", asked.seed, asked.n_frames));
+    fs::create_dir_all(&folder)?;
+    let clip = folder.join("clip.y4m");
+    let settings = Settings { seed: asked.seed, n_frames: asked.n_frames, ..Settings::benchmark(level) };
+    if !clip.exists() {
+        generate(&settings, &clip, &())?;
+    }
+    let truth: Truth = read_truth(&clip.with_extension("truth.csv"), asked.n_frames)?;
+    let at_first = |track: TrackId| truth.get(&track).filter(|path| path.positions[0].2);
+    let mut points = points_of(&truth);
+    points.retain(|seed| seed.frame == 0 && at_first(seed.track).is_some());
+    let step = (points.len() as f64 / asked.tracks.max(1) as f64).max(1.0);
+    let chosen = (0..asked.tracks).map(|k| (k as f64 * step) as usize).filter_map(|k| points.get(k).copied());
+    let seeds: Vec<_> = chosen.collect();
+    let project = folder.join("review.honami");
+    remove(&project)?;
+    let mut session = Session::create(&project, &clip, None, &options(asked))?;
+    let request = TrackRequest {
+        plugin: "klt".to_owned(),
+        params: Values::default(),
+        points: PointSource::Given(seeds.clone()),
+        frames: 0..asked.n_frames,
+        every: None,
+        area: Area::Whole,
+    };
+    let job = track::prepare(&mut session, &request)?;
+    let done = job.run(&())?;
+    track::finish(&mut session, done)?;
+    let chosen = seeds.iter().filter_map(|seed| Some((seed.track, truth.get(&seed.track)?.clone())));
+    Ok(Scene { project, chosen: chosen.collect() })
+}
+
+fn remove(project: &Path) -> std::io::Result<()> {
+    if project.exists() { fs::remove_file(project) } else { Ok(()) }
+}
+
+/// What one way of working has taken on every track.
+struct Row {
+    model: Model,
+    pick: Pick,
+    /// From what a tracker had found, or from nothing but key-frames.
+    tracked: bool,
+    taken: Vec<Taken>,
+}
+
+/// Every model with every pick; key-frames with lines and curves also where nobody has tracked.
+fn rows(asked: &Asked, scene: &Scene) -> Result<Vec<Row>, Box<dyn Error>> {
+    let mut rows = Vec::new();
+    for pick in [Pick::Worst, Pick::First] {
+        let bare = [Model::Linear, Model::Hermite].map(|model| (model, false));
+        for (model, tracked) in bare.into_iter().chain(Model::ALL.map(|model| (model, true))) {
+            rows.push(row(asked, scene, model, pick, tracked)?);
+        }
+    }
+    Ok(rows)
+}
+
+fn row(asked: &Asked, scene: &Scene, model: Model, pick: Pick, tracked: bool) -> Result<Row, Box<dyn Error>> {
+    let copy = scene.project.with_file_name("copy.honami");
+    remove(&copy)?;
+    fs::copy(&scene.project, &copy)?;
+    let mut session = Session::open(&copy, &options(asked))?;
+    if !tracked {
+        let run = session.project.document().runs()[0].run;
+        session.project.commit(Transaction::hide_run(run))?;
+    }
+    let habits = Habits {
+        model,
+        pick,
+        tolerance_px: asked.tolerance_px,
+        noise_px: 0.5,
+        max_keys: MAX_KEYS,
+        seed: asked.seed,
+    };
+    let taken = scene.chosen.iter().map(|(track, truth)| review(&mut session, *track, truth, &habits));
+    Ok(Row { model, pick, tracked, taken: taken.collect::<Result<_, _>>()? })
+}
+
+/// Numbers of a column.
+struct Told {
+    mean: f64,
+    median: u32,
+    p90: u32,
+    unfinished: f64,
+    at_once: f64,
+    ms: f64,
+    /// Keys pressed a track that was not right at once, mean: with the mouse, and with nudges.
+    strokes: [f64; 2],
+}
+
+fn told(row: &Row) -> Told {
+    let n = row.taken.len().max(1) as f64;
+    let mut keys: Vec<u32> = row.taken.iter().map(|taken| taken.n_keys).collect();
+    keys.sort_unstable();
+    let at =
+        |share: f64| keys.get(((keys.len() as f64 - 1.0) * share).round() as usize).copied().unwrap_or(0);
+    let total: u32 = keys.iter().sum();
+    let share = |what: fn(&Taken) -> bool| row.taken.iter().filter(|taken| what(taken)).count() as f64 / n;
+    let seconds: f64 = row.taken.iter().map(|taken| taken.seconds).sum();
+    let n_corrected = row.taken.iter().filter(|taken| taken.n_keys > 0).count().max(1) as f64;
+    // The jump is the program's; `m`, a click or at most 6 nudges, Enter; at the end one Enter accepts.
+    let strokes = [1.0, 6.0].map(|place| f64::from(total) / n_corrected * (2.0 + place) + 1.0);
+    Told {
+        mean: f64::from(total) / n,
+        median: at(0.5),
+        p90: at(0.9),
+        unfinished: share(|taken| !taken.is_right),
+        at_once: share(|taken| taken.is_right && taken.n_keys == 0),
+        ms: 1e3 * seconds / f64::from(total.max(1)),
+        strokes,
+    }
+}
+
+fn print(asked: &Asked, level: Level, n_tracks: usize, rows: &[Row]) {
+    let linear = |pick: Pick| {
+        let is_it = |row: &&Row| row.model == Model::Linear && row.pick == pick && !row.tracked;
+        rows.iter().find(is_it).map_or(1.0, |row| told(row).mean)
+    };
+    if asked.json {
+        for row in rows {
+            let told = told(row);
+            println!(
+                "{{\"level\":\"{level}\",\"seed\":{},\"tracks\":{n_tracks},\"tolerance_px\":{},\"from\":\"{}\",\
+                 \"model\":\"{}\",\"pick\":\"{:?}\",\"mean\":{:.3},\"median\":{},\"p90\":{},\"of_linear\":{:.3},\"unfinished\":{:.3},\
+                 \"at_once\":{:.3},\"ms\":{:.2},\"strokes_mouse\":{:.1},\"strokes_nudges\":{:.1}}}",
+                asked.seed,
+                asked.tolerance_px,
+                if row.tracked { "klt" } else { "keys" },
+                row.model.name(),
+                row.pick,
+                told.mean,
+                told.median,
+                told.p90,
+                told.mean / linear(row.pick),
+                told.unfinished,
+                told.at_once,
+                told.ms,
+                told.strokes[0],
+                told.strokes[1]
+            );
+        }
+        return;
+    }
+    println!(
+        "{level}, seed {}: {n_tracks} tracks of {} frames, tolerance {} px, hand 0.5 px, klt",
+        asked.seed, asked.n_frames, asked.tolerance_px
+    );
+    println!(
+        "from  model      frame   mean median  p90  of linear  unfinished  at once  ms/corr  strokes mouse|nudges"
+    );
+    for row in rows {
+        let told = told(row);
+        println!(
+            "{:5} {:10} {:5} {:6.1} {:6} {:4} {:10.2} {:10.0} % {:6.0} % {:8.1} {:10.0} | {:.0}",
+            if row.tracked { "klt" } else { "keys" },
+            row.model.name(),
+            format!("{:?}", row.pick).to_lowercase(),
+            told.mean,
+            told.median,
+            told.p90,
+            told.mean / linear(row.pick),
+            100.0 * told.unfinished,
+            100.0 * told.at_once,
+            told.ms,
+            told.strokes[0],
+            told.strokes[1]
+        );
+    }
+}
