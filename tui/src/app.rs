@@ -23,6 +23,8 @@ pub mod opening;
 mod pace;
 pub mod panel;
 mod pictures;
+pub mod plotted;
+mod plotting;
 pub mod queue;
 mod reviewing;
 mod run;

@@ -13,6 +13,7 @@ pub mod export;
 pub mod generate;
 mod ground;
 pub mod import;
+pub mod plots;
 pub mod progress;
 pub mod retrack;
 pub mod review;

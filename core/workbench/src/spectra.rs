@@ -16,9 +16,9 @@ pub use honami_motion::spectrum::Peak;
 use crate::error::WorkbenchError;
 
 /// How many times the noise around it the power of a peak of one track must be: foliage has broad peaks.
-const OVER_FLOOR: f64 = 3.0;
+pub(crate) const OVER_FLOOR: f64 = 3.0;
 /// The same for the median of several tracks: its noise is quieter, and its peaks are broader.
-const OVER_FLOOR_OF_MANY: f64 = 1.5;
+pub(crate) const OVER_FLOOR_OF_MANY: f64 = 1.5;
 
 /// What sways.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -137,7 +137,7 @@ fn of(
 }
 
 /// The position in every frame of the clip where the track is seen.
-fn positions(span: &Span, n_frames: u32) -> Vec<Option<[f32; 2]>> {
+pub(crate) fn positions(span: &Span, n_frames: u32) -> Vec<Option<[f32; 2]>> {
     let seen = |frame| span.get(frame).filter(|s| s.status.is_seen()).map(|s| [s.x, s.y]);
     (0..n_frames).map(seen).collect()
 }

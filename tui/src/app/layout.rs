@@ -43,7 +43,7 @@ impl Layout {
         // Beside the picture where both have room, else over its right part; on the narrowest screens over all of it.
         let taken = match state.panel {
             None => 0,
-            Some(_) if columns > COLUMN + OVER_COLUMN => COLUMN + 1,
+            Some(_) if columns > COLUMN + OVER_COLUMN && !state.panel_is_wide => COLUMN + 1,
             Some(_) => columns,
         };
         let is_beside = columns >= taken + BESIDE_COLUMN;

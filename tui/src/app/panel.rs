@@ -13,11 +13,14 @@ pub enum Panel {
     KeyFrames,
     /// The undo tree.
     History,
+    /// Curves of the selected track or its group.
+    Plots,
 }
 
 impl Panel {
     /// All of them, in the order in which they follow each other.
-    pub const ALL: &[Self] = &[Self::Queue, Self::Tracks, Self::Groups, Self::KeyFrames, Self::History];
+    pub const ALL: &[Self] =
+        &[Self::Queue, Self::Tracks, Self::Groups, Self::KeyFrames, Self::History, Self::Plots];
 
     /// What its title calls it.
     #[must_use]
@@ -28,6 +31,7 @@ impl Panel {
             Self::Groups => "groups",
             Self::KeyFrames => "key-frames",
             Self::History => "history",
+            Self::Plots => "plots",
         }
     }
 

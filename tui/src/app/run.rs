@@ -10,7 +10,10 @@ use super::effects::World;
 use super::layout::{Layout, Lens};
 use super::opening::{Opened, Opening, Plan};
 use super::pace::Pace;
+use super::panel::Panel;
 use super::pictures::Pictures;
+use super::plotted::Plotted;
+use super::plotting::Plotting;
 use super::seat::Seat;
 use super::state::{Display, Link, Notice, State};
 use super::stills::{self, Stills};
@@ -81,6 +84,7 @@ struct App {
     pace: Pace,
     /// Pictures dropped while playing.
     tally: Tally,
+    plotting: Plotting,
     /// When the figures of the link were last looked at.
     link_seen: Duration,
     /// When to keep where the user is.
@@ -99,6 +103,7 @@ impl App {
             is_exact: false,
             pace: Pace::default(),
             tally: Tally::default(),
+            plotting: Plotting::new(screen.waker()),
             link_seen: Duration::ZERO,
             seat_due: None,
         };
@@ -231,8 +236,23 @@ impl App {
         Ok(false)
     }
 
+    /// Has the curves of the plots worked out, and takes them when they are.
+    fn plot(&mut self) -> anyhow::Result<()> {
+        if self.state.panel == Some(Panel::Plots)
+            && let Some(request) = Plotted::request(&mut self.state)
+        {
+            self.plotting.ask(request)?;
+        }
+        if let Some((subject, plots)) = self.plotting.news()? {
+            update(&mut self.state, Msg::Fact(Fact::Plots(subject, plots)));
+            self.frame = None;
+        }
+        Ok(())
+    }
+
     /// Paints, if there is anything to paint and the link has room for it.
     fn show(&mut self, screen: &mut Screen, world: &World) -> anyhow::Result<()> {
+        self.plot()?;
         let n_ready = world.n_ready();
         if n_ready != self.state.n_ready {
             update(&mut self.state, Msg::Fact(Fact::Ready(n_ready)));

@@ -14,6 +14,7 @@ use super::keymap::KeyMap;
 use super::menu::Menu;
 use super::motion::Motion;
 use super::panel::Panel;
+use super::plotted::Plotted;
 use super::queue::Opened;
 use super::tracks::{Groups, TrackRow};
 use super::view::theme::Theme;
@@ -69,6 +70,10 @@ pub struct State {
     pub motion: Motion,
     /// Whether all tracks are marked in the picture, not only the selected one.
     pub marks_all: bool,
+    /// What the plots show.
+    pub plotted: Plotted,
+    /// Whether the panel lies over all of the picture.
+    pub panel_is_wide: bool,
     /// What the column shows; `None` hides it.
     pub panel: Option<Panel>,
     /// Steps of magnification, each twice the last: 0 shows all of the picture. See [`Lens`](super::layout::Lens).
@@ -237,6 +242,8 @@ impl State {
             count: None,
             motion: Motion::default(),
             marks_all: true,
+            plotted: Plotted::default(),
+            panel_is_wide: false,
             panel: None,
             zoom: 0,
             centre,

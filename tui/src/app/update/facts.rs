@@ -4,8 +4,10 @@ use honami_model::history::{Entry, EntryId};
 use honami_workbench::review::Told;
 
 use super::{Mode, State};
+use crate::app::plotted::Subject;
 use crate::app::state::{Display, Job, Link, Notice};
 use crate::app::tracks::{Groups, TrackRow};
+use honami_workbench::plots::Plots;
 
 /// Something that has changed in the world.
 #[derive(Clone, Debug)]
@@ -30,6 +32,8 @@ pub enum Fact {
     Dropped(Option<[u32; 2]>),
     /// What is known of the terminal.
     Display(Display),
+    /// Curves were worked out.
+    Plots((Subject, u64), std::sync::Arc<Plots>),
     /// So many frames can be shown without waiting.
     Ready(u32),
     /// The undo tree has these entries more, and the document stands there.
@@ -40,6 +44,7 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
     match fact {
         Fact::Tracks(rows) => {
             state.tracks = rows;
+            state.plotted.revision += 1;
             if state.selected.is_none_or(|track| state.row(track).is_none()) {
                 state.selected = state.tracks.first().map(|row| row.id);
             }
@@ -51,7 +56,11 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
         Fact::Review(told) => {
             told.into_iter().for_each(|(track, segments)| state.review.set(track, segments));
         }
-        Fact::Groups(groups) => state.groups = groups,
+        Fact::Groups(groups) => {
+            state.groups = groups;
+            state.plotted.revision += 1;
+        }
+        Fact::Plots(subject, plots) => state.plotted.plots = Some((subject, plots)),
         Fact::Tracker(tracker) => state.tracker = tracker,
         Fact::Placed(track) => {
             state.selected = Some(track);

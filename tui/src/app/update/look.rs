@@ -3,6 +3,7 @@
 use super::actions::count;
 use super::{Mode, State, complain, say};
 use crate::app::layout::{Layout, Lens};
+use crate::app::panel::Panel;
 
 /// One pan moves the view by this part of it.
 const PAN: f64 = 0.25;
@@ -92,4 +93,15 @@ pub(super) fn follow(state: &mut State) {
         super::time::keep_in_view(state);
     }
     say(state, if state.follow { "following the selected track" } else { "not following" });
+}
+
+/// Plots the selected track's group, or the track again.
+pub(super) fn plot_group(state: &mut State) {
+    let has_group =
+        state.selected.is_some_and(|id| state.groups.as_ref().is_some_and(|g| g.of(id).is_some()));
+    state.plotted.of_group = !state.plotted.of_group && has_group;
+    state.panel = Some(Panel::Plots);
+    if !has_group {
+        complain(state, "the selected track is in no group; c groups the tracks");
+    }
 }

@@ -6,6 +6,7 @@
 mod groups;
 mod history;
 mod key_frames;
+mod plots;
 mod queue;
 mod tracks;
 
@@ -51,14 +52,16 @@ trait List {
     fn pick(&self, i: usize) -> Option<Pick>;
 }
 
-fn list<'a>(state: &'a State, panel: Panel) -> Box<dyn List + 'a> {
-    match panel {
+/// The list of a panel; `None` for one that is no list.
+fn list<'a>(state: &'a State, panel: Panel) -> Option<Box<dyn List + 'a>> {
+    Some(match panel {
         Panel::Queue => Box::new(queue::QueueList::of(state)),
         Panel::Tracks => Box::new(tracks::Tracks::of(state)),
         Panel::Groups => Box::new(groups::GroupList::of(state)),
         Panel::KeyFrames => Box::new(key_frames::KeyFrames::of(state)),
         Panel::History => Box::new(history::History(state)),
-    }
+        Panel::Plots => return None,
+    })
 }
 
 /// Rows of the list, and the first of them that is seen.
@@ -80,7 +83,10 @@ pub(super) fn draw(state: &State, area: Rect, frame: &mut Frame) {
         area
     };
     put(frame, inside, 0, &title(panel, inside.width));
-    let list = list(state, panel);
+    let Some(list) = list(state, panel) else {
+        let below = Rect { y: inside.y + 1, height: inside.height.saturating_sub(1), ..inside };
+        return plots::draw(state, below, frame);
+    };
     if list.len() == 0 {
         put(frame, inside, 1, &Line::styled(list.nothing(), style::DIM));
         return;
@@ -98,7 +104,7 @@ pub(super) fn draw(state: &State, area: Rect, frame: &mut Frame) {
 
 /// The panel's name, then those that follow it, as far as there is room.
 fn title(panel: Panel, width: u16) -> Line<'static> {
-    let mut line = Line::styled(panel.name(), style::ACCENT.patch(style::BOLD));
+    let mut line = Line::from(Span::styled(panel.name(), style::ACCENT.patch(style::BOLD)));
     let mut next = Panel::after(Some(panel));
     while next != Some(panel) {
         let name = Span::styled(format!("  {}", next.map_or("hide", Panel::name)), style::DIM);
@@ -119,6 +125,7 @@ pub fn pick_at(state: &State, area: Rect, row: u16) -> Option<Pick> {
     let Some(at) = row.checked_sub(area.y + 2) else {
         return (row == area.y).then(|| Pick::Panel(Panel::after(Some(panel))));
     };
+    let list = list?;
     let (n_rows, first) = window(&*list, area);
     let i = first + usize::from(at);
     (usize::from(at) < n_rows && i < list.len()).then(|| list.pick(i)).flatten()
@@ -127,7 +134,7 @@ pub fn pick_at(state: &State, area: Rect, row: u16) -> Option<Pick> {
 /// What lies so many rows after the current one, within the list.
 #[must_use]
 pub fn pick_beside(state: &State, by: i64) -> Option<Pick> {
-    let list = list(state, state.panel?);
+    let list = list(state, state.panel?)?;
     let last = list.len().checked_sub(1)?;
     let by = isize::try_from(by).ok()?;
     list.pick(list.current().map_or(0, |at| at.saturating_add_signed(by)).min(last))

@@ -311,7 +311,7 @@ pub(super) fn notices(state: &State, area: Rect, frame: &mut Frame) {
 }
 
 /// A text in rows, broken between words.
-fn wrapped(text: &str, width: usize) -> Vec<String> {
+pub(super) fn wrapped(text: &str, width: usize) -> Vec<String> {
     let mut rows = vec![String::new()];
     for word in text.split_whitespace() {
         let used = rows.last().map_or(0, |row| Line::raw(row.as_str()).width());

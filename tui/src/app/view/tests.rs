@@ -5,8 +5,9 @@ use std::path::PathBuf;
 
 use super::*;
 use crate::app::fixture;
+use crate::app::plotted::{Plotted, Subject};
 use crate::app::state::{Job, Link, Notice};
-use crate::app::update::{Msg, update};
+use crate::app::update::{Fact, Msg, update};
 use honami_model::track::TrackId;
 use ratatui::style::{Color, Modifier};
 
@@ -137,8 +138,6 @@ fn screens() {
         state.read_only = Some("ada@lab2 (pid 4711) since 2026-11-22T02:27:01Z".to_owned());
     });
     check("zoomed_80x24", small, "z z f", |_| {});
-    check("motion_80x24", small, "v v", |_| {});
-    check("dial_120x40", large, "v d 3 h", |_| {});
     check("unmarked_80x24", small, "M", |_| {});
     check("tiny_40x12", (40, 12), "", |_| {});
     check("least_20x5", (20, 5), "", |_| {});
@@ -150,10 +149,58 @@ fn screens() {
 }
 
 #[test]
+fn screens_of_motion_and_plots() {
+    let (small, large) = ((80, 24), (120, 40));
+    check("motion_80x24", small, "v v", |_| {});
+    check("dial_120x40", large, "v d 3 h", |_| {});
+    check("plots_80x24", small, "P p", plot);
+    check("plots_120x40", large, "", |state| {
+        press(state, "P G");
+        plot(state);
+    });
+    check("plots_wide_80x24", small, "P p P w", plot);
+    check("plots_brief_80x24", small, "P p", |state| {
+        let row = &mut state.tracks[0];
+        row.span = std::sync::Arc::new(honami_model::track::Span {
+            first_frame: 38,
+            samples: row.span.samples[38..42].to_vec(),
+        });
+        plot(state);
+    });
+}
+
+/// Works out what the plots show.
+fn plot(state: &mut State) {
+    let request = Plotted::request(state).unwrap();
+    let plots = honami_workbench::plots::of(&request.tracks, &request.times);
+    update(state, Msg::Fact(Fact::Plots(request.subject, std::sync::Arc::new(plots))));
+}
+
+#[test]
+fn plots_are_worked_out_once_for_each_state_of_the_tracks() {
+    let mut state = fixture::state();
+    press(&mut state, "P p");
+    let asks =
+        |state: &mut State| Plotted::request(state).map(|request| (request.subject, request.tracks.len()));
+    let track = |id| Subject::Track(TrackId(id));
+    assert_eq!(asks(&mut state), Some(((track(1), 0), 1)));
+    assert_eq!(asks(&mut state), None);
+    press(&mut state, "j");
+    assert_eq!(asks(&mut state), Some(((track(2), 0), 1)));
+    let rows = state.tracks.clone();
+    update(&mut state, Msg::Fact(Fact::Tracks(rows)));
+    assert_eq!(asks(&mut state), Some(((track(2), 1), 1)));
+    press(&mut state, "P G");
+    assert_eq!(asks(&mut state), Some(((Subject::Group(0), 1), 2)));
+    update(&mut state, Msg::Fact(Fact::Groups(None)));
+    assert_eq!(asks(&mut state), Some(((track(2), 2), 1)));
+}
+
+#[test]
 fn no_size_panics() {
     for columns in [1, 2, 7, 35, 36, 76, 77, 300] {
         for rows in [1, 2, 3, 7, 8, 100] {
-            for keys in ["", "t", ":", "g", "m", "Tab", "z"] {
+            for keys in ["", "t", ":", "g", "m", "Tab", "z", "v v", "P p"] {
                 let mut state = fixture::state();
                 state.size = (columns, rows);
                 press(&mut state, keys);
