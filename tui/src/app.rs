@@ -7,6 +7,7 @@
 pub mod action;
 pub mod clock;
 pub mod config;
+pub mod correcting;
 mod effects;
 #[cfg(test)]
 mod fixture;

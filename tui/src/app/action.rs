@@ -13,6 +13,8 @@ pub enum Context {
     Place,
     /// Moving a sample.
     Move,
+    /// Sliding a sample along its path.
+    Slide,
     /// Setting the parameters of a plugin.
     Form,
     /// Choosing from a list by typing a part of its name.
@@ -29,10 +31,11 @@ pub enum Context {
 
 impl Context {
     /// All of them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Review,
         Self::Place,
         Self::Move,
+        Self::Slide,
         Self::Form,
         Self::Menu,
         Self::Dial,
@@ -48,6 +51,7 @@ impl Context {
             Self::Review => "review",
             Self::Place => "place",
             Self::Move => "move",
+            Self::Slide => "slide",
             Self::Form => "form",
             Self::Menu => "menu",
             Self::Dial => "dial",
@@ -102,21 +106,21 @@ macro_rules! table {
 
 table! {
     // Moving about: hjkl and the arrows.
-    Left "left" ["h" "Left"] [Review "" Place "1 px" Move "1 px" Form "change" Dial "turn"]
+    Left "left" ["h" "Left"] [Review "" Place "1 px" Move "1 px" Form "change" Dial "turn" Slide "1 frame"]
         "left: the previous frame, one pixel, or a smaller value"
     Down "down" ["j" "Down"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "narrower" History ""]
         "down: the next track, one pixel, or the next row"
     Up "up" ["k" "Up"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "wider" History ""]
         "up: the previous track, one pixel, or the previous row"
-    Right "right" ["l" "Right"] [Review "" Place "1 px" Move "1 px" Form "change" Dial "turn"]
+    Right "right" ["l" "Right"] [Review "" Place "1 px" Move "1 px" Form "change" Dial "turn" Slide "1 frame"]
         "right: the next frame, one pixel, or a larger value"
-    FineLeft "fine-left" ["H" "Shift-Left"] [Place ".25" Move ".25" Form ""] "a quarter of a pixel left, or a tenth of a value's range down"
+    FineLeft "fine-left" ["H" "Shift-Left"] [Place ".25" Move ".25" Form "" Slide ".25"] "a quarter of a pixel left, or a tenth of a value's range down"
     FineDown "fine-down" ["J" "Shift-Down"] [Place ".25" Move ".25"] "a quarter of a pixel down"
     FineUp "fine-up" ["K" "Shift-Up"] [Place ".25" Move ".25"] "a quarter of a pixel up"
-    FineRight "fine-right" ["L" "Shift-Right"] [Place ".25" Move ".25" Form ""] "a quarter of a pixel right, or a tenth of a value's range up"
-    Accept "accept" ["Enter"] [Place "place" Move "keep" Form "run" Menu "choose" Prompt "go" Review "" Dial "keep" History "go there"]
+    FineRight "fine-right" ["L" "Shift-Right"] [Place ".25" Move ".25" Form "" Slide ".25"] "a quarter of a pixel right, or a tenth of a value's range up"
+    Accept "accept" ["Enter"] [Place "place" Move "keep" Form "run" Menu "choose" Prompt "go" Review "" Dial "keep" History "go there" Slide "keep"]
         "accept: keep, place, run or go; while reviewing, the open item, or the sample here as a key-frame"
-    Back "back" ["Esc" "Ctrl-c"] [Place "back" Move "back" Form "back" Menu "back" Prompt "back" Label "back" Review "" Dial "back" History "back"]
+    Back "back" ["Esc" "Ctrl-c"] [Place "back" Move "back" Form "back" Menu "back" Prompt "back" Label "back" Review "" Dial "back" History "back" Slide "back"]
         "back: leave what is open, undone; while reviewing, stop the job or the clip"
     // Time.
     PlayPause "play" ["space"] [Review "play"] "play or pause; 200 space: at 200 %, from now on"
@@ -131,12 +135,12 @@ table! {
     Bisect "bisect" ["|"] [Review ""] "go half-way between the key-frames around"
     Reject "reject" ["R"] [Review ""] "the open item's track is of no use; on to the next item"
     Later "later" ["E"] [Review ""] "put the open item off; on to the next item"
-    StepForward "step" ["."] [Review ""] "one frame forward; a number before it steps so many"
-    StepBack "step-back" [","] [Review ""] "one frame back"
+    StepForward "step" ["."] [Review "" Move "" Slide ""] "one frame forward; a number before it steps so many"
+    StepBack "step-back" [","] [Review "" Move "" Slide ""] "one frame back"
     LeapForward "leap" [">"] [Review ""] "ten frames forward"
     LeapBack "leap-back" ["<"] [Review ""] "ten frames back"
-    NextKey "next-key-frame" ["]"] [Review ""] "go to the next key-frame of the selected track"
-    PreviousKey "previous-key-frame" ["["] [Review ""] "go to the previous key-frame of the selected track"
+    NextKey "next-key-frame" ["]"] [Review "" Move "" Slide ""] "go to the next key-frame of the selected track"
+    PreviousKey "previous-key-frame" ["["] [Review "" Move "" Slide ""] "go to the previous key-frame of the selected track"
     GoStart "go-start" ["g s" "Home"] [Review ""] "go to the first frame"
     GoEnd "go-end" ["g e" "End"] [Review ""] "go to the last frame"
     GoFrame "go-frame" ["g f"] [Review ""] "go to a frame by its number (120 g f goes at once)"
@@ -147,6 +151,10 @@ table! {
     Sort "sort-tracks" ["S"] [Review ""] "sort the tracks by doubt, the worst first, or by number"
     // Work.
     MoveSample "move-sample" ["m"] [Review "move"] "move the sample here; it becomes a key-frame"
+    CorrectTime "correct-time" ["T"] [Review ""] "slide the sample here along its path: what is right in space but not in time"
+    WalkForward "walk" [")"] [Move ""] "walk one sample on along the path, while the picture stays"
+    WalkBack "walk-back" ["("] [Move ""] "walk one sample back along the path, while the picture stays"
+    Pin "pin" ["*"] [Move "end here"] "make the sample walked to, or looked at, a key-frame as it is: the correction ends there"
     AddFeature "add-feature" ["a"] [Review "add"] "add a feature by hand"
     DeleteTrack "delete-track" ["d"] [Review ""] "delete the selected track (u brings it back)"
     ClearKey "clear-key-frame" ["X"] [Review ""] "clear the key-frame here (u brings it back)"
@@ -158,12 +166,12 @@ table! {
     Undo "undo" ["u"] [Review ""] "undo: take the last edit back"
     Redo "redo" ["Ctrl-r"] [Review ""] "redo: do again what was undone"
     // Looking.
-    ZoomIn "zoom-in" ["z"] [Review "" Place "" Move ""] "look closer, at the selected track or the cursor"
-    ZoomOut "zoom-out" ["Z"] [Review "" Place "" Move ""] "look from farther away"
-    PanLeft "pan-left" ["Ctrl-Left"] [Review ""] "look a quarter of the view further left"
-    PanDown "pan-down" ["Ctrl-Down"] [Review ""] "look a quarter of the view further down"
-    PanUp "pan-up" ["Ctrl-Up"] [Review ""] "look a quarter of the view further up"
-    PanRight "pan-right" ["Ctrl-Right"] [Review ""] "look a quarter of the view further right"
+    ZoomIn "zoom-in" ["z"] [Review "" Place "" Move "" Slide ""] "look closer, at the selected track or the cursor"
+    ZoomOut "zoom-out" ["Z"] [Review "" Place "" Move "" Slide ""] "look from farther away"
+    PanLeft "pan-left" ["Ctrl-Left"] [Review "" Place "" Move ""] "look a quarter of the view further left; a tenth of a pixel while placing or moving"
+    PanDown "pan-down" ["Ctrl-Down"] [Review "" Place "" Move ""] "look a quarter of the view further down; a tenth of a pixel while placing or moving"
+    PanUp "pan-up" ["Ctrl-Up"] [Review "" Place "" Move ""] "look a quarter of the view further up; a tenth of a pixel while placing or moving"
+    PanRight "pan-right" ["Ctrl-Right"] [Review "" Place "" Move ""] "look a quarter of the view further right; a tenth of a pixel while placing or moving"
     Centre "centre" ["C"] [Review ""] "bring the selected track to the middle"
     Follow "follow" ["f"] [Review ""] "keep the selected track in the middle, or not"
     MotionColours "motion" ["v v"] [Review ""] "show motion in colours: hue is direction, strength is speed; or not"
@@ -171,7 +179,7 @@ table! {
     MotionGainDown "motion-gain-down" ["v -"] [Review ""] "weaker colours of motion"
     MotionDial "motion-dial" ["v d"] [Review ""] "choose the directions of motion that are shown"
     Marks "marks" ["M"] [Review ""] "mark all tracks in the picture, or only the selected one"
-    Column "next-panel" ["Tab"] [Review ""] "show the next panel beside the picture; after the last, none"
+    Column "next-panel" ["Tab"] [Review "" Move "model"] "show the next panel beside the picture, after the last none; while moving, offer the next correction"
     PanelQueue "panel-queue" ["P q"] [Review ""] "show or hide the queue of doubtful segments"
     PanelTracks "panel-tracks" ["P t"] [Review ""] "show or hide the tracks"
     PanelGroups "panel-groups" ["P g"] [Review ""] "show or hide the groups"
@@ -184,12 +192,12 @@ table! {
     NextTheme "next-theme" ["v t"] [Review ""] "change the colours: the next theme"
     Mouse "mouse" ["v m"] [Review ""] "leave the mouse to the terminal, for selecting text, or take it back"
     History "history" ["U" "P u"] [Review "" History ""] "show the undo tree; j and k choose an edit there, Enter goes to it"
-    Palette "palette" [":"] [Review "" Place "" Move "" Form "" Dial "" History ""] "find any action by name, key or what it does"
-    Help "help" ["?"] [Review "help" Place "" Move "" Form "help" Dial "help" History "help"] "list what works here; Enter does it"
-    Redraw "redraw" ["Ctrl-l"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label "" History ""] "paint the screen anew"
-    Suspend "suspend" ["Ctrl-z"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label "" History ""] "stop honami until `fg`"
-    Quit "quit" ["q"] [Review "leave" Place "" Move "" Form "" Dial "" History ""] "back; while reviewing, leave honami"
-    Leave "leave" ["Q"] [Review "" Place "" Move "" Form "" Dial "" History ""] "leave honami (everything is kept)"
+    Palette "palette" [":"] [Review "" Place "" Move "" Form "" Dial "" History "" Slide ""] "find any action by name, key or what it does"
+    Help "help" ["?"] [Review "help" Place "" Move "" Form "help" Dial "help" History "help" Slide ""] "list what works here; Enter does it"
+    Redraw "redraw" ["Ctrl-l"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label "" History "" Slide ""] "paint the screen anew"
+    Suspend "suspend" ["Ctrl-z"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label "" History "" Slide ""] "stop honami until `fg`"
+    Quit "quit" ["q"] [Review "leave" Place "" Move "" Form "" Dial "" History "" Slide ""] "back; while reviewing, leave honami"
+    Leave "leave" ["Q"] [Review "" Place "" Move "" Form "" Dial "" History "" Slide ""] "leave honami (everything is kept)"
 }
 
 impl Action {

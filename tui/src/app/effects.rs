@@ -37,6 +37,8 @@ pub(super) struct World {
     n_told: usize,
     /// Where the user was when it was last kept.
     seat: Seat,
+    /// The track that a correction is open on.
+    studied: Option<TrackId>,
 }
 
 /// Facts, or the line that says why there are none.
@@ -46,7 +48,7 @@ impl World {
     pub(super) fn new(session: Session, waker: Waker) -> Self {
         let reviewing = Reviewing::start(Arc::clone(&session.media), waker.clone()).ok();
         let (rows, seat) = (BTreeMap::new(), Seat::default());
-        Self { session, waker, running: None, reviewing, rows, n_told: 0, seat }
+        Self { session, waker, running: None, reviewing, rows, n_told: 0, seat, studied: None }
     }
 
     /// The state to begin with, of the usual size.
@@ -112,6 +114,10 @@ impl World {
         let done = match effect {
             Effect::Commit(transaction, hint) => self.commit(transaction, hint),
             Effect::Judge(found) => self.judge(found),
+            Effect::Study(track) => {
+                self.studied = Some(track);
+                self.layers().map(|fact| fact.into_iter().collect())
+            }
             Effect::AddFeature { frame, at } => self.add_feature(frame, at),
             Effect::Undo(n) => self.travel("undone", n, Project::undo),
             Effect::Jump(to) => self.jump(to),
@@ -131,6 +137,7 @@ impl World {
     fn commit(&mut self, transaction: Transaction, hint: Hint) -> Facts {
         let line = format!("{} ({hint})", transaction.label);
         self.session.project.commit(transaction)?;
+        self.studied = None;
         self.shown_and(said(line))
     }
 
@@ -142,6 +149,12 @@ impl World {
         let time = honami_workbench::store::now();
         let judgement = Judgement { end_frame: frames.end, verdict, reasons, reviewer, time, effort, seal };
         self.commit(Transaction::judge(track, frames.start, judgement), "u undoes")
+    }
+
+    /// What the studied track is made from.
+    fn layers(&self) -> Result<Option<Fact>, WorkbenchError> {
+        let Some(track) = self.studied else { return Ok(None) };
+        Ok(Some(Fact::Layers(self.session.project.layers(track)?.map(Arc::new))))
     }
 
     fn add_feature(&mut self, frame: u32, [x, y]: [f32; 2]) -> Facts {
@@ -323,7 +336,9 @@ impl World {
         let new = history.entries().get(self.n_told..).unwrap_or_default().to_vec();
         self.n_told = history.entries().len();
         let told = Fact::History(new, history.head());
-        Ok(vec![Fact::Tracks(rows), Fact::Groups(groups), Fact::Tracker(tracker), told])
+        let mut facts = vec![Fact::Tracks(rows), Fact::Groups(groups), Fact::Tracker(tracker), told];
+        facts.extend(self.layers()?);
+        Ok(facts)
     }
 }
 

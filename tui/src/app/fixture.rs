@@ -1,8 +1,11 @@
 //! A small project for tests: 100 frames at 25 per second, tracks 1, 2 and 7, three leaves of a hierarchy.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use honami_model::clip::{Clip, FrameTimes};
+use honami_model::correct::Layers;
+use honami_model::document::{Key, Origin, RunId, Track};
 use honami_model::hierarchy::{Dendrogram, Merge};
 use honami_model::history::{Entry, EntryId};
 use honami_model::track::{Quality, Sample, Source, Span, Status, TrackId};
@@ -14,6 +17,7 @@ use super::form::{Plugin, Task};
 use super::layout::Lens;
 use super::state::State;
 use super::tracks::{Groups, TrackRow};
+use super::update::{Effect, Fact, Msg, update};
 use super::view::Shot;
 
 /// The state that tests begin with.
@@ -75,6 +79,45 @@ fn row(id: u32, frames: std::ops::Range<u32>, keys: &[u32]) -> TrackRow {
     };
     let span = Span { first_frame: frames.start, samples: frames.map(sample).collect() };
     TrackRow::new(TrackId(id), None, Arc::new(span))
+}
+
+/// What the world tells of a track when it is asked: its key-frames, over one run with all its samples.
+pub(super) fn layers(state: &State, track: TrackId) -> Option<Layers> {
+    let row = state.row(track)?;
+    let key = |frame: &u32| Some((*frame, row.at(*frame).map(|[x, y]| Key::set(x, y))?));
+    let track = Track {
+        origin: Origin::Run(RunId(1)),
+        name: row.name.clone(),
+        keys: row.keys.iter().filter_map(key).collect(),
+        over: BTreeMap::new(),
+        judgements: BTreeMap::new(),
+        deleted: false,
+    };
+    Some(Layers { id: row.id, track, runs: vec![(RunId(1), Span::clone(&row.span))] })
+}
+
+/// Presses keys, as the program does: what it asks the project is answered. Returns what else is to be done.
+pub(super) fn press(state: &mut State, keys: &str) -> Vec<Effect> {
+    let mut effects = Vec::new();
+    for key in keys.split_whitespace() {
+        effects.extend(send(state, Msg::Key(key.parse().expect("a key"))));
+    }
+    effects
+}
+
+/// Sends one message, as the program does.
+pub(super) fn send(state: &mut State, msg: Msg) -> Vec<Effect> {
+    let mut left = Vec::new();
+    for effect in update(state, msg) {
+        match effect {
+            Effect::Study(track) => {
+                let layers = layers(state, track).map(Arc::new);
+                update(state, Msg::Fact(Fact::Layers(layers)));
+            }
+            other => left.push(other),
+        }
+    }
+    left
 }
 
 /// Several hundred tracks more, beside and above one another.

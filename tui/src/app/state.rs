@@ -8,6 +8,7 @@ use honami_workbench::review::Review;
 
 use super::action::Context;
 use super::clock::Play;
+use super::correcting::{Moving, Tool};
 use super::form::{Form, Plugin};
 use super::history::Tree;
 use super::keymap::KeyMap;
@@ -123,13 +124,8 @@ pub enum Mode {
     Review,
     /// Choosing where a new feature goes; image pixels.
     Place([f32; 2]),
-    /// Moving the selected track's sample: where it is shown, and where it will be; image pixels.
-    Move {
-        /// Where it is shown.
-        from: [f32; 2],
-        /// Where it will be.
-        to: [f32; 2],
-    },
+    /// Moving a sample of the selected track.
+    Move(Box<Moving>),
     /// Setting the parameters of a plugin.
     Form(Box<Form>),
     /// Choosing from a list.
@@ -156,7 +152,10 @@ impl Mode {
         match self {
             Self::Review => Context::Review,
             Self::Place(_) => Context::Place,
-            Self::Move { .. } => Context::Move,
+            Self::Move(moving) => match moving.tool {
+                Tool::Place { .. } => Context::Move,
+                Tool::Slide(_) => Context::Slide,
+            },
             Self::Form(form) if form.typed.is_some() => Context::Prompt,
             Self::Form(_) => Context::Form,
             Self::Menu(_) => Context::Menu,

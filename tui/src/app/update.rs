@@ -7,6 +7,7 @@ mod history;
 mod look;
 mod motion;
 mod mouse;
+mod moving;
 mod pick;
 mod queue;
 mod time;
@@ -15,6 +16,7 @@ use std::time::Duration;
 
 use honami_model::edit::Transaction;
 use honami_model::history::EntryId;
+use honami_model::track::TrackId;
 use honami_workbench::cluster::ClusterRequest;
 use honami_workbench::track::TrackRequest;
 
@@ -57,6 +59,8 @@ const UNDO: Hint = "u undoes";
 pub enum Effect {
     /// Commit an edit, and say what may be done next.
     Commit(Transaction, Hint),
+    /// Tell what a track is made from, now and after every change until an edit is committed.
+    Study(TrackId),
     /// Place a new track here; its number is the project's to give.
     AddFeature {
         /// Frame of its first key-frame.
@@ -169,7 +173,7 @@ fn on_text(state: &mut State, text: &str) {
             }
         }
         Mode::Label(_) => chars.for_each(|c| pick::type_label(state, c)),
-        Mode::Review | Mode::Place(_) | Mode::Move { .. } | Mode::Dial(_) | Mode::History { .. } => {
+        Mode::Review | Mode::Place(_) | Mode::Move(_) | Mode::Dial(_) | Mode::History { .. } => {
             for c in chars {
                 state.count = c.to_digit(10).map(|digit| {
                     state.count.unwrap_or(0).saturating_mul(10).saturating_add(digit).min(COUNT_MAX)

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::{Correction, Refused, Shown, keys_in};
 use crate::document::Key;
 use crate::edit::Edit;
-use crate::over::Over;
+use crate::over::{Laid, Over};
 use crate::track::{Sample, Status};
 
 /// Says what is known of the feature in a range of frames; positions stay where they are.
@@ -22,7 +22,8 @@ pub fn mark(shown: &Shown<'_>, frames: Range<u32>, status: Status) -> Result<Cor
     }
     let keys = keys_in(&shown.track.keys, &within);
     let lay = shown.relay(within, |frame| {
-        shown.span.get(frame).map(|sample| shown.laid(frame, Sample { status, ..*sample }))
+        let sample = Sample { status, ..*shown.span.get(frame)? };
+        Some(Some(Over::Sample(Laid { sample, run: None })))
     });
     let marked =
         |&(frame, key): &(u32, Key)| Edit::SetKey { track: shown.id, frame, key: Key { status, ..key } };

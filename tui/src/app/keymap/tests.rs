@@ -46,7 +46,7 @@ fn hints_are_the_live_key_map() {
         let hints = keys.hints(context);
         hints.iter().map(|(k, w)| format!("{k} {w}")).collect::<Vec<_>>().join("  ")
     };
-    assert_eq!(line(Context::Move), "hjkl 1 px  HJKL .25  ⏎ keep  Esc back");
+    assert_eq!(line(Context::Move), "hjkl 1 px  HJKL .25  ⏎ keep  Esc back  * end here  Tab model");
     assert_eq!(line(Context::Menu), "⏎ choose  Esc back");
     let mut changed = keys.clone();
     for binding in &mut changed.bindings {

@@ -1,8 +1,8 @@
 //! Actions, each by its place.
 
 use super::{
-    Action, Effect, Mode, State, choose, complain, edit, history, look, motion, open_menu, pick, queue, say,
-    time,
+    Action, Effect, Mode, State, choose, complain, edit, history, look, motion, moving, open_menu, pick,
+    queue, say, time,
 };
 use honami_model::judgement::Verdict;
 use honami_model::track::TrackSet;
@@ -10,6 +10,7 @@ use honami_workbench::cluster::ClusterRequest;
 use honami_workbench::track::{Area, PointSource, TrackRequest};
 
 use super::time::Pace;
+use crate::app::correcting::nudge_px;
 use crate::app::form::{Features, Form, Task};
 use crate::app::panel::Panel;
 
@@ -54,7 +55,6 @@ pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {
         Action::Later => return queue::judge(state, Some(Verdict::Later)),
         Action::NextKey => time::go_key(state, count(state)),
         Action::PreviousKey => time::go_key(state, -count(state)),
-        Action::MoveSample => edit::begin_move(state),
         Action::AddFeature => edit::begin_place(state),
         Action::ClearKey => return edit::clear_key(state),
         Action::GoLabel => pick::label(state),
@@ -76,20 +76,20 @@ pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {
         Action::Suspend => return vec![Effect::Suspend],
         Action::Mouse => return mouse(state),
         Action::History => history::toggle(state),
-        other => look_about(state, other),
+        other => return look_about(state, other),
     }
     Vec::new()
 }
 
 /// Actions that change only what is seen.
-fn look_about(state: &mut State, action: Action) {
+fn look_about(state: &mut State, action: Action) -> Vec<Effect> {
     match action {
         Action::ZoomIn => look::zoom(state, count(state)),
         Action::ZoomOut => look::zoom(state, -count(state)),
-        Action::PanLeft => look::pan(state, -1.0, 0.0),
-        Action::PanDown => look::pan(state, 0.0, 1.0),
-        Action::PanUp => look::pan(state, 0.0, -1.0),
-        Action::PanRight => look::pan(state, 1.0, 0.0),
+        Action::PanLeft => return pan(state, -1.0, 0.0),
+        Action::PanDown => return pan(state, 0.0, 1.0),
+        Action::PanUp => return pan(state, 0.0, -1.0),
+        Action::PanRight => return pan(state, 1.0, 0.0),
         Action::Centre => look::centre(state),
         Action::Follow => look::follow(state),
         Action::MotionColours => motion::turn_on(state),
@@ -97,6 +97,7 @@ fn look_about(state: &mut State, action: Action) {
         Action::MotionGainDown => motion::gain(state, -count(state)),
         Action::MotionDial => motion::open_dial(state),
         Action::Marks => state.marks_all = !state.marks_all,
+        Action::Column if matches!(state.mode, Mode::Move(_)) => moving::next_model(state),
         Action::Column => state.panel = Panel::after(state.panel),
         Action::PanelQueue => show_panel(state, Panel::Queue),
         Action::PanelTracks => show_panel(state, Panel::Tracks),
@@ -108,9 +109,31 @@ fn look_about(state: &mut State, action: Action) {
         Action::Glyphs => turn_glyphs(state),
         Action::Stills => turn_stills(state),
         Action::NextTheme => next_theme(state),
-        // The rest are not of this kind; a test asks that no binding is silent.
-        _ => {}
+        other => return correct(state, other),
     }
+    Vec::new()
+}
+
+/// Ctrl and the arrows: finest nudges where a point is moved, else what is seen.
+fn pan(state: &mut State, dx: f32, dy: f32) -> Vec<Effect> {
+    match state.mode {
+        Mode::Place(_) | Mode::Move(_) => return steer(state, dx, dy, 0.1),
+        _ => look::pan(state, dx.into(), dy.into()),
+    }
+    Vec::new()
+}
+
+/// The actions that correct.
+fn correct(state: &mut State, action: Action) -> Vec<Effect> {
+    match action {
+        Action::MoveSample => return moving::begin(state),
+        Action::CorrectTime => return moving::begin_slide(state),
+        Action::WalkForward => moving::walk(state, count(state)),
+        Action::WalkBack => moving::walk(state, -count(state)),
+        Action::Pin => moving::pin(state),
+        other => debug_assert!(false, "{other:?} is done nowhere"),
+    }
+    Vec::new()
 }
 
 /// The number typed before the command, 1 if none.
@@ -126,9 +149,11 @@ fn steer(state: &mut State, dx: f32, dy: f32, px: f32) -> Vec<Effect> {
     match &mut state.mode {
         Mode::Review if columns != 0 => time::step(state, columns),
         Mode::Review => time::step_track(state, rows),
-        Mode::Place(at) | Mode::Move { to: at, .. } => {
-            *at = edit::within(&state.clip, [at[0] + by[0], at[1] + by[1]]);
+        Mode::Place(at) => {
+            let px = nudge_px(state.zoom);
+            *at = edit::within(&state.clip, [at[0] + by[0] * px, at[1] + by[1] * px]);
         }
+        Mode::Move(_) => moving::nudge(state, by),
         Mode::Form(form) if columns != 0 => form.change(columns, px < 1.0),
         Mode::Form(form) => form.step(rows),
         Mode::Menu(menu) => menu.step(rows),
@@ -146,7 +171,7 @@ fn accept(state: &mut State) -> Vec<Effect> {
             None => edit::confirm(state),
         },
         Mode::Place(_) => edit::place(state),
-        Mode::Move { .. } => edit::keep(state),
+        Mode::Move(_) => moving::keep(state),
         Mode::Menu(_) => choose(state),
         Mode::Dial(_) => {
             state.mode = Mode::Review;
@@ -231,7 +256,7 @@ fn erase(state: &mut State) -> Vec<Effect> {
         }
         Mode::Review
         | Mode::Place(_)
-        | Mode::Move { .. }
+        | Mode::Move(_)
         | Mode::Dial(_)
         | Mode::Label(_)
         | Mode::History { .. } => {}

@@ -5,6 +5,7 @@ use honami_model::edit::Transaction;
 use honami_model::track::{Source, TrackId, TrackSet};
 
 use super::{Effect, Mode, State, UNDO, complain, say};
+use crate::app::tracks::TrackRow;
 
 /// Whether edits are possible; says why not.
 pub(super) fn is_writable(state: &mut State) -> bool {
@@ -37,29 +38,16 @@ pub(super) fn place(state: &mut State) -> Vec<Effect> {
     vec![Effect::AddFeature { frame: state.frame, at }]
 }
 
-pub(super) fn begin_move(state: &mut State) {
+/// The selected track, where it can be edited; says why not.
+pub(super) fn selected(state: &mut State) -> Option<TrackRow> {
     if !is_writable(state) {
-        return;
+        return None;
     }
-    let Some(row) = state.selected_row() else {
-        return complain(state, "select a track first: j takes the next, a click takes the nearest");
-    };
-    // Before its first and after its last sample a track can be continued from the nearest.
-    let frames = row.span.frames();
-    let nearest = state.frame.clamp(frames.start, frames.end.saturating_sub(1).max(frames.start));
-    if let Some(at) = row.at(nearest) {
-        super::time::stop(state);
-        state.mode = Mode::Move { from: at, to: at };
+    let row = state.selected_row().cloned();
+    if row.is_none() {
+        complain(state, "select a track first: j takes the next, a click takes the nearest");
     }
-}
-
-pub(super) fn keep(state: &mut State) -> Vec<Effect> {
-    let Mode::Move { to, .. } = std::mem::replace(&mut state.mode, Mode::Review) else { return Vec::new() };
-    let Some(row) = state.selected_row() else { return Vec::new() };
-    let id = row.id;
-    let edit = Transaction::set_key(id, state.frame, to, row.at(state.frame));
-    state.corrected = Some(id);
-    vec![Effect::Commit(edit, "t tracks again from here, u undoes")]
+    row
 }
 
 /// Confirms the sample shown here.

@@ -1,9 +1,12 @@
 //! What the world tells the state.
 
+use std::sync::Arc;
+
+use honami_model::correct::Layers;
 use honami_model::history::{Entry, EntryId};
 use honami_workbench::review::Told;
 
-use super::{Mode, State};
+use super::{Mode, State, moving};
 use crate::app::plotted::Subject;
 use crate::app::state::{Display, Job, Link, Notice};
 use crate::app::tracks::{Groups, TrackRow};
@@ -20,6 +23,8 @@ pub enum Fact {
     Groups(Option<Groups>),
     /// The tracker whose run is on top.
     Tracker(Option<String>),
+    /// What a track is made from; `None` where it is not shown any more.
+    Layers(Option<Arc<Layers>>),
     /// A new track was placed: it becomes the selected one.
     Placed(honami_model::track::TrackId),
     /// A job began, went on, or ended.
@@ -49,10 +54,11 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
                 state.selected = state.tracks.first().map(|row| row.id);
             }
             // The sample being moved is gone: there is nothing to keep.
-            if matches!(state.mode, Mode::Move { .. }) && state.selected_row().is_none() {
+            if matches!(&state.mode, Mode::Move(moving) if state.row(moving.track).is_none()) {
                 state.mode = Mode::Review;
             }
         }
+        Fact::Layers(layers) => moving::on_layers(state, layers),
         Fact::Review(told) => {
             told.into_iter().for_each(|(track, segments)| state.review.set(track, segments));
         }

@@ -15,7 +15,8 @@ fn lens(state: &State) -> Lens {
 /// Looks so many steps closer, at the cursor or the selected track, or from farther away.
 pub(super) fn zoom(state: &mut State, by: i64) {
     let focus = match state.mode {
-        Mode::Place(at) | Mode::Move { to: at, .. } => Some(at),
+        Mode::Place(at) => Some(at),
+        Mode::Move(ref moving) => Some(moving.to()),
         _ => state.selected_at(),
     };
     if let Some(focus) = focus.filter(|_| by > 0) {

@@ -1,6 +1,6 @@
 //! The mouse: selects, places, scrubs; whatever it does, keys do too.
 
-use super::{Effect, Mode, State, history, look, queue, time};
+use super::{Effect, Mode, State, history, look, moving, queue, time};
 use crate::app::layout::{Layout, Lens, bar, frame_at};
 use crate::app::view::column::{self, Pick};
 use crate::term::input::{Mouse, MouseKind};
@@ -20,7 +20,7 @@ pub(super) fn on_mouse(state: &mut State, mouse: Mouse) -> Vec<Effect> {
                 Mode::Form(form) => form.step(by),
                 Mode::Review if layout.column.contains(here) => pick(state, column::pick_beside(state, by)),
                 Mode::Review if layout.time.contains(here) => time::step(state, by),
-                Mode::Review | Mode::Place(_) | Mode::Move { .. } => {
+                Mode::Review | Mode::Place(_) | Mode::Move(_) => {
                     if let Some(point) = lens.point_of(mouse.column, mouse.row) {
                         look::zoom_at(state, -by, point);
                     }
@@ -37,7 +37,7 @@ pub(super) fn on_mouse(state: &mut State, mouse: Mouse) -> Vec<Effect> {
             }
         }
         MouseKind::Press(0) | MouseKind::Drag(0) if layout.time.contains(here) => {
-            if matches!(state.mode, Mode::Review) {
+            if matches!(state.mode, Mode::Review | Mode::Move(_)) {
                 let n_frames = state.clip.n_frames();
                 time::go(state, frame_at(bar(layout.time, n_frames), n_frames, mouse.column));
             }
@@ -48,7 +48,8 @@ pub(super) fn on_mouse(state: &mut State, mouse: Mouse) -> Vec<Effect> {
         MouseKind::Press(0) | MouseKind::Drag(0) => {
             if let Some(point) = lens.point_of(mouse.column, mouse.row) {
                 match &mut state.mode {
-                    Mode::Place(at) | Mode::Move { to: at, .. } => *at = point,
+                    Mode::Place(at) => *at = point,
+                    Mode::Move(_) => moving::point(state, point),
                     Mode::Review if matches!(mouse.kind, MouseKind::Press(_)) => nearest(state, &lens, point),
                     _ => {}
                 }

@@ -3,7 +3,8 @@
 use super::*;
 use crate::app::action::TABLE;
 use crate::app::clock::Play;
-use crate::app::fixture;
+use crate::app::correcting::Tool;
+use crate::app::fixture::{self, press};
 use crate::app::layout::{Layout, Lens};
 use crate::app::state::Job;
 use crate::app::update::Fact;
@@ -44,17 +45,19 @@ fn start(words: &str) -> State {
     state
 }
 
-/// Presses keys; returns what they asked for.
-fn press(state: &mut State, keys: &str) -> Vec<Effect> {
-    keys.split_whitespace().flat_map(|key| update(state, Msg::Key(key.parse().unwrap()))).collect()
-}
-
 /// The state and the effects in one line.
 fn line(state: &State, effects: &[Effect]) -> String {
     let mut words = vec![match &state.mode {
         Mode::Review => "review".to_owned(),
         Mode::Place([x, y]) => format!("place {x} {y}"),
-        Mode::Move { from, to } => format!("move {} {}", to[0] - from[0], to[1] - from[1]),
+        Mode::Move(moving) => {
+            let (from, to) = (moving.from, moving.to());
+            let mut words = format!("move {} {}", to[0] - from[0], to[1] - from[1]);
+            if let Tool::Slide(frames) = moving.tool {
+                words = format!("slide {frames:.2}");
+            }
+            words
+        }
         Mode::Form(form) => format!("form {:?} row {} typed {:?}", form.task, form.at, form.typed),
         Mode::Menu(menu) => {
             format!("menu {:?} of {}", menu.chosen().map(|r| r.label.as_str()), menu.rows().len())
@@ -325,7 +328,7 @@ fn editing() {
         ("frame=20", "m", "move 0 0 | frame 20 track 1"),
         ("frame=20", "m l l k", "move 2 -1 | frame 20 track 1"),
         ("frame=20", "m 5 l H", "move 4.75 0 | frame 20 track 1"),
-        ("frame=20", "m l Enter", &format!("{sway} | commit track 1: key-frame at 20 (moved 1.0 px)")),
+        ("frame=20", "m l Enter", &format!("{sway} | commit track 1: frames 11-49 corrected, up to 1.0 px")),
         ("frame=20", "m l Esc", sway),
         ("frame=20", "m l q", sway),
         (
@@ -464,10 +467,56 @@ fn menus_do_what_they_say() {
     check(
         "frame=20",
         "m l : z o o m Enter Enter",
-        "review | frame 20 track 1 | commit track 1: key-frame at 20 (moved 1.0 px)",
+        "review | frame 20 track 1 | commit track 1: frames 11-49 corrected, up to 1.0 px",
     );
     check("frame=20", "m ? Esc", "move 0 0 | frame 20 track 1");
     check("", "? Down Down Up Enter", "review | frame 0 track 2");
+}
+
+/// The fixture's track 1 has key-frames at 10 and 50 and a run below; 40 ms a frame.
+#[test]
+fn a_correction_is_seen_before_it_is_kept() {
+    let kept = |frames: &str| format!("review | frame 20 track 1 | commit track 1: frames {frames}");
+    for (from, keys, expect) in [
+        // What becomes of the samples beside it: Tab offers the next model.
+        ("frame=20", "m l Tab Enter", kept("11-49 drawn through key-frames, up to 38.8 px")),
+        ("frame=20", "m l Tab Tab Enter", kept("20").replace("frames 20", "key-frame at 20 (moved 1.0 px)")),
+        ("frame=20", "m l Tab Tab Tab Enter", kept("11-49 corrected, up to 1.0 px")),
+        // Nudges are smaller the closer one looks.
+        ("frame=20 zoom=2", "m 2 l H", "move 0.4375 0 | frame 20 track 1".to_owned()),
+        ("frame=20", "m Ctrl-Right 5 Ctrl-Up", "move 0.10000038 -0.5 | frame 20 track 1".to_owned()),
+        // Other frames are looked at meanwhile; it is kept where it was begun.
+        ("frame=20", "m l 5 .", "move 1 0 | frame 25 track 1".to_owned()),
+        ("frame=20", "m l ] Enter", kept("11-49 corrected, up to 1.0 px")),
+        // A sample of the path becomes a key-frame without leaving the frame.
+        (
+            "frame=20",
+            "m l 5 ) *",
+            "move 1 0 | frame 20 track 1 | said frame 25 becomes a key-frame as it is: the correction ends there"
+                .to_owned(),
+        ),
+        ("frame=20", "m l 5 ) * 9 ( * Enter", kept("16-25 corrected, up to 1.0 px")),
+        ("frame=20", "m l 5 ) * * Enter", kept("11-49 corrected, up to 1.0 px")),
+        ("frame=20", "m l 5 . * Enter", kept("11-25 corrected, up to 1.0 px")),
+        (
+            "frame=20",
+            "m l 3 0 ) *",
+            "move 1 0 | frame 20 track 1 | said frame 50 is a key-frame already: corrections end there"
+                .to_owned(),
+        ),
+        // Along the path: h and l by frames, H and L by quarters; never so far that samples change their order.
+        ("frame=20", "T 2 l H", "slide 1.75 | frame 20 track 1".to_owned()),
+        ("frame=20", "T 9 9 h", "slide -9.50 | frame 20 track 1".to_owned()),
+        ("frame=20", "T 2 l H Enter", kept("11-49 shifted in time, up to 4.6 px")),
+        ("frame=20", "T l Esc", "review | frame 20 track 1".to_owned()),
+        (
+            "frame=80 track=2",
+            "T",
+            "review | frame 80 track 2 | error track 2 has no sample at 80: there is nothing to slide".to_owned(),
+        ),
+    ] {
+        check(from, keys, &expect);
+    }
 }
 
 /// Every binding of every place does something or says why not, and none panics; with Esc the way back is short.
@@ -476,7 +525,8 @@ fn every_binding_answers() {
     let reach = [
         (Context::Review, ""),
         (Context::Place, "a"),
-        (Context::Move, "m"),
+        (Context::Move, "m l"),
+        (Context::Slide, "T"),
         (Context::Form, "t"),
         (Context::Menu, ":"),
         (Context::Prompt, "g f"),
@@ -502,7 +552,7 @@ fn every_binding_answers() {
         press(&mut state, prepared(binding.context, binding.action));
         let before = format!("{state:?}");
         let keys = binding.keys.iter();
-        let effects: Vec<Effect> = keys.flat_map(|key| update(&mut state, Msg::Key(*key))).collect();
+        let effects: Vec<Effect> = keys.flat_map(|key| fixture::send(&mut state, Msg::Key(*key))).collect();
         let answered = !effects.is_empty() || format!("{state:?}") != before;
         assert!(answered, "{binding:?} is silent");
     }
@@ -517,6 +567,7 @@ fn prepared(context: Context, action: Action) -> &'static str {
         (Context::Menu, Action::Erase) => "x",
         (Context::Prompt, Action::Erase) => "1",
         (Context::Review, Action::Back) => "space",
+        (Context::Move, Action::Pin) => ")",
         _ => "",
     }
 }

@@ -92,8 +92,8 @@ pub(super) fn go(state: &mut State, frame: u32) {
         _ => state.play = None,
     }
     state.dropped = None;
-    if let Mode::Move { .. } = state.mode {
-        state.mode = Mode::Review;
+    if let Mode::Move(moving) = &mut state.mode {
+        moving.walked = None;
     }
     keep_in_view(state);
 }

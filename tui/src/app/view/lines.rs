@@ -1,5 +1,7 @@
 //! The lines round the picture: title, track, time, hints, and what happened.
 
+use std::ops::{Range, RangeInclusive};
+
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 
@@ -8,8 +10,9 @@ use honami_workbench::review::Parts;
 
 use super::picture::marks_nth;
 use super::{fill, put, style};
-use crate::app::action::{Action, TABLE};
+use crate::app::action::{Action, Context, TABLE};
 use crate::app::clock::rate_words;
+use crate::app::correcting::{Moving, Tool, nudge_px};
 use crate::app::keymap::shown;
 use crate::app::layout::{Layout, Lens, bar, column_of, frame_at};
 use crate::app::state::{Job, Mode, State};
@@ -167,6 +170,10 @@ pub(super) fn time(state: &State, area: Rect, frame: &mut Frame) {
     frame.cells.set_string(bar.right(), area.y, state.last_frame().to_string(), style::DIM);
     let row = state.selected_row();
     let outliers = state.groups.as_ref().map_or(&[][..], |g| &g.outlier_frames);
+    let affected = match &state.mode {
+        Mode::Move(moving) => moving.affected(),
+        _ => None,
+    };
     let looped = state.play.and_then(|play| play.loop_frames(n));
     for x in bar.left()..bar.right() {
         let frames = frame_at(bar, n, x)..=frame_at(bar, n, x + 1).max(frame_at(bar, n, x) + 1) - 1;
@@ -179,6 +186,7 @@ pub(super) fn time(state: &State, area: Rect, frame: &mut Frame) {
             looped.as_ref().is_some_and(|l| l.contains(frames.start()) || frames.contains(l.start()));
         let outlier = outliers.iter().any(|f| frames.contains(f));
         let (glyph, style) = match () {
+            () if affected.as_ref().is_some_and(|a| overlap(a, &frames)) => ("━", style::ACCENT),
             () if is_looped => (if lost { "░" } else { "═" }, style::ACCENT),
             () if lost => ("░", style::ERROR),
             () if *frames.start() >= state.n_ready.max(1) => ("·", style::DIM),
@@ -196,20 +204,22 @@ pub(super) fn time(state: &State, area: Rect, frame: &mut Frame) {
     frame.cells.set_string(column_of(bar, n, state.frame), area.y, now, style::ACCENT.patch(style::BOLD));
 }
 
+/// Whether some frame is in both.
+fn overlap(range: &Range<u32>, frames: &RangeInclusive<u32>) -> bool {
+    range.start <= *frames.end() && *frames.start() < range.end
+}
+
 pub(super) fn hints(state: &State, area: Rect, frame: &mut Frame) {
     let mut left = match &state.mode {
         Mode::Prompt(typed) => format!("go to frame {typed}▏"),
         Mode::Label(typed) => format!("letters of a track {typed}▏"),
+        Mode::Move(moving) => moving_words(moving, state.frame),
         _ => {
             let t_s = state.clip.times.get(state.frame).unwrap_or_default();
             format!("{}/{}  {t_s:.2} s", state.frame, state.last_frame())
         }
     };
     left.push_str(&play_words(state));
-    if let (Mode::Move { from, to }, Some(row)) = (&state.mode, state.selected_row()) {
-        let moved = (to[0] - from[0]).hypot(to[1] - from[1]);
-        left.push_str(&format!("  track {} moved {moved:.2} px", row.id));
-    }
     if let Mode::History { at, .. } = state.mode
         && let Some((entry, _)) = state.history.row(at)
     {
@@ -243,6 +253,39 @@ fn play_words(state: &State) -> String {
     words.concat()
 }
 
+/// What is moved, how far, by which model, and which frames that affects.
+fn moving_words(moving: &Moving, frame: u32) -> String {
+    let (from, to) = (moving.from, moving.to());
+    let moved = (to[0] - from[0]).hypot(to[1] - from[1]);
+    let mut words = match moving.tool {
+        Tool::Place { model, .. } => format!("{}  {moved:.2} px {}", moving.frame, model.word()),
+        Tool::Slide(frames) => format!("{}  {frames:+.2} frames, {moved:.2} px", moving.frame),
+    };
+    if let Some(affected) = moving.affected() {
+        words.push_str(&format!("  affects {}-{}", affected.start, affected.end - 1));
+    }
+    if let Some(walked) = moving.walked {
+        words.push_str(&format!("  at {walked}"));
+    } else if frame != moving.frame {
+        words.push_str(&format!("  seeing {frame}"));
+    }
+    words
+}
+
+/// A word of a hint, nudges in the image pixels that they are at this magnification.
+fn scaled(word: &str, context: Context, zoom: u8) -> String {
+    let unit = match word {
+        _ if !matches!(context, Context::Place | Context::Move) => None,
+        "1 px" => Some((1.0, " px")),
+        ".25" => Some((0.25, "")),
+        ".1" => Some((0.1, "")),
+        _ => None,
+    };
+    let Some((by, unit)) = unit.filter(|_| zoom > 0) else { return word.to_owned() };
+    let digits = format!("{:.4}", by * nudge_px(zoom));
+    format!("{}{unit}", digits.trim_end_matches('0').trim_start_matches('0'))
+}
+
 /// As many hints as there is room for; the help is always one of them.
 fn hint_line(state: &State, room: usize) -> Line<'static> {
     let context = state.mode.context();
@@ -251,14 +294,21 @@ fn hint_line(state: &State, room: usize) -> Line<'static> {
         .filter(|info| is_useful(state, info.action))
         .filter_map(|info| info.action.word_in(context))
         .collect();
-    let mut hints = state.keys.hints(context);
-    hints.retain(|(_, word)| useful.contains(word));
+    let mut hints: Vec<(String, String)> = state
+        .keys
+        .hints(context)
+        .into_iter()
+        .filter(|(_, word)| useful.contains(word))
+        .map(|(keys, word)| (keys, scaled(word, context, state.zoom)))
+        .collect();
+    // What is open can be kept: that must be seen on the narrowest screen.
+    hints.sort_by_key(|(_, word)| word != "keep");
     let width =
-        |(keys, word): &(String, &str)| Line::raw(keys.as_str()).width() + 1 + word.chars().count() + 2;
-    let help = hints.iter().position(|(_, word)| *word == "help").map(|at| hints.remove(at));
+        |(keys, word): &(String, String)| Line::raw(keys.as_str()).width() + 1 + word.chars().count() + 2;
+    let help = hints.iter().position(|(_, word)| word == "help").map(|at| hints.remove(at));
     let reserved = help.as_ref().map_or(0, width);
     let mut used = reserved;
-    let mut shown: Vec<(String, &str)> = Vec::new();
+    let mut shown: Vec<(String, String)> = Vec::new();
     for hint in hints {
         used += width(&hint);
         if used > room + 2 {

@@ -1,5 +1,6 @@
 //! The picture, with the tracks on it: in characters, and in pixels for stills.
 
+mod ghost;
 pub(super) mod motion;
 mod path;
 
@@ -149,7 +150,7 @@ impl<'a> Canvas<'a> {
         // Marks belong to the frame that is shown, which may be a moment behind.
         canvas.motion(state, shot.frame);
         canvas.tracks(state, shot.frame);
-        canvas.cursor(state);
+        canvas.cursor(state, shot.frame);
         canvas
     }
 
@@ -174,7 +175,7 @@ impl<'a> Canvas<'a> {
             self.mark([sample.x, sample.y], &[], colour, 'o');
             self.tint([sample.x, sample.y], colour);
         }
-        let moving = matches!(state.mode, Mode::Move { .. });
+        let moving = matches!(state.mode, Mode::Move(_));
         if let Some(row) = selected.filter(|_| !moving)
             && let Some(at) = row.at(frame)
         {
@@ -184,13 +185,10 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    fn cursor(&mut self, state: &State) {
+    fn cursor(&mut self, state: &State, frame: u32) {
         match state.mode {
             Mode::Place(at) => self.cross(at),
-            Mode::Move { from, to } => {
-                self.mark(from, &[(0, 0)], UNSEEN, 'o');
-                self.cross(to);
-            }
+            Mode::Move(ref moving) => self.ghost(moving, state.selected_row(), frame),
             _ => {}
         }
     }

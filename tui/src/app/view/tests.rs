@@ -53,12 +53,6 @@ fn words(fg: Color, bg: Color, modifier: Modifier) -> String {
     words.join(" ")
 }
 
-fn press(state: &mut State, keys: &str) {
-    for key in keys.split_whitespace() {
-        update(state, Msg::Key(key.parse().unwrap()));
-    }
-}
-
 /// The one door: the fixture at a size, changed, after some keys, looks as in the file.
 #[track_caller]
 fn check(name: &str, size: (u16, u16), keys: &str, change: impl FnOnce(&mut State)) {
@@ -67,7 +61,7 @@ fn check(name: &str, size: (u16, u16), keys: &str, change: impl FnOnce(&mut Stat
     state.link = Link { delay_ms: Some(84), rate_kbs: Some(230), is_silent: false };
     state.frame = 40;
     change(&mut state);
-    press(&mut state, keys);
+    fixture::press(&mut state, keys);
     let shot = fixture::shot(&state, Layout::of(&state).picture);
     let seen = dump(&draw(&state, Some(&shot)));
     let file =
@@ -102,7 +96,7 @@ fn screens() {
     check("queue_80x24", small, "P q", fixture::crowd);
     check("playing_80x24", small, "space", |_| {});
     check("loop_80x24", small, "", |state| {
-        press(state, "; b");
+        fixture::press(state, "; b");
         state.dropped = Some([5, 13]);
     });
     check("empty_80x24", small, "", |state| {
@@ -114,6 +108,8 @@ fn screens() {
         state.n_ready = 60;
     });
     check("move_80x24", small, "m 3 l", |_| {});
+    check("ghost_80x24", small, "z z m 3 0 l 4 j . . 2 ( *", |_| {});
+    check("slide_80x24", small, "T 2 l L", |_| {});
     check("place_80x24", small, "a", |_| {});
     check("form_80x24", small, "t j j", |_| {});
     check("form_120x40", large, "t j j", |_| {});
@@ -155,7 +151,7 @@ fn screens_of_motion_and_plots() {
     check("dial_120x40", large, "v d 3 h", |_| {});
     check("plots_80x24", small, "P p", plot);
     check("plots_120x40", large, "", |state| {
-        press(state, "P G");
+        fixture::press(state, "P G");
         plot(state);
     });
     check("plots_wide_80x24", small, "P p P w", plot);
@@ -179,18 +175,18 @@ fn plot(state: &mut State) {
 #[test]
 fn plots_are_worked_out_once_for_each_state_of_the_tracks() {
     let mut state = fixture::state();
-    press(&mut state, "P p");
+    fixture::press(&mut state, "P p");
     let asks =
         |state: &mut State| Plotted::request(state).map(|request| (request.subject, request.tracks.len()));
     let track = |id| Subject::Track(TrackId(id));
     assert_eq!(asks(&mut state), Some(((track(1), 0), 1)));
     assert_eq!(asks(&mut state), None);
-    press(&mut state, "j");
+    fixture::press(&mut state, "j");
     assert_eq!(asks(&mut state), Some(((track(2), 0), 1)));
     let rows = state.tracks.clone();
     update(&mut state, Msg::Fact(Fact::Tracks(rows)));
     assert_eq!(asks(&mut state), Some(((track(2), 1), 1)));
-    press(&mut state, "P G");
+    fixture::press(&mut state, "P G");
     assert_eq!(asks(&mut state), Some(((Subject::Group(0), 1), 2)));
     update(&mut state, Msg::Fact(Fact::Groups(None)));
     assert_eq!(asks(&mut state), Some(((track(2), 2), 1)));
@@ -203,7 +199,7 @@ fn no_size_panics() {
             for keys in ["", "t", ":", "g", "m", "Tab", "z", "v v", "P p"] {
                 let mut state = fixture::state();
                 state.size = (columns, rows);
-                press(&mut state, keys);
+                fixture::press(&mut state, keys);
                 let frame = draw(&state, None);
                 assert_eq!(frame.softness.len(), usize::from(columns) * usize::from(rows));
                 let area = Layout::of(&state).picture;
