@@ -2,13 +2,15 @@
 //!
 //! `state` knows nothing of the terminal device and nothing of files; `update` turns a message into the next state
 //! and the effects it asks for; `view` draws a state; `effects` is the only door to the project, the clip and
-//! the plugins; `run` turns the wheel.
+//! the plugins; `run` turns the wheel; `door` leads from one project to the next, by way of the start screen.
 
 pub mod action;
 pub mod clock;
 pub mod config;
 pub mod correcting;
+pub mod door;
 mod effects;
+pub mod files;
 #[cfg(test)]
 mod fixture;
 pub mod form;
@@ -27,9 +29,11 @@ mod pictures;
 pub mod plotted;
 mod plotting;
 pub mod queue;
+pub mod recent;
 mod reviewing;
 mod run;
 mod seat;
+pub mod start;
 pub mod state;
 mod stills;
 mod tally;
@@ -37,5 +41,5 @@ pub mod tracks;
 pub mod update;
 pub mod view;
 
+pub use door::{Gives, Offer, Offers, run};
 pub use opening::Plan;
-pub use run::run;

@@ -15,6 +15,7 @@ mod spectrum;
 mod synth;
 mod track;
 
+use std::io::IsTerminal as _;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -26,8 +27,8 @@ use honami_workbench::session::{Session, SessionOptions};
 use honami_workbench::store::{Access, Project};
 
 use self::args::{Cli, Command, Common};
-use crate::app::Plan;
 use crate::app::opening::where_is_the_clip;
+use crate::app::{Gives, Offer, Offers, Plan};
 
 /// What a command has to say, in two forms.
 struct Answer {
@@ -174,11 +175,13 @@ fn run(command: Command, common: &Common) -> anyhow::Result<Outcome> {
     Ok(Outcome::Answer(answer))
 }
 
-/// Opens the terminal UI on a project, or on a new project made from a clip.
+/// Opens the terminal UI on a project, or on a new project made from a clip; on neither, the start screen.
 fn open(path: Option<&Path>, common: &Common) -> anyhow::Result<ExitCode> {
     let Some(path) = path else {
-        let wanted = "a project or a clip is wanted: `honami CLIP` opens a clip, `honami demo` makes one";
-        return Err(Usage(wanted.to_owned()).into());
+        want(std::io::stdout().is_terminal() && std::io::stdin().is_terminal() && !common.json, || {
+            "a project or a clip is wanted: `honami CLIP` opens a clip, `honami demo` makes one".to_owned()
+        })?;
+        return show(None, common);
     };
     want(path.exists() || path.to_string_lossy().contains(['%', '*', '?']), || {
         format!(
@@ -186,13 +189,27 @@ fn open(path: Option<&Path>, common: &Common) -> anyhow::Result<ExitCode> {
             path.display()
         )
     })?;
-    show(Plan::of(path, &options(common)))
+    show(Some(Plan::of(path, &options(common))), common)
 }
 
-/// Shows a session in the terminal until it ends; returns the status that says how.
-fn show(plan: Plan) -> anyhow::Result<ExitCode> {
-    let end = crate::app::run(plan)?;
+/// Shows a session in the terminal, or the start screen, until it ends; returns the status that says how.
+fn show(plan: Option<Plan>, common: &Common) -> anyhow::Result<ExitCode> {
+    let end = crate::app::run(plan, &offers(common))?;
     Ok(end.map_or(ExitCode::SUCCESS, |end| ExitCode::from(end.status())))
+}
+
+/// What the start screen offers besides files.
+fn offers(common: &Common) -> Offers {
+    let demo = |common: Common| move || synth::plan(Path::new(args::DEMO), &common);
+    let plugins = |common: Common| move || help::plugins(&common);
+    let doctor = |common: Common| move || help::doctor(&common).text;
+    let offer = |name, doc, gives| Offer { name, doc, gives };
+    let rows = vec![
+        offer("demo", "a generated clip, tracked and grouped", Gives::Plan(Box::new(demo(common.clone())))),
+        offer("plugins", "trackers and clusterers", Gives::Text(Box::new(plugins(common.clone())))),
+        offer("doctor", "what this machine has", Gives::Text(Box::new(doctor(common.clone())))),
+    ];
+    Offers { options: options(common), rows, machine: help::machine }
 }
 
 fn options(common: &Common) -> SessionOptions {

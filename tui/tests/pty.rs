@@ -12,6 +12,8 @@ use rustix::process::{Pid, Signal, kill_process};
 
 #[path = "pty/display.rs"]
 mod display;
+#[path = "pty/start.rs"]
+mod start;
 #[path = "pty/work.rs"]
 mod work;
 

@@ -27,11 +27,13 @@ pub enum Context {
     Label,
     /// Going about in the undo tree.
     History,
+    /// Choosing what to open, before anything is.
+    Start,
 }
 
 impl Context {
     /// All of them.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Review,
         Self::Place,
         Self::Move,
@@ -42,6 +44,7 @@ impl Context {
         Self::Prompt,
         Self::Label,
         Self::History,
+        Self::Start,
     ];
 
     /// Its name in key maps and logs.
@@ -58,6 +61,7 @@ impl Context {
             Self::Prompt => "prompt",
             Self::Label => "label",
             Self::History => "history",
+            Self::Start => "start",
         }
     }
 
@@ -108,9 +112,9 @@ table! {
     // Moving about: hjkl and the arrows.
     Left "left" ["h" "Left"] [Review "" Place "1 px" Move "1 px" Form "change" Dial "turn" Slide "1 frame"]
         "left: the previous frame, one pixel, or a smaller value"
-    Down "down" ["j" "Down"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "narrower" History ""]
+    Down "down" ["j" "Down"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "narrower" History "" Start ""]
         "down: the next track, one pixel, or the next row"
-    Up "up" ["k" "Up"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "wider" History ""]
+    Up "up" ["k" "Up"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "wider" History "" Start ""]
         "up: the previous track, one pixel, or the previous row"
     Right "right" ["l" "Right"] [Review "" Place "1 px" Move "1 px" Form "change" Dial "turn" Slide "1 frame"]
         "right: the next frame, one pixel, or a larger value"
@@ -118,9 +122,9 @@ table! {
     FineDown "fine-down" ["J" "Shift-Down"] [Place ".25" Move ".25"] "a quarter of a pixel down"
     FineUp "fine-up" ["K" "Shift-Up"] [Place ".25" Move ".25"] "a quarter of a pixel up"
     FineRight "fine-right" ["L" "Shift-Right"] [Place ".25" Move ".25" Form "" Slide ".25"] "a quarter of a pixel right, or a tenth of a value's range up"
-    Accept "accept" ["Enter"] [Place "place" Move "keep" Form "run" Menu "choose" Prompt "go" Review "" Dial "keep" History "go there" Slide "keep"]
+    Accept "accept" ["Enter"] [Place "place" Move "keep" Form "run" Menu "choose" Prompt "go" Review "" Dial "keep" History "go there" Slide "keep" Start "open"]
         "accept: keep, place, run or go; while reviewing, the open item, or the sample here as a key-frame"
-    Back "back" ["Esc" "Ctrl-c"] [Place "back" Move "back" Form "back" Menu "back" Prompt "back" Label "back" Review "" Dial "back" History "back" Slide "back"]
+    Back "back" ["Esc" "Ctrl-c"] [Place "back" Move "back" Form "back" Menu "back" Prompt "back" Label "back" Review "" Dial "back" History "back" Slide "back" Start ""]
         "back: leave what is open, undone; while reviewing, stop the job or the clip"
     // Time.
     PlayPause "play" ["space"] [Review "play"] "play or pause; 200 space: at 200 %, from now on"
@@ -148,6 +152,7 @@ table! {
     GoLabel "go-label" ["g l"] [Review ""] "select a track by the letters that appear on it"
     GoKey "go-key-frame" ["g k"] [Review ""] "find a key-frame of the selected track"
     GoPlugin "go-plugin" ["g p"] [Review ""] "find a plugin and open its form"
+    GoFile "open" ["g c"] [Review "" Start ""] "find another project or clip and open it"
     Sort "sort-tracks" ["S"] [Review ""] "sort the tracks by doubt, the worst first, or by number"
     // Work.
     MoveSample "move-sample" ["m"] [Review "move"] "move the sample here; it becomes a key-frame"
@@ -194,10 +199,10 @@ table! {
     History "history" ["U" "P u"] [Review "" History ""] "show the undo tree; j and k choose an edit there, Enter goes to it"
     Palette "palette" [":"] [Review "" Place "" Move "" Form "" Dial "" History "" Slide ""] "find any action by name, key or what it does"
     Help "help" ["?"] [Review "help" Place "" Move "" Form "help" Dial "help" History "help" Slide ""] "list what works here; Enter does it"
-    Redraw "redraw" ["Ctrl-l"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label "" History "" Slide ""] "paint the screen anew"
-    Suspend "suspend" ["Ctrl-z"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label "" History "" Slide ""] "stop honami until `fg`"
-    Quit "quit" ["q"] [Review "leave" Place "" Move "" Form "" Dial "" History "" Slide ""] "back; while reviewing, leave honami"
-    Leave "leave" ["Q"] [Review "" Place "" Move "" Form "" Dial "" History "" Slide ""] "leave honami (everything is kept)"
+    Redraw "redraw" ["Ctrl-l"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label "" History "" Slide "" Start ""] "paint the screen anew"
+    Suspend "suspend" ["Ctrl-z"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label "" History "" Slide "" Start ""] "stop honami until `fg`"
+    Quit "quit" ["q"] [Review "leave" Place "" Move "" Form "" Dial "" History "" Slide "" Start "leave"] "back; while reviewing, leave honami"
+    Leave "leave" ["Q"] [Review "" Place "" Move "" Form "" Dial "" History "" Slide "" Start ""] "leave honami (everything is kept)"
 }
 
 impl Action {

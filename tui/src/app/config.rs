@@ -140,7 +140,7 @@ fn choices_path() -> Option<PathBuf> {
 }
 
 /// honami's folder in one of the user's: as the variable says, else in the home folder.
-fn folder(variable: &str, in_home: &str) -> Option<PathBuf> {
+pub(super) fn folder(variable: &str, in_home: &str) -> Option<PathBuf> {
     let named = std::env::var_os(variable).map(PathBuf::from).filter(|path| path.is_absolute());
     let home = || std::env::var_os("HOME").map(|home| PathBuf::from(home).join(in_home));
     named.or_else(home).map(|folder| folder.join("honami"))

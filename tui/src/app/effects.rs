@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::io::Write as _;
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -105,6 +106,11 @@ impl World {
         self.session.media.try_frame(self.n_ready()).is_ok()
     }
 
+    /// The project file.
+    pub(super) fn project(&self) -> &Path {
+        self.session.project.path()
+    }
+
     pub(super) fn media(&self) -> Arc<honami_workbench::media::Media> {
         Arc::clone(&self.session.media)
     }
@@ -129,7 +135,9 @@ impl World {
                 Ok(Vec::new())
             }
             // The loop's own.
-            Effect::Mouse(_) | Effect::Redraw | Effect::Suspend | Effect::Leave => Ok(Vec::new()),
+            Effect::Follow(_) | Effect::Mouse(_) | Effect::Redraw | Effect::Suspend | Effect::Leave => {
+                Ok(Vec::new())
+            }
         };
         done.unwrap_or_else(|error| vec![failed(&error)])
     }

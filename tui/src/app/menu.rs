@@ -1,9 +1,12 @@
 //! A list to choose from by typing a part of a name: the palette, the help, the tracks.
 
+use std::path::{Path, PathBuf};
+
 use honami_model::clip::FrameTimes;
 use honami_model::track::TrackId;
 
 use super::action::{Action, TABLE};
+use super::files::{Listing, Way};
 use super::form::Plugin;
 use super::fuzzy;
 use super::keymap::KeyMap;
@@ -11,7 +14,7 @@ use super::state::{Mode, State};
 use super::tracks::TrackRow;
 
 /// What a row does when it is chosen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Choice {
     /// Calls an action.
     Action(Action),
@@ -21,6 +24,8 @@ pub enum Choice {
     Frame(u32),
     /// Opens the form of the plugin with this place in the list.
     Plugin(usize),
+    /// Opens a file, or lists another folder.
+    File(Way),
 }
 
 /// A row of a menu.
@@ -47,6 +52,8 @@ pub struct Menu {
     pub at: usize,
     /// What keys meant before, and will again.
     pub below: Mode,
+    /// The folder whose files it lists.
+    folder: Option<PathBuf>,
     rows: Vec<Row>,
     matching: Vec<usize>,
 }
@@ -54,7 +61,7 @@ pub struct Menu {
 impl Menu {
     fn new(title: &'static str, rows: Vec<Row>, below: Mode) -> Self {
         let matching = (0..rows.len()).collect();
-        Self { title, typed: String::new(), at: 0, below, rows, matching }
+        Self { title, typed: String::new(), at: 0, below, folder: None, rows, matching }
     }
 
     /// Every action that works where the menu was opened.
@@ -113,6 +120,32 @@ impl Menu {
             choice: Choice::Plugin(at),
         });
         Self::new("plugins", rows.collect(), Mode::Review)
+    }
+
+    /// The projects and clips of a folder.
+    #[must_use]
+    pub fn of_files(listing: Listing) -> Self {
+        let rows = listing.rows.into_iter().map(|(label, detail, way)| Row {
+            label,
+            detail,
+            keys: String::new(),
+            choice: Choice::File(way),
+        });
+        let menu = Self::new("a project or a clip, or its path", rows.collect(), Mode::Review);
+        Self { folder: Some(listing.folder), ..menu }
+    }
+
+    /// What was chosen; among files, a path may have been typed.
+    #[must_use]
+    pub fn choice(&self) -> Option<Choice> {
+        let row = self.chosen().map(|row| row.choice.clone());
+        let Some(folder) = &self.folder else { return row };
+        let typed = self.typed.trim();
+        if !typed.contains('/') && typed != "~" && (row.is_some() || typed.is_empty()) {
+            return row;
+        }
+        let path = if typed.starts_with('~') { Path::new(typed).to_owned() } else { folder.join(typed) };
+        Some(Choice::File(Way::Typed(path)))
     }
 
     /// The rows that match what was typed, best first.

@@ -26,7 +26,9 @@ use crate::term::signals::Waker;
 const KEPT_MAX: usize = 4096;
 
 /// How a session is made, telling what it is busy with.
-type Open = Box<dyn FnOnce(&dyn Fn(String)) -> anyhow::Result<Session> + Send>;
+type Open = Box<dyn FnOnce(&Tell<'_>) -> anyhow::Result<Session> + Send>;
+/// Says what opening is busy with; any thread may.
+pub type Tell<'a> = dyn Fn(String) + Sync + 'a;
 
 /// A session that is to be opened.
 pub struct Plan {
@@ -39,7 +41,7 @@ impl Plan {
     /// Whatever opens a session.
     pub fn new(
         name: impl Into<String>,
-        open: impl FnOnce(&dyn Fn(String)) -> anyhow::Result<Session> + Send + 'static,
+        open: impl FnOnce(&Tell<'_>) -> anyhow::Result<Session> + Send + 'static,
     ) -> Self {
         Self { name: name.into(), open: Box::new(open) }
     }
@@ -47,22 +49,44 @@ impl Plan {
     /// A project, or the project that belongs to a clip; made where there is none yet.
     #[must_use]
     pub fn of(path: &Path, options: &SessionOptions) -> Self {
-        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
         let (path, options) = (path.to_owned(), options.clone());
-        Self::new(name, move |tell| open(&path, &options, tell))
+        Self::new(name_of(&path), move |tell| open(&path, &options, tell))
+    }
+
+    /// A new project of a clip, also where the clip has one: `sway-2.honami` beside `sway.honami`.
+    #[must_use]
+    pub fn anew(clip: &Path, options: &SessionOptions) -> Self {
+        let (clip, options) = (clip.to_owned(), options.clone());
+        Self::new(name_of(&clip), move |tell| {
+            let first = project_of(&clip);
+            let stem = first.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            let others = (2..).map(|n: u32| first.with_file_name(format!("{stem}-{n}.honami")));
+            let project = std::iter::once(first.clone()).chain(others).find(|path| !path.exists());
+            let project = project.context("every name is taken")?;
+            Ok(Session::create_with(&project, &clip, None, &options, &mut step_teller(tell))?)
+        })
     }
 }
 
-fn open(path: &Path, options: &SessionOptions, tell: &dyn Fn(String)) -> anyhow::Result<Session> {
-    let is_project = path.extension().is_some_and(|e| e == "honami");
-    let project = if is_project { path.to_owned() } else { project_of(path) };
-    let mut on_step = |clip: &Path, step: Step| {
-        let clip = clip.file_name().unwrap_or(clip.as_os_str()).to_string_lossy().into_owned();
+fn name_of(path: &Path) -> String {
+    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
+
+/// Tells of the steps of opening a clip.
+fn step_teller(tell: &Tell<'_>) -> impl FnMut(&Path, Step) {
+    move |clip, step| {
+        let clip = name_of(clip);
         tell(match step {
             Step::Hashing => format!("reading {clip}"),
             Step::Indexing => format!("finding the frames of {clip}"),
         });
-    };
+    }
+}
+
+fn open(path: &Path, options: &SessionOptions, tell: &Tell<'_>) -> anyhow::Result<Session> {
+    let is_project = path.extension().is_some_and(|e| e == "honami");
+    let project = if is_project { path.to_owned() } else { project_of(path) };
+    let mut on_step = step_teller(tell);
     let session = if is_project || project.exists() {
         Session::open_or_look(&project, options, &mut on_step)
             .map_err(|error| where_is_the_clip(error, &project))?
@@ -139,13 +163,12 @@ impl Opening {
         Ok(Self { name, step, ended, thread })
     }
 
-    /// Shows that something is being opened until it is, or until somebody leaves.
+    /// Shows that something is being opened until it is, or until somebody leaves. What was `kept` was typed before.
     ///
     /// # Errors
     /// When it cannot be opened.
-    pub(super) fn watch(self, screen: &mut Screen) -> anyhow::Result<Opened> {
+    pub(super) fn watch(self, screen: &mut Screen, mut kept: Vec<Event>) -> anyhow::Result<Opened> {
         let keys = KeyMap::default();
-        let mut kept = Vec::new();
         // What the screen shows, once it does.
         let mut shown = None;
         while !self.ended.load(Ordering::Acquire) {

@@ -3,17 +3,16 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use anyhow::Context as _;
-
 use super::config::Config;
 use super::effects::World;
+use super::files::{self, Found};
 use super::layout::{Layout, Lens};
-use super::opening::{Opened, Opening, Plan};
 use super::pace::Pace;
 use super::panel::Panel;
 use super::pictures::Pictures;
 use super::plotted::Plotted;
 use super::plotting::Plotting;
+use super::recent;
 use super::seat::Seat;
 use super::state::{Display, Link, Notice, State};
 use super::stills::{self, Stills};
@@ -24,7 +23,6 @@ use crate::term::encode::Frame;
 use crate::term::glyph::Glyphs;
 use crate::term::input::{Event, Reply};
 use crate::term::screen::{End, Screen};
-use crate::term::signals;
 use crate::term::still::Pixmap;
 
 /// While the clip is being decoded, the time line is looked after this often.
@@ -34,47 +32,25 @@ const SEAT_TICK: Duration = Duration::from_secs(5);
 /// Figures of the link change this often at most.
 const LINK_TICK: Duration = Duration::from_secs(1);
 
-/// Shows a project in the terminal until its user leaves, or the terminal does; returns what ended it against its
-/// user's wish.
-///
-/// # Errors
-/// When there is no terminal, or the project cannot be read.
-pub fn run(plan: Plan) -> anyhow::Result<Option<End>> {
-    let config = Config::load();
-    let mut screen = Screen::open(&log_path()).context("the terminal UI cannot start")?;
-    if !config.mouse {
-        screen.set_mouse(false)?;
-    }
-    let opened = Opening::start(plan, screen.waker()).context("no thread for opening");
-    let (left, outcome) = match opened.and_then(|opening| opening.watch(&mut screen)) {
-        Ok(Opened::Ready(ready, typed)) => {
-            let (mut world, state) = *ready;
-            let mut app = App::new(state, &config, &world, &screen)?;
-            let outcome = app.turn(&mut screen, &mut world, typed);
-            config.keep(&app.state);
-            (Some((world, Seat::of(&app.state))), outcome)
+/// How a turn of the wheel has ended.
+pub(super) enum Turned {
+    /// Its user has left, or the terminal.
+    End(Option<End>),
+    /// Its user wants to be here.
+    Next(PathBuf),
+}
+
+impl Turned {
+    /// What ended it against its user's wish.
+    pub(super) fn end(self) -> Option<End> {
+        match self {
+            Self::End(end) => end,
+            Self::Next(_) => None,
         }
-        Ok(Opened::Left(end)) => (None, Ok(end)),
-        Err(error) => (None, Err(error)),
-    };
-    let closed = screen.close();
-    signals::end_as_usual()?;
-    if let Some((world, seat)) = left {
-        world.close(seat)?;
     }
-    let end = outcome?;
-    closed?;
-    Ok(end)
 }
 
-/// Where output goes that would tear the screen: `$XDG_STATE_HOME/honami/session.log`.
-fn log_path() -> PathBuf {
-    let home = || std::env::var_os("HOME").map(|home| PathBuf::from(home).join(".local/state"));
-    let state = std::env::var_os("XDG_STATE_HOME").map(PathBuf::from).filter(|path| path.is_absolute());
-    state.or_else(home).unwrap_or_else(std::env::temp_dir).join("honami/session.log")
-}
-
-struct App {
+pub(super) struct App {
     state: State,
     pictures: Pictures,
     stills: Stills,
@@ -89,10 +65,12 @@ struct App {
     link_seen: Duration,
     /// When to keep where the user is.
     seat_due: Option<Duration>,
+    /// Where the user wants to go from here.
+    next: Option<PathBuf>,
 }
 
 impl App {
-    fn new(state: State, config: &Config, world: &World, screen: &Screen) -> anyhow::Result<Self> {
+    pub(super) fn new(state: State, config: &Config, world: &World, screen: &Screen) -> anyhow::Result<Self> {
         let pictures = Pictures::new(world.media(), screen.waker())?;
         let stills = Stills::new(screen.waker())?;
         let mut app = Self {
@@ -106,6 +84,7 @@ impl App {
             plotting: Plotting::new(screen.waker()),
             link_seen: Duration::ZERO,
             seat_due: None,
+            next: None,
         };
         app.state.mono = screen.is_mono();
         config.take(&mut app.state);
@@ -118,17 +97,23 @@ impl App {
         Ok(app)
     }
 
-    /// Begins with what was typed while the project was opened; returns what ended it against its user's wish.
-    fn turn(
+    /// The state as it is now.
+    pub(super) fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// Begins with what was typed while the project was opened; returns how it has ended.
+    pub(super) fn turn(
         &mut self,
         screen: &mut Screen,
         world: &mut World,
         typed: Vec<Event>,
-    ) -> anyhow::Result<Option<End>> {
+    ) -> anyhow::Result<Turned> {
         self.tell(Msg::Clock(screen.now()), screen, world)?;
         if self.hear(typed, screen, world)? {
-            return Ok(None);
+            return Ok(self.turned(None));
         }
+        recent::note(world.project(), self.state.tracks.len());
         loop {
             // A frame at rest waits for a slot only once no other is expected.
             let rest = self.pace.rest(screen.now()).filter(|_| self.frame.is_some() && !self.is_exact);
@@ -151,7 +136,7 @@ impl App {
                 self.tell(Msg::Fact(fact), screen, world)?;
             }
             if is_leaving {
-                return Ok(happened.end);
+                return Ok(self.turned(happened.end));
             }
             if happened.suspend {
                 screen.suspend()?;
@@ -159,6 +144,13 @@ impl App {
             }
             self.sit(screen, world);
             self.show(screen, world)?;
+        }
+    }
+
+    fn turned(&mut self, end: Option<End>) -> Turned {
+        match self.next.take().filter(|_| end.is_none()) {
+            Some(path) => Turned::Next(path),
+            None => Turned::End(end),
         }
     }
 
@@ -222,6 +214,16 @@ impl App {
                     self.frame = None;
                 }
                 Effect::Redraw => screen.forget(),
+                Effect::Follow(way) => match files::follow(&way) {
+                    Ok(Found::File(path)) => {
+                        self.next = Some(path);
+                        return Ok(true);
+                    }
+                    Ok(Found::Folder(listing)) => {
+                        update(&mut self.state, Msg::Fact(Fact::Files(listing)));
+                    }
+                    Err(text) => self.state.notice = Some(Notice { text, is_error: true }),
+                },
                 Effect::Mouse(ours) => screen.set_mouse(ours)?,
                 other => {
                     for fact in world.carry_out(other, screen.now()) {

@@ -21,6 +21,7 @@ use honami_workbench::cluster::ClusterRequest;
 use honami_workbench::track::TrackRequest;
 
 use super::action::{Action, Context};
+use super::files::Way;
 use super::keymap::Found;
 use super::menu::{Choice, Menu};
 use super::state::{Mode, Notice, State};
@@ -82,6 +83,8 @@ pub enum Effect {
     Cluster(ClusterRequest),
     /// Stop the running job; it keeps what it has.
     StopJob,
+    /// Follow a way among files: to another project or clip, or to what there is in a folder.
+    Follow(Way),
     /// Take the mouse, or leave it to the terminal.
     Mouse(bool),
     /// Paint the screen anew.
@@ -209,7 +212,7 @@ fn complain(state: &mut State, text: impl Into<String>) {
 /// Closes the menu and does what was chosen in it.
 fn choose(state: &mut State) -> Vec<Effect> {
     let Mode::Menu(menu) = std::mem::replace(&mut state.mode, Mode::Review) else { return Vec::new() };
-    let choice = menu.chosen().map(|row| row.choice);
+    let choice = menu.choice();
     state.mode = menu.below;
     match choice {
         Some(Choice::Action(action)) => call(state, action),
@@ -225,6 +228,7 @@ fn choose(state: &mut State) -> Vec<Effect> {
             actions::open_plugin(state, at);
             Vec::new()
         }
+        Some(Choice::File(way)) => vec![Effect::Follow(way)],
         None => Vec::new(),
     }
 }

@@ -7,6 +7,7 @@ mod lines;
 mod menu;
 mod opening;
 pub mod picture;
+pub mod start;
 pub mod style;
 pub mod theme;
 

@@ -308,13 +308,16 @@ pub(super) struct Keys {
     pub(super) check: bool,
 }
 
+/// Folder of the demo.
+pub(super) const DEMO: &str = "honami-demo";
+
 #[derive(Args, Debug)]
 pub(super) struct Demo {
     /// Do everything but open the terminal UI.
     #[arg(long)]
     pub(super) headless: bool,
     /// Folder for the clip and the project (default: honami-demo in the current folder).
-    #[arg(long, value_name = "DIR", default_value = "honami-demo")]
+    #[arg(long, value_name = "DIR", default_value = DEMO)]
     pub(super) folder: PathBuf,
 }
 

@@ -2,6 +2,7 @@
 
 use honami_workbench::cluster::{self, ClusterOutcome, ClusterRequest};
 use honami_workbench::plugins::{Kind, Values};
+use honami_workbench::progress::Progress;
 use honami_workbench::session::Session;
 use serde_json::json;
 
@@ -17,7 +18,7 @@ pub(super) fn cluster(args: &Cluster, common: &Common) -> anyhow::Result<Answer>
     let plugin = args.plugin.with.as_deref().unwrap_or(DEFAULT).to_owned();
     let params = track::values(&session.registry, Kind::Clusterer, &plugin, &args.plugin.set)?;
     let request = ClusterRequest { plugin, params, groups: args.groups };
-    Ok(describe(&run(&mut session, &request)?))
+    Ok(describe(&run(&mut session, &request, &report::Bar::new())?))
 }
 
 /// The default clusterer with its default parameters.
@@ -25,11 +26,14 @@ pub(super) fn request() -> ClusterRequest {
     ClusterRequest { plugin: DEFAULT.to_owned(), params: Values::default(), groups: None }
 }
 
-/// Prepares, runs and finishes, with a progress bar.
-pub(super) fn run(session: &mut Session, request: &ClusterRequest) -> anyhow::Result<ClusterOutcome> {
-    let bar = report::Bar::new();
+/// Prepares, runs and finishes.
+pub(super) fn run(
+    session: &mut Session,
+    request: &ClusterRequest,
+    progress: &dyn Progress,
+) -> anyhow::Result<ClusterOutcome> {
     let job = cluster::prepare(session, request)?;
-    let done = job.run(&bar)?;
+    let done = job.run(progress)?;
     Ok(cluster::finish(session, done)?)
 }
 

@@ -73,6 +73,19 @@ fn named<'r>(registry: &'r Registry, name: &str) -> anyhow::Result<&'r PluginInf
         .with_context(|| format!("there is no plugin {name:?}; there are: {}", known()))
 }
 
+/// The plugins there are, as text.
+pub(super) fn plugins(common: &Common) -> String {
+    list(&Registry::scan(&common.plugins)).text
+}
+
+/// What this machine has, in a few words.
+pub(super) fn machine() -> String {
+    match honami_workbench::media::ffmpeg_version() {
+        Some(_) => "ffmpeg found".to_owned(),
+        None => "ffmpeg not installed (adds every video format: doctor)".to_owned(),
+    }
+}
+
 fn list(registry: &Registry) -> Answer {
     let head = ["name", "kind", "version", "", "what it is"].map(str::to_owned).to_vec();
     let row = |plugin: &PluginInfo| {

@@ -2,9 +2,11 @@
 
 use std::fs;
 use std::io::IsTerminal as _;
+use std::path::Path;
 
 use anyhow::Context as _;
 use honami_workbench::generate::{self, Generated};
+use honami_workbench::progress::{Flow, Progress};
 use honami_workbench::session::Session;
 use honami_workbench::synth::{Level, Settings};
 use honami_workbench::track::PointSource;
@@ -13,6 +15,7 @@ use serde_json::json;
 use super::args::{Common, Demo, Synth, Wind};
 use super::{Answer, Outcome, groups, options, project, report, show, track};
 use crate::app::Plan;
+use crate::app::opening::Tell;
 
 /// Renders a clip and its truth.
 pub(super) fn synth(args: &Synth) -> anyhow::Result<Answer> {
@@ -56,30 +59,28 @@ fn describe(made: &Generated) -> Answer {
     Answer { json, text, done: true }
 }
 
+/// Who is told of the steps of the demo, and watches each.
+struct Watch<'a> {
+    say: &'a dyn Fn(&str),
+    progress: &'a dyn Fn() -> Box<dyn Progress + 'a>,
+}
+
+/// Tells how far a job is as opening does.
+struct Told<'a>(&'a Tell<'a>);
+
+impl Progress for Told<'_> {
+    fn report(&self, done: u64, total: u64, what: &str) -> Flow {
+        let of = if total > 0 { format!(" of {total}") } else { String::new() };
+        (self.0)(format!("the demo: {what} {done}{of}"));
+        Flow::Continue
+    }
+}
+
 /// The whole job on a generated clip, with its truth beside it; then the terminal UI.
 pub(super) fn demo(args: &Demo, common: &Common) -> anyhow::Result<Outcome> {
-    fs::create_dir_all(&args.folder).with_context(|| format!("cannot make {}", args.folder.display()))?;
-    let (clip, file) = (args.folder.join("shrub.y4m"), args.folder.join("shrub.honami"));
-    if !clip.exists() {
-        report::say("rendering a shrub in a light wind, with its truth …");
-        generate::generate(&Settings::default(), &clip, &report::Bar::new())?;
-    }
-    let mut session = if file.exists() {
-        Session::open(&file, &options(common))?
-    } else {
-        project::make(&file, &clip, None, common)?
-    };
-    if session.project.document().runs().is_empty() {
-        report::say("tracking …");
-        let request = track::request(&session, PointSource::Detect);
-        let outcome = track::run(&mut session, &request)?;
-        report::say(&outcome.line);
-    }
-    if session.project.document().clustering().is_none() {
-        report::say("clustering …");
-        let outcome = groups::run(&mut session, &groups::request())?;
-        report::say(&outcome.line);
-    }
+    let watch = Watch { say: &report::say, progress: &|| Box::new(report::Bar::new()) };
+    let session = make(&args.folder, common, &watch)?;
+    let (clip, file) = (args.folder.join(CLIP), session.project.path());
     let truth = generate::truth_beside(&clip);
     let text = format!(
         "{} is ready: open it with `honami {0}`\nhow good was it: honami compare {} --truth {} --with klt",
@@ -94,5 +95,44 @@ pub(super) fn demo(args: &Demo, common: &Common) -> anyhow::Result<Outcome> {
             json!({ "project": file, "clip": clip, "truth": truth, "tracks": n_tracks, "groups": n_groups });
         return Ok(Outcome::Answer(Answer { json, text, done: true }));
     }
-    show(Plan::new("shrub.honami", move |_tell| Ok(session))).map(Outcome::Exit)
+    show(Some(Plan::new("shrub.honami", move |_tell| Ok(session))), common).map(Outcome::Exit)
+}
+
+/// The same, to be made while the screen says how far it is.
+pub(super) fn plan(folder: &Path, common: &Common) -> Plan {
+    let (folder, common) = (folder.to_owned(), common.clone());
+    Plan::new("demo", move |tell| {
+        make(&folder, &common, &Watch { say: &|_| {}, progress: &|| Box::new(Told(tell)) })
+    })
+}
+
+/// Name of the demo's clip.
+const CLIP: &str = "shrub.y4m";
+
+/// Makes what is not there yet of the demo: the clip, its project, tracks, groups.
+fn make(folder: &Path, common: &Common, watch: &Watch<'_>) -> anyhow::Result<Session> {
+    let Watch { say, progress } = watch;
+    fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
+    let (clip, file) = (folder.join(CLIP), folder.join(CLIP).with_extension("honami"));
+    if !clip.exists() {
+        say("rendering a shrub in a light wind, with its truth …");
+        generate::generate(&Settings::default(), &clip, &*progress())?;
+    }
+    let mut session = if file.exists() {
+        Session::open(&file, &options(common))?
+    } else {
+        project::make(&file, &clip, None, common)?
+    };
+    if session.project.document().runs().is_empty() {
+        say("tracking …");
+        let request = track::request(&session, PointSource::Detect);
+        let outcome = track::run(&mut session, &request, &*progress())?;
+        say(&outcome.line);
+    }
+    if session.project.document().clustering().is_none() {
+        say("clustering …");
+        let outcome = groups::run(&mut session, &groups::request(), &*progress())?;
+        say(&outcome.line);
+    }
+    Ok(session)
 }

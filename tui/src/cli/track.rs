@@ -2,6 +2,7 @@
 
 use honami_workbench::compare::read_points;
 use honami_workbench::plugins::{Kind, Registry, Values};
+use honami_workbench::progress::Progress;
 use honami_workbench::session::Session;
 use honami_workbench::track::{self, Area, PointSource, TrackOutcome, TrackRequest};
 use serde_json::json;
@@ -37,7 +38,9 @@ pub(super) fn track(args: &Track, common: &Common) -> anyhow::Result<Answer> {
         every: args.every,
         area: area(args),
     };
-    Ok(describe(&run(&mut session, &request)?))
+    // Before the run begins: from here on Ctrl-C stops it and keeps what it has.
+    let bar = report::Bar::new();
+    Ok(describe(&run(&mut session, &request, &bar)?))
 }
 
 /// The default tracker with its default parameters, over the whole clip.
@@ -52,12 +55,14 @@ pub(super) fn request(session: &Session, points: PointSource) -> TrackRequest {
     }
 }
 
-/// Prepares, runs and finishes, with a progress bar.
-pub(super) fn run(session: &mut Session, request: &TrackRequest) -> anyhow::Result<TrackOutcome> {
-    // Before the run begins: from here on Ctrl-C stops it and keeps what it has.
-    let bar = report::Bar::new();
+/// Prepares, runs and finishes.
+pub(super) fn run(
+    session: &mut Session,
+    request: &TrackRequest,
+    progress: &dyn Progress,
+) -> anyhow::Result<TrackOutcome> {
     let job = track::prepare(session, request)?;
-    let done = job.run(&bar)?;
+    let done = job.run(progress)?;
     let outcome = track::finish(session, done)?;
     match outcome.error {
         Some(_) => anyhow::bail!("{}", outcome.line),

@@ -1,5 +1,7 @@
 //! Actions, each by its place.
 
+use std::path::PathBuf;
+
 use super::{
     Action, Effect, Mode, State, choose, complain, edit, history, look, motion, moving, open_menu, pick,
     queue, say, time,
@@ -11,6 +13,7 @@ use honami_workbench::track::{Area, PointSource, TrackRequest};
 
 use super::time::Pace;
 use crate::app::correcting::nudge_px;
+use crate::app::files::Way;
 use crate::app::form::{Features, Form, Task};
 use crate::app::panel::Panel;
 
@@ -60,6 +63,7 @@ pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {
         Action::GoLabel => pick::label(state),
         Action::GoKey => pick::key_frame(state),
         Action::GoPlugin => pick::plugin(state),
+        Action::GoFile => return vec![Effect::Follow(Way::Folder(PathBuf::from(".")))],
         Action::Sort => time::sort(state),
         Action::DeleteTrack => return edit::delete(state),
         Action::MoreGroups if matches!(state.mode, Mode::Dial(_)) => motion::gain(state, count(state)),

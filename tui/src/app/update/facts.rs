@@ -7,6 +7,8 @@ use honami_model::history::{Entry, EntryId};
 use honami_workbench::review::Told;
 
 use super::{Mode, State, moving};
+use crate::app::files::Listing;
+use crate::app::menu::Menu;
 use crate::app::plotted::Subject;
 use crate::app::state::{Display, Job, Link, Notice};
 use crate::app::tracks::{Groups, TrackRow};
@@ -43,6 +45,8 @@ pub enum Fact {
     Ready(u32),
     /// The undo tree has these entries more, and the document stands there.
     History(Vec<Entry>, EntryId),
+    /// These files there are to choose from.
+    Files(Listing),
 }
 
 pub(super) fn on_fact(state: &mut State, fact: Fact) {
@@ -82,5 +86,6 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
         Fact::Display(display) => state.display = display,
         Fact::Ready(n) => state.n_ready = n,
         Fact::History(new, head) => state.history.grow(new, head),
+        Fact::Files(listing) => state.mode = Mode::Menu(Box::new(Menu::of_files(listing))),
     }
 }

@@ -23,6 +23,7 @@ fn in_place(context: Context) -> State {
         Context::Dial => press("v d"),
         Context::Label => press("g l"),
         Context::History => press("U j"),
+        Context::Start => unreachable!("nothing is open there"),
     }
     assert_eq!(state.mode.context(), context);
     state
@@ -30,7 +31,7 @@ fn in_place(context: Context) -> State {
 
 #[test]
 fn every_action_is_reached_from_the_palette_and_the_help() {
-    for context in Context::ALL.into_iter().filter(|context| !context.is_text()) {
+    for context in Context::ALL.into_iter().filter(|c| !c.is_text() && *c != Context::Start) {
         for opener in [Action::Palette, Action::Help] {
             for info in TABLE.iter().filter(|info| info.action.word_in(context).is_some()) {
                 let mut state = in_place(context);
@@ -41,7 +42,7 @@ fn every_action_is_reached_from_the_palette_and_the_help() {
                 let Mode::Menu(menu) = &mut state.mode else { panic!("no menu in {context:?}") };
                 assert!(menu.rows().any(|row| row.choice == Choice::Action(info.action)), "{}", info.name);
                 menu.retype(|typed| typed.push_str(&info.name.replace('-', " ")));
-                let first = menu.chosen().map(|row| row.choice);
+                let first = menu.chosen().map(|row| row.choice.clone());
                 assert_eq!(first, Some(Choice::Action(info.action)), "{} by its name", info.name);
             }
         }
@@ -50,7 +51,7 @@ fn every_action_is_reached_from_the_palette_and_the_help() {
 
 #[test]
 fn every_hint_is_a_key_that_works_here() {
-    for context in Context::ALL {
+    for context in Context::ALL.into_iter().filter(|context| *context != Context::Start) {
         let state = in_place(context);
         for (keys, word) in state.keys.hints(context) {
             let bound = state.keys.bindings().iter().filter(|b| b.context == context);

@@ -535,7 +535,11 @@ fn every_binding_answers() {
         (Context::History, "U j"),
     ];
     for binding in crate::app::keymap::KeyMap::default().bindings() {
-        let (_, way) = reach.iter().find(|(context, _)| *context == binding.context).unwrap();
+        // The start screen has tests of its own.
+        let Some((_, way)) = reach.iter().find(|(context, _)| *context == binding.context) else {
+            assert_eq!(binding.context, Context::Start);
+            continue;
+        };
         for from in ["frame=20", "frame=20 empty", "frame=20 job playing", "locked", "bare zoom=2"] {
             let mut state = start(from);
             press(&mut state, way);

@@ -61,7 +61,7 @@ pub(super) fn title(state: &State, area: Rect, frame: &mut Frame) {
 }
 
 /// A line at the right end of a row, where `taken` cells at the left leave room for it.
-fn put_right(frame: &mut Frame, area: Rect, line: &Line<'_>, taken: usize) {
+pub(super) fn put_right(frame: &mut Frame, area: Rect, line: &Line<'_>, taken: usize) {
     let width = line.width();
     if taken + 2 + width <= usize::from(area.width) {
         frame.cells.set_line(area.right() - width as u16, area.y, line, area.width);

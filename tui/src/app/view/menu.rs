@@ -14,9 +14,21 @@ const LABEL: usize = 20;
 /// Cells of the keys.
 const KEYS: usize = 14;
 
+/// Rows of the panel: the head, and the list.
+fn n_rows(menu: &Menu) -> u16 {
+    u16::try_from(menu.rows().len()).unwrap_or(u16::MAX).max(1).saturating_add(1)
+}
+
+/// The row of the list that lies in a row of the screen.
+pub(super) fn row_at(menu: &Menu, area: Rect, row: u16) -> Option<usize> {
+    let height = n_rows(menu).min(area.height);
+    let y = row.checked_sub(area.bottom() - height)?.checked_sub(1)?;
+    let first = menu.at.saturating_sub(usize::from(height.saturating_sub(1)).max(1) - 1);
+    Some(first + usize::from(y)).filter(|at| row < area.bottom() && *at < menu.rows().len())
+}
+
 pub(super) fn draw(menu: &Menu, area: Rect, frame: &mut Frame) {
-    let n_rows = u16::try_from(menu.rows().len()).unwrap_or(u16::MAX).max(1);
-    let inside = panel(frame, area, 100, n_rows.saturating_add(1));
+    let inside = panel(frame, area, 100, n_rows(menu));
     // What the chosen row does, in full; before anything is chosen by typing, what the list is.
     let about = match menu.chosen().filter(|_| !menu.typed.is_empty() || menu.at > 0) {
         Some(row) => row.detail.clone(),

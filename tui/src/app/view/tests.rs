@@ -63,7 +63,13 @@ fn check(name: &str, size: (u16, u16), keys: &str, change: impl FnOnce(&mut Stat
     change(&mut state);
     fixture::press(&mut state, keys);
     let shot = fixture::shot(&state, Layout::of(&state).picture);
-    let seen = dump(&draw(&state, Some(&shot)));
+    compare(name, &draw(&state, Some(&shot)));
+}
+
+/// A frame looks as in the file.
+#[track_caller]
+fn compare(name: &str, frame: &Frame) {
+    let seen = dump(frame);
     let file =
         PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("src/app/view/screens").join(format!("{name}.txt"));
     if std::env::var_os("REGENERATE").is_some() {
@@ -190,6 +196,39 @@ fn plots_are_worked_out_once_for_each_state_of_the_tracks() {
     assert_eq!(asks(&mut state), Some(((Subject::Group(0), 1), 2)));
     update(&mut state, Msg::Fact(Fact::Groups(None)));
     assert_eq!(asks(&mut state), Some(((track(2), 2), 1)));
+}
+
+#[test]
+fn start_screens() {
+    use crate::app::menu::Menu;
+    use crate::app::start::{Start, tests};
+    let check = |name: &str, size: (u16, u16), change: &dyn Fn(&mut Start)| {
+        let mut start = tests::start();
+        start.size = size;
+        change(&mut start);
+        compare(name, &start::draw(&start));
+    };
+    for (size, name) in [((80, 24), "80x24"), ((120, 36), "120x36"), ((40, 12), "40x12")] {
+        check(&format!("start_{name}"), size, &|_| {});
+    }
+    check("start_new_80x24", (80, 24), &|start| start.recent.clear());
+    check("start_low_40x7", (40, 7), &|start| start.at = 5);
+    check("start_files_80x24", (80, 24), &|start| start.menu = Some(Menu::of_files(tests::listing())));
+    check("start_complaint_80x24", (80, 24), &|start| {
+        start.complaint = Some("there is no file /data/ficus.honami".to_owned());
+    });
+    check("start_page_80x24", (80, 24), &|start| {
+        start.page = Some(("doctor".to_owned(), vec!["ok  ffmpeg".to_owned(), "ok  plugins".to_owned()], 1));
+    });
+    for columns in [0, 1, 3, 30] {
+        for rows in [0, 1, 2, 3, 4, 6] {
+            for menu in [None, Some(Menu::of_files(tests::listing()))] {
+                let mut start = tests::start();
+                (start.size, start.menu) = ((columns, rows), menu);
+                assert_eq!(start::draw(&start).softness.len(), usize::from(columns) * usize::from(rows));
+            }
+        }
+    }
 }
 
 #[test]
