@@ -20,6 +20,7 @@ mod jobs;
 pub mod keymap;
 mod labels;
 pub mod layout;
+pub mod lesson;
 pub mod menu;
 pub mod motion;
 pub mod opening;

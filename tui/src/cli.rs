@@ -164,6 +164,7 @@ fn run(command: Command, common: &Common) -> anyhow::Result<Outcome> {
         Command::Import(args) => exchange::import(&args)?,
         Command::Synth(args) => synth::synth(&args)?,
         Command::Demo(args) => return synth::demo(&args, common),
+        Command::Tutorial => return show(Some(synth::lesson(common)), common).map(Outcome::Exit),
         Command::Plugin(args) => help::plugin(&args, common)?,
         Command::Review(args) => review::review(&args, common)?,
         Command::Log(args) => log::log(&args)?,
@@ -201,15 +202,18 @@ fn show(plan: Option<Plan>, common: &Common) -> anyhow::Result<ExitCode> {
 /// What the start screen offers besides files.
 fn offers(common: &Common) -> Offers {
     let demo = |common: Common| move || synth::plan(Path::new(args::DEMO), &common);
+    let lesson = |common: Common| move || synth::lesson(&common);
     let plugins = |common: Common| move || help::plugins(&common);
     let doctor = |common: Common| move || help::doctor(&common).text;
     let offer = |name, doc, gives| Offer { name, doc, gives };
     let rows = vec![
         offer("demo", "a generated clip, tracked and grouped", Gives::Plan(Box::new(demo(common.clone())))),
+        offer("tutorial", "five minutes: what to press", Gives::Plan(Box::new(lesson(common.clone())))),
         offer("plugins", "trackers and clusterers", Gives::Text(Box::new(plugins(common.clone())))),
         offer("doctor", "what this machine has", Gives::Text(Box::new(doctor(common.clone())))),
     ];
-    Offers { options: options(common), rows, machine: help::machine }
+    let lesson = Box::new(lesson(common.clone()));
+    Offers { options: options(common), rows, lesson, machine: help::machine }
 }
 
 fn options(common: &Common) -> SessionOptions {

@@ -249,9 +249,9 @@ fn the_picture_becomes_exact_and_then_nothing_is_sent() {
     let folder = folder();
     let mut terminal = Terminal::honami(folder.path(), (80, 24), true);
     // The square's middle, 16,24 of 64x48: 53 cells wide from column 13, 20 high from row 1.
-    let colour = |s: &vt100::Screen, x, y| s.cell(y, x).map(|c| (c.fgcolor(), c.bgcolor()));
-    let bright = Some((vt100::Color::Rgb(255, 255, 255), vt100::Color::Rgb(255, 255, 255)));
-    let dark = Some((vt100::Color::Rgb(0, 0, 0), vt100::Color::Rgb(0, 0, 0)));
+    let colour = |s: &vt100::Screen, x, y| s.cell(y, x).map(vt100::Cell::bgcolor);
+    let bright = Some(vt100::Color::Rgb(255, 255, 255));
+    let dark = Some(vt100::Color::Rgb(0, 0, 0));
     terminal.wait_for("the square", |s| colour(s, 26, 10) == bright && colour(s, 60, 3) == dark);
     terminal.wait_for_text(" ms");
     // Quiet, once decoding is done and the last answer has come; longer than the figures of the link and the

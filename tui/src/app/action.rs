@@ -199,6 +199,7 @@ table! {
     History "history" ["U" "P u"] [Review "" History ""] "show the undo tree; j and k choose an edit there, Enter goes to it"
     Palette "palette" [":"] [Review "" Place "" Move "" Form "" Dial "" History "" Slide ""] "find any action by name, key or what it does"
     Help "help" ["?"] [Review "help" Place "" Move "" Form "help" Dial "help" History "help" Slide ""] "list what works here; Enter does it"
+    Tutorial "tutorial" ["g ?"] [Review ""] "five minutes on a generated clip: what to press, one step at a time"
     Redraw "redraw" ["Ctrl-l"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label "" History "" Slide "" Start ""] "paint the screen anew"
     Suspend "suspend" ["Ctrl-z"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label "" History "" Slide "" Start ""] "stop honami until `fg`"
     Quit "quit" ["q"] [Review "leave" Place "" Move "" Form "" Dial "" History "" Slide "" Start "leave"] "back; while reviewing, leave honami"

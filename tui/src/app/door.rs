@@ -8,8 +8,7 @@ use honami_workbench::session::SessionOptions;
 use super::config::Config;
 use super::effects::World;
 use super::opening::{Opened, Opening, Plan};
-use super::recent;
-use super::run::{App, Turned};
+use super::run::{App, Next, Turned};
 use super::seat::Seat;
 use super::start::{Start, Wanted};
 use crate::term::screen::{End, Screen};
@@ -21,6 +20,8 @@ pub struct Offers {
     pub options: SessionOptions,
     /// Rows of the start screen.
     pub rows: Vec<Offer>,
+    /// The tutorial.
+    pub lesson: Box<dyn Fn() -> Plan>,
     /// What this machine has, in a few words; may take a moment to find out.
     pub machine: fn() -> String,
 }
@@ -103,13 +104,16 @@ fn go_about(
         let mut app = App::new(state, config, &world, screen)?;
         let turned = app.turn(screen, &mut world, typed);
         config.keep(app.state());
-        recent::note(world.project(), app.state().tracks.len());
+        app.note(&world);
         let seat = Seat::of(app.state());
-        if let Ok(Turned::Next(path)) = turned {
+        if let Ok(Turned::Next(wanted)) = turned {
             // Its last picture is no part of what comes.
             screen.drop_still();
             complaint = world.close(seat).err().map(|error| error.to_string());
-            next = Some(Plan::of(&path, &offers.options)).filter(|_| complaint.is_none());
+            next = complaint.is_none().then(|| match wanted {
+                Next::File(path) => Plan::of(&path, &offers.options),
+                Next::Lesson => (offers.lesson)(),
+            });
             continue;
         }
         *last = Some((world, seat));

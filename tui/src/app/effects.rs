@@ -135,9 +135,12 @@ impl World {
                 Ok(Vec::new())
             }
             // The loop's own.
-            Effect::Follow(_) | Effect::Mouse(_) | Effect::Redraw | Effect::Suspend | Effect::Leave => {
-                Ok(Vec::new())
-            }
+            Effect::Follow(_)
+            | Effect::Teach
+            | Effect::Mouse(_)
+            | Effect::Redraw
+            | Effect::Suspend
+            | Effect::Leave => Ok(Vec::new()),
         };
         done.unwrap_or_else(|error| vec![failed(&error)])
     }

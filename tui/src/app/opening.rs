@@ -16,6 +16,7 @@ use honami_workbench::store::StoreError;
 use super::action::{Action, Context};
 use super::effects::World;
 use super::keymap::{Found, KeyMap};
+use super::lesson::Lesson;
 use super::state::State;
 use super::view;
 use crate::term::input::Event;
@@ -35,6 +36,8 @@ pub struct Plan {
     /// What the title calls it meanwhile.
     pub name: String,
     open: Open,
+    /// Whether the tutorial is given on it.
+    is_lesson: bool,
 }
 
 impl Plan {
@@ -43,7 +46,13 @@ impl Plan {
         name: impl Into<String>,
         open: impl FnOnce(&Tell<'_>) -> anyhow::Result<Session> + Send + 'static,
     ) -> Self {
-        Self { name: name.into(), open: Box::new(open) }
+        Self { name: name.into(), open: Box::new(open), is_lesson: false }
+    }
+
+    /// The same, with the tutorial on it.
+    #[must_use]
+    pub fn with_lesson(self) -> Self {
+        Self { is_lesson: true, ..self }
     }
 
     /// A project, or the project that belongs to a clip; made where there is none yet.
@@ -147,7 +156,7 @@ impl Opening {
     pub(super) fn start(plan: Plan, waker: Waker) -> std::io::Result<Self> {
         let step = Arc::new(Mutex::new(String::new()));
         let told = Arc::clone(&step);
-        let (ended, Plan { name, open }) = (Arc::new(AtomicBool::new(false)), plan);
+        let (ended, Plan { name, open, is_lesson }) = (Arc::new(AtomicBool::new(false)), plan);
         let flag = Arc::clone(&ended);
         let thread = std::thread::Builder::new().name("opening".to_owned()).spawn(move || {
             // Woken also when opening panics.
@@ -157,7 +166,8 @@ impl Opening {
                 waker.wake();
             })?;
             let mut world = World::new(session, waker);
-            let state = world.state()?;
+            let mut state = world.state()?;
+            state.lesson = is_lesson.then(|| Lesson::new(&state));
             Ok((world, state))
         })?;
         Ok(Self { name, step, ended, thread })

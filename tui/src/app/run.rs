@@ -36,8 +36,16 @@ const LINK_TICK: Duration = Duration::from_secs(1);
 pub(super) enum Turned {
     /// Its user has left, or the terminal.
     End(Option<End>),
-    /// Its user wants to be here.
-    Next(PathBuf),
+    /// Its user wants to be somewhere else.
+    Next(Next),
+}
+
+/// Where a user wants to go from a project.
+pub(super) enum Next {
+    /// To another, or to a clip.
+    File(PathBuf),
+    /// To the tutorial.
+    Lesson,
 }
 
 impl Turned {
@@ -66,7 +74,7 @@ pub(super) struct App {
     /// When to keep where the user is.
     seat_due: Option<Duration>,
     /// Where the user wants to go from here.
-    next: Option<PathBuf>,
+    next: Option<Next>,
 }
 
 impl App {
@@ -102,6 +110,13 @@ impl App {
         &self.state
     }
 
+    /// Notes that the project was open; those of the tutorial nobody comes back to.
+    pub(super) fn note(&self, world: &World) {
+        if self.state.lesson.is_none() {
+            recent::note(world.project(), self.state.tracks.len());
+        }
+    }
+
     /// Begins with what was typed while the project was opened; returns how it has ended.
     pub(super) fn turn(
         &mut self,
@@ -113,7 +128,7 @@ impl App {
         if self.hear(typed, screen, world)? {
             return Ok(self.turned(None));
         }
-        recent::note(world.project(), self.state.tracks.len());
+        self.note(world);
         loop {
             // A frame at rest waits for a slot only once no other is expected.
             let rest = self.pace.rest(screen.now()).filter(|_| self.frame.is_some() && !self.is_exact);
@@ -149,7 +164,7 @@ impl App {
 
     fn turned(&mut self, end: Option<End>) -> Turned {
         match self.next.take().filter(|_| end.is_none()) {
-            Some(path) => Turned::Next(path),
+            Some(next) => Turned::Next(next),
             None => Turned::End(end),
         }
     }
@@ -214,9 +229,13 @@ impl App {
                     self.frame = None;
                 }
                 Effect::Redraw => screen.forget(),
+                Effect::Teach => {
+                    self.next = Some(Next::Lesson);
+                    return Ok(true);
+                }
                 Effect::Follow(way) => match files::follow(&way) {
                     Ok(Found::File(path)) => {
-                        self.next = Some(path);
+                        self.next = Some(Next::File(path));
                         return Ok(true);
                     }
                     Ok(Found::Folder(listing)) => {

@@ -12,6 +12,7 @@ use super::correcting::{Moving, Tool};
 use super::form::{Form, Plugin};
 use super::history::Tree;
 use super::keymap::KeyMap;
+use super::lesson::Lesson;
 use super::menu::Menu;
 use super::motion::Motion;
 use super::panel::Panel;
@@ -115,6 +116,8 @@ pub struct State {
     pub theme: usize,
     /// Whether the mouse is ours, not the terminal's.
     pub mouse: bool,
+    /// The tutorial, in a project made for it.
+    pub lesson: Option<Lesson>,
 }
 
 /// What keys mean.
@@ -263,6 +266,7 @@ impl State {
             themes: Theme::all(),
             theme: 0,
             mouse: true,
+            lesson: None,
         }
     }
 

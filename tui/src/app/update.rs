@@ -23,6 +23,7 @@ use honami_workbench::track::TrackRequest;
 use super::action::{Action, Context};
 use super::files::Way;
 use super::keymap::Found;
+use super::lesson;
 use super::menu::{Choice, Menu};
 use super::state::{Mode, Notice, State};
 use crate::term::input::{Mouse, MouseKind};
@@ -85,6 +86,8 @@ pub enum Effect {
     StopJob,
     /// Follow a way among files: to another project or clip, or to what there is in a folder.
     Follow(Way),
+    /// Leave for the tutorial.
+    Teach,
     /// Take the mouse, or leave it to the terminal.
     Mouse(bool),
     /// Paint the screen anew.
@@ -97,7 +100,7 @@ pub enum Effect {
 
 /// The next state, and what is to be done.
 pub fn update(state: &mut State, msg: Msg) -> Vec<Effect> {
-    match msg {
+    let effects = match msg {
         Msg::Key(key) => {
             let now = state.now;
             state.opened.iter_mut().for_each(|opened| opened.pressed(now));
@@ -126,7 +129,9 @@ pub fn update(state: &mut State, msg: Msg) -> Vec<Effect> {
             facts::on_fact(state, fact);
             Vec::new()
         }
-    }
+    };
+    lesson::follow(state);
+    effects
 }
 
 /// Largest number before a command.

@@ -3,6 +3,7 @@
 pub mod column;
 mod form;
 mod labels;
+mod lesson;
 mod lines;
 mod menu;
 mod opening;
@@ -34,6 +35,7 @@ pub fn draw(state: &State, shot: Option<&Shot>) -> Frame {
     lines::track(state, layout.track, &mut frame);
     lines::time(state, layout.time, &mut frame);
     lines::hints(state, layout.hints, &mut frame);
+    lesson::draw(state, layout.picture, &mut frame);
     match &state.mode {
         Mode::Label(typed) => labels::draw(state, typed, &layout, &mut frame),
         Mode::Form(open) => form::draw(open, layout.picture, &mut frame),

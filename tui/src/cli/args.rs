@@ -63,6 +63,8 @@ pub(super) enum Command {
     Synth(Synth),
     /// A generated clip, tracked and clustered; then the terminal UI.
     Demo(Demo),
+    /// Five minutes in the terminal UI on a generated clip: what to press, one step at a time.
+    Tutorial,
     /// What plugins there are and what they take.
     #[command(subcommand)]
     Plugin(Plugin),

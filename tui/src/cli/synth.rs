@@ -6,6 +6,7 @@ use std::path::Path;
 
 use anyhow::Context as _;
 use honami_workbench::generate::{self, Generated};
+use honami_workbench::media;
 use honami_workbench::progress::{Flow, Progress};
 use honami_workbench::session::Session;
 use honami_workbench::synth::{Level, Settings};
@@ -106,11 +107,42 @@ pub(super) fn plan(folder: &Path, common: &Common) -> Plan {
     })
 }
 
+/// The tutorial: a fresh project, tracked and not grouped, on a clip that is made once and kept with the caches.
+pub(super) fn lesson(common: &Common) -> Plan {
+    let common = common.clone();
+    Plan::new("tutorial", move |tell| {
+        let caches = media::cache_folder().unwrap_or_else(|| std::env::temp_dir().join("honami"));
+        let folder = caches.join("tutorial");
+        let watch = Watch { say: &|_| {}, progress: &|| Box::new(Told(tell)) };
+        // Closed before it is copied: what it holds is then in its file.
+        drop(tracked(&folder, &common, &watch)?);
+        let (kept, fresh) = (folder.join(CLIP).with_extension("honami"), folder.join("tutorial.honami"));
+        // Of another session that is at it, only its name goes.
+        if fresh.exists() {
+            fs::remove_file(&fresh).with_context(|| format!("cannot replace {}", fresh.display()))?;
+        }
+        fs::copy(&kept, &fresh).with_context(|| format!("cannot write {}", fresh.display()))?;
+        Ok(Session::open(&fresh, &options(&common))?)
+    })
+    .with_lesson()
+}
+
 /// Name of the demo's clip.
 const CLIP: &str = "shrub.y4m";
 
 /// Makes what is not there yet of the demo: the clip, its project, tracks, groups.
 fn make(folder: &Path, common: &Common, watch: &Watch<'_>) -> anyhow::Result<Session> {
+    let mut session = tracked(folder, common, watch)?;
+    if session.project.document().clustering().is_none() {
+        (watch.say)("clustering …");
+        let outcome = groups::run(&mut session, &groups::request(), &*(watch.progress)())?;
+        (watch.say)(&outcome.line);
+    }
+    Ok(session)
+}
+
+/// The demo without its groups.
+fn tracked(folder: &Path, common: &Common, watch: &Watch<'_>) -> anyhow::Result<Session> {
     let Watch { say, progress } = watch;
     fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
     let (clip, file) = (folder.join(CLIP), folder.join(CLIP).with_extension("honami"));
@@ -127,11 +159,6 @@ fn make(folder: &Path, common: &Common, watch: &Watch<'_>) -> anyhow::Result<Ses
         say("tracking …");
         let request = track::request(&session, PointSource::Detect);
         let outcome = track::run(&mut session, &request, &*progress())?;
-        say(&outcome.line);
-    }
-    if session.project.document().clustering().is_none() {
-        say("clustering …");
-        let outcome = groups::run(&mut session, &groups::request(), &*progress())?;
         say(&outcome.line);
     }
     Ok(session)

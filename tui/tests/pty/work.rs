@@ -120,3 +120,24 @@ fn a_run_that_finds_nothing_has_nothing_to_undo() {
     terminal.press("q");
     assert!(terminal.wait_for_end());
 }
+
+#[test]
+fn the_tutorial_begins_anew_each_time_and_is_never_a_project_opened_lately() {
+    let (folder, plugins) = (super::folder(), plugins());
+    for _ in 0..2 {
+        let mut terminal = open("tutorial", folder.path(), &plugins);
+        terminal.wait_for_text("1/12");
+        terminal.press(" ");
+        terminal.wait_for_text("2/12");
+        terminal.press(" .jwm");
+        terminal.wait_for_text("6/12");
+        terminal.press("l\r");
+        terminal.wait_for_text("7/12");
+        terminal.press("g?");
+        terminal.wait_for_text("1/12");
+        terminal.press("Q");
+        assert!(terminal.wait_for_end());
+        terminal.assert_restored();
+    }
+    assert!(!folder.path().join("honami/recent").exists());
+}

@@ -15,10 +15,12 @@ use super::time::Pace;
 use crate::app::correcting::nudge_px;
 use crate::app::files::Way;
 use crate::app::form::{Features, Form, Task};
+use crate::app::lesson::Lesson;
 use crate::app::panel::Panel;
 
 /// Does an action. The count, if one was typed, is still in the state.
 pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {
+    state.lesson.iter_mut().for_each(|lesson| lesson.note(action));
     match action {
         Action::Left => return steer(state, -1.0, 0.0, 1.0),
         Action::Right => return steer(state, 1.0, 0.0, 1.0),
@@ -63,6 +65,7 @@ pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {
         Action::GoLabel => pick::label(state),
         Action::GoKey => pick::key_frame(state),
         Action::GoPlugin => pick::plugin(state),
+        Action::Tutorial => return vec![Effect::Teach],
         Action::GoFile => return vec![Effect::Follow(Way::Folder(PathBuf::from(".")))],
         Action::Sort => time::sort(state),
         Action::DeleteTrack => return edit::delete(state),
@@ -231,6 +234,9 @@ fn back(state: &mut State) -> Vec<Effect> {
             if let Some(job) = state.job.as_mut().filter(|job| !job.is_stopping) {
                 job.is_stopping = true;
                 return vec![Effect::StopJob];
+            }
+            if state.job.is_none() {
+                state.lesson.iter_mut().for_each(Lesson::close);
             }
         }
         Mode::Form(form) if form.typed.is_some() => form.typed = None,

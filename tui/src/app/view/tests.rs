@@ -146,6 +146,9 @@ fn screens() {
     check("wide_names_80x24", small, "", |state| state.tracks[0].name = Some("芽の左".to_owned()));
     check("quadrants_80x24", small, "v q", |_| {});
     check("octants_120x40", large, "v q v q v q", |_| {});
+    let lesson = |state: &mut State| state.lesson = Some(crate::app::lesson::Lesson::new(state));
+    check("lesson_80x24", small, "space space . j w", lesson);
+    check("lesson_40x12", (40, 12), "space space . j w", lesson);
     check("view_80x24", small, "v", |_| {});
     check("mono_80x24", small, "m l", |state| state.mono = true);
 }
