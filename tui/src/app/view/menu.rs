@@ -59,22 +59,31 @@ pub(super) fn draw(menu: &Menu, area: Rect, frame: &mut Frame) {
     }
 }
 
-/// What may follow the keys typed so far, at once.
+/// What may follow the keys typed so far, at once. Where the rows do not suffice, names stand in columns.
 pub(super) fn which_key(state: &State, area: Rect, frame: &mut Frame) {
     let context = state.mode.context();
     let follow: Vec<_> = state.keys.after(context, &state.pending).collect();
-    let n = u16::try_from(follow.len()).unwrap_or(u16::MAX);
-    let rows =
-        Rect { y: area.bottom().saturating_sub(n.min(area.height)), height: n.min(area.height), ..area };
+    let n_columns = follow.len().div_ceil(usize::from(area.height.max(1))).max(1);
+    let n_rows = follow.len().div_ceil(n_columns);
+    let height = u16::try_from(n_rows).unwrap_or(u16::MAX).min(area.height);
+    let rows = Rect { y: area.bottom() - height, height, ..area };
     fill(frame, rows, style::PANEL);
-    let inside = Rect { x: rows.x + 1, width: rows.width.saturating_sub(2), ..rows };
-    for (y, binding) in (0..).zip(follow) {
-        let rest = &binding.keys[state.pending.len()..];
-        let line = Line::from(vec![
-            Span::styled(format!("{:<3} ", shown(&state.pending)), style::DIM),
-            Span::styled(format!("{:<4}", shown(rest)), style::ACCENT),
-            Span::raw(binding.action.info().doc),
-        ]);
-        put(frame, inside, y, &line);
+    let width = rows.width.saturating_sub(2) / u16::try_from(n_columns).unwrap_or(u16::MAX);
+    let gap = u16::from(n_columns > 1);
+    let columns =
+        (0..).map(|column| Rect { x: rows.x + 1 + column * width, width: width.saturating_sub(gap), ..rows });
+    for (column, bindings) in columns.zip(follow.chunks(n_rows.max(1))) {
+        for (y, binding) in (0..).zip(bindings) {
+            let rest =
+                Span::styled(format!("{:<4}", shown(&binding.keys[state.pending.len()..])), style::ACCENT);
+            let info = binding.action.info();
+            let line = if n_columns == 1 {
+                let typed = Span::styled(format!("{:<3} ", shown(&state.pending)), style::DIM);
+                Line::from(vec![typed, rest, Span::raw(info.doc)])
+            } else {
+                Line::from(vec![rest, Span::raw(info.name.replace('-', " "))])
+            };
+            put(frame, column, y, &line);
+        }
     }
 }

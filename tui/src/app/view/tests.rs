@@ -150,6 +150,7 @@ fn screens() {
     check("lesson_80x24", small, "space space . j w", lesson);
     check("lesson_40x12", (40, 12), "space space . j w", lesson);
     check("view_80x24", small, "v", |_| {});
+    check("prefix_40x12", (40, 12), "g", |_| {});
     check("mono_80x24", small, "m l", |state| state.mono = true);
 }
 
@@ -199,6 +200,23 @@ fn plots_are_worked_out_once_for_each_state_of_the_tracks() {
     assert_eq!(asks(&mut state), Some(((Subject::Group(0), 1), 2)));
     update(&mut state, Msg::Fact(Fact::Groups(None)));
     assert_eq!(asks(&mut state), Some(((track(2), 2), 1)));
+}
+
+#[test]
+fn what_may_follow_a_prefix_is_all_there_however_few_rows_there_are() {
+    for prefix in ["g", "v", "P"] {
+        for size in [(80, 24), (80, 12), (40, 12), (40, 9)] {
+            let mut state = fixture::state();
+            state.size = size;
+            fixture::press(&mut state, prefix);
+            let text = dump(&draw(&state, None));
+            let words: Vec<&str> = text.split_whitespace().collect();
+            for binding in state.keys.after(state.mode.context(), &state.pending) {
+                let key = crate::app::keymap::shown(&binding.keys[1..]);
+                assert!(words.contains(&key.as_str()), "{prefix} {key} at {size:?}:\n{text}");
+            }
+        }
+    }
 }
 
 #[test]
