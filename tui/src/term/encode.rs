@@ -7,6 +7,8 @@
 mod motion;
 mod pen;
 
+use std::borrow::Cow;
+
 use ratatui::buffer::{Buffer, Cell, CellWidth};
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier};
@@ -137,22 +139,24 @@ impl Encoder {
             bytes.extend_from_slice(b"\x1b[m\x1b[2J");
         }
         self.pen.lose_cursor();
-        // Both ways of choosing would compete for the budget: it is one or the other.
-        let mut soft = wanted.iter().zip(&frame.softness).filter(|(_, softness)| **softness > 0);
-        let all_halves = soft.all(|(cell, _)| pixels(cell).is_some());
+        let halves = halves(&wanted, &frame.softness);
         let (mut wrong, mut spots) = (Vec::new(), Vec::new());
         let mut index = 0;
         while index < wanted.len() {
             let cell = &wanted[index];
+            let softness = frame.softness[index];
+            if let Some(wanted) = halves.get(index).filter(|_| softness > 0) {
+                spots.extend(self.spot(index, *wanted, softness, moving));
+                index += 1;
+                continue;
+            }
             let width = usize::from(cell.cell_width()).max(1);
-            if frame.softness[index] == 0 {
+            if softness == 0 {
                 if self.shown[index] != *cell {
                     self.put(index, cell, 0, bytes);
                 }
-            } else if let Some([above, below]) = pixels(cell).filter(|_| all_halves) {
-                spots.extend(self.spot(index, above, below, frame.softness[index].into()));
             } else if let Some(error) = self.error(index, cell, moving) {
-                wrong.push(Wrong { error: error.saturating_mul(frame.softness[index].into()), index });
+                wrong.push(Wrong { error: error.saturating_mul(softness.into()), index });
             }
             index += width;
         }
@@ -164,13 +168,18 @@ impl Encoder {
     }
 
     /// A cell of the picture, unless it is right on screen.
-    fn spot(&self, index: usize, above: [u8; 3], below: [u8; 3], weight: f32) -> Option<Spot> {
-        let error = match pixels(&self.shown[index]) {
-            Some(shown) if shown == [above, below] => return None,
-            Some(shown) => (distance(shown[0], above) + distance(shown[1], below)) as f32,
+    fn spot(&self, index: usize, wanted: [[u8; 3]; 2], softness: u8, moving: bool) -> Option<Spot> {
+        let cell = &self.shown[index];
+        // Under what covers it a cell is wrong even in the right colours, which matters once the picture rests.
+        let least = u32::from(!moving && !cell.modifier.is_empty());
+        let error = half(cell).map(|[above, below]| distance(above, wanted[0]) + distance(below, wanted[1]));
+        let error = match error.map(|error| error.max(least)) {
+            Some(0) => return None,
+            Some(error) => error as f32,
             None => NOTHING_RIGHT,
         };
-        Some(Spot { index, above, below, weight, error: error * weight })
+        let weight = f32::from(softness);
+        Some(Spot { index, above: wanted[0], below: wanted[1], weight, error: error * weight })
     }
 
     /// Paints what takes most error off the picture within `budget` bytes; returns how many cells stay wrong.
@@ -190,8 +199,12 @@ impl Encoder {
         let colours = self.pen.plain(bytes);
         self.pen.lose_cursor();
         let left = budget.saturating_sub(bytes.len() - start);
-        for paint in self.motion.choose(&mut spots, colours, self.columns, left, moving) {
+        // Out of the way, because painting changes everything else.
+        let mut motion = std::mem::take(&mut self.motion);
+        let mut cut = None;
+        for paint in motion.choose(&mut spots, colours, self.columns, left, moving) {
             if bytes.len() - start + pen::LONGEST > budget {
+                cut = Some(paint.index);
                 break;
             }
             let (x, y) = (paint.index % self.columns, paint.index / self.columns);
@@ -216,15 +229,19 @@ impl Encoder {
             cell.set_symbol(HALF_BLOCK).set_fg(above).set_bg(below);
             n_wrong -= usize::from(*cell == wanted[paint.index]);
         }
+        if let Some(index) = cut {
+            motion.cut(index);
+        }
+        self.motion = motion;
         n_wrong
     }
 
     /// The frame in the colours that the terminal has.
-    fn wanted(&self, frame: &Frame) -> Vec<Cell> {
-        let mut cells = frame.cells.content.clone();
+    fn wanted<'f>(&self, frame: &'f Frame) -> Cow<'f, [Cell]> {
         if self.depth == Depth::True {
-            return cells;
+            return Cow::Borrowed(&frame.cells.content);
         }
+        let mut cells = frame.cells.content.clone();
         for cell in &mut cells {
             if self.depth == Depth::Mono && cell.symbol() == HALF_BLOCK {
                 let sum: u32 = [cell.fg, cell.bg].into_iter().flat_map(rgb).map(u32::from).sum();
@@ -235,7 +252,7 @@ impl Encoder {
             cell.fg = self.depth.nearest(cell.fg);
             cell.bg = self.depth.nearest(cell.bg);
         }
-        cells
+        Cow::Owned(cells)
     }
 
     /// How wrong a soft cell is on screen; `None` when it is right, or nearly so while the picture moves.
@@ -322,11 +339,24 @@ impl Encoder {
     }
 }
 
-/// The two pixels of a half block in 24-bit colours.
-fn pixels(cell: &Cell) -> Option<[[u8; 3]; 2]> {
-    match (cell.symbol(), cell.fg, cell.bg) {
-        (HALF_BLOCK, Color::Rgb(..), Color::Rgb(..)) if cell.modifier.is_empty() => {
-            Some([rgb(cell.fg), rgb(cell.bg)])
+/// The pixels of every cell, if all soft ones are half blocks in 24-bit colours; otherwise nothing.
+///
+/// Both ways of choosing would compete for the budget: it is one or the other.
+fn halves(cells: &[Cell], softness: &[u8]) -> Vec<[[u8; 3]; 2]> {
+    let pixels = |(cell, softness): (&Cell, &u8)| match softness {
+        0 => Some([[0; 3]; 2]),
+        _ => half(cell).filter(|_| cell.modifier.is_empty()),
+    };
+    cells.iter().zip(softness).map(pixels).collect::<Option<_>>().unwrap_or_default()
+}
+
+/// The two pixels of a half block in 24-bit colours, covered or not.
+fn half(cell: &Cell) -> Option<[[u8; 3]; 2]> {
+    match (cell.fg, cell.bg) {
+        (Color::Rgb(a, b, c), Color::Rgb(d, e, f))
+            if (cell.modifier - COVERED).is_empty() && cell.symbol() == HALF_BLOCK =>
+        {
+            Some([[a, b, c], [d, e, f]])
         }
         _ => None,
     }

@@ -10,17 +10,25 @@
 use super::{distance, pen};
 
 /// So many pens are followed.
-const SURVIVORS: usize = 4;
+const SURVIVORS: usize = 2;
 /// The price is looked for in so many trials at most.
-const TRIALS: usize = 4;
-/// A budget spent to this part is spent.
-const SPENT: f32 = 0.94;
+const TRIALS: usize = 2;
+/// A trial that spends between these parts of the budget will do; what is too much is cut off.
+const WILL_DO: (f32, f32) = (0.85, 1.03);
+/// Part of the budget that the next frame's price is meant to spend.
+const AIM: f32 = 0.98;
+/// The price follows the bytes with this power.
+const POWER: f32 = 0.75;
 /// Least price of a byte while the picture moves, squared error: less would buy what the next frame paints over.
 const PRICE_MIN: f32 = 2.0;
-/// Largest change of the price between two trials.
+/// Largest change of the price at once.
 const PRICE_STEP: f32 = 8.0;
+/// A price below this is none.
+const PRICE_NONE: f32 = 1e-2;
 /// No cell costs more, bytes; a price at which the worst cell is worth so many is not too high.
-const DEAREST: f32 = 60.0;
+const DEAREST: usize = 60;
+/// A cell whose error is not worth so many bytes is passed by.
+const CHEAPEST: usize = 5;
 /// Cells worth looking at: one for so many bytes.
 const BYTES_PER_CELL: usize = 4;
 /// Wide enough that it is far from everything.
@@ -62,14 +70,16 @@ pub(super) struct Paint {
 #[derive(Clone, Copy, Debug)]
 struct Survivor {
     /// Error and price so far, relative to painting nothing.
-    sum: f32,
-    n_bytes: u32,
+    sum: f64,
+    n_bytes: usize,
     fg: Option<Rgb>,
     bg: Option<Rgb>,
     /// The cell after the one painted last; `None` when the cursor may be anywhere.
     cursor: Option<usize>,
     /// The last paint, as a place in the list of all paints.
     last: Option<u32>,
+    /// The paint of this cell, not yet in the list.
+    paint: Option<Paint>,
 }
 
 /// Chooses paints; remembers what a byte was worth.
@@ -77,15 +87,21 @@ struct Survivor {
 pub(super) struct Motion {
     /// While the picture rests, and while it moves.
     prices: [f32; 2],
+    /// The cell with which the walk begins: the first that the last budget did not reach.
+    first: usize,
+    /// Room for sorting errors.
+    errors: Vec<f32>,
     /// Paints of all survivors, each with its predecessor.
     paints: Vec<(Paint, Option<u32>)>,
+    /// Those of the best way, in order.
+    path: Vec<Paint>,
 }
 
 impl Motion {
-    /// The paints that take most error off the screen for `budget` bytes, or a few more when no price fits.
+    /// The paints that take most error off the screen for `budget` bytes, or some more.
     ///
     /// `fg` and `bg` are the pen's colours, where it has 24-bit ones. While the picture moves, cells may be painted with
-    /// colours near the wanted; otherwise only exactly.
+    /// colours near the wanted; otherwise only exactly. What the budget does not reach, [`Motion::cut`] is told.
     pub(super) fn choose(
         &mut self,
         spots: &mut Vec<Spot>,
@@ -93,71 +109,83 @@ impl Motion {
         columns: usize,
         budget: usize,
         moving: bool,
-    ) -> Vec<Paint> {
+    ) -> &[Paint] {
         let n_looked_at = (budget / BYTES_PER_CELL).max(1);
         if spots.len() > n_looked_at {
-            spots.select_nth_unstable_by(n_looked_at - 1, |a, b| b.error.total_cmp(&a.error));
-            spots.truncate(n_looked_at);
-            spots.sort_unstable_by_key(|spot| spot.index);
+            self.errors.clear();
+            self.errors.extend(spots.iter().map(|spot| spot.error));
+            let (_, &mut least, _) =
+                self.errors.select_nth_unstable_by(n_looked_at - 1, |a, b| b.total_cmp(a));
+            spots.retain(|spot| spot.error >= least);
         }
+        let first = spots.partition_point(|spot| spot.index < self.first);
+        spots.rotate_left(first);
         let worst = spots.iter().map(|spot| spot.error).fold(0.0, f32::max);
         let least = if moving { PRICE_MIN } else { 0.0 };
-        let (mut price, mut dear, mut cheap) = (self.prices[usize::from(moving)].max(least), None, None);
-        let mut best: Option<(u32, Vec<Paint>)> = None;
+        // At the highest price the worst cell is painted: there is always progress.
+        let most = (worst / DEAREST as f32).max(least);
+        let all_fits = spots.len() * DEAREST <= budget;
+        let mut price = if all_fits { least } else { self.prices[usize::from(moving)].clamp(least, most) };
+        let mut last = None;
         for _ in 0..TRIALS {
             let walk = Walk { spots, columns, price, moving };
-            let (n_bytes, last) = walk.run(colours, &mut self.paints);
-            let fits = n_bytes as usize <= budget;
-            let is_better = match &best {
-                None => true,
-                Some((known, _)) if *known as usize > budget => fits && n_bytes > 0 || n_bytes < *known,
-                Some((known, _)) => fits && n_bytes > *known,
-            };
-            if is_better && n_bytes > 0 {
-                best = Some((n_bytes, self.path(last)));
-                self.prices[usize::from(moving)] = price;
-            }
-            let part = n_bytes as f32 / budget.max(1) as f32;
-            if fits && (part >= SPENT || price <= least) {
+            let best = walk.run(colours, &mut self.paints);
+            last = best.last;
+            let part = best.n_bytes as f32 / budget.max(1) as f32;
+            let tried = price;
+            let change = (part / AIM).powf(POWER).clamp(1.0 / PRICE_STEP, PRICE_STEP);
+            price = (price.max(PRICE_NONE) * change).min(most);
+            // Nothing is cheaper than free: with all of it in the budget the price ends there.
+            price = if price <= PRICE_NONE { least } else { price.max(least) };
+            if (part >= WILL_DO.0 || tried <= least) && part <= WILL_DO.1 {
                 break;
             }
-            if fits {
-                dear = Some(price);
-            } else {
-                cheap = Some(price);
-            }
-            price = match (cheap, dear) {
-                (Some(cheap), Some(dear)) => f32::sqrt(cheap.max(1e-3) * dear),
-                _ if n_bytes == 0 => (price / PRICE_STEP).min(worst / DEAREST),
-                _ => price.max(1e-3) * part.powf(1.5).clamp(1.0 / PRICE_STEP, PRICE_STEP),
-            };
-            // Nothing is cheaper than free: with all of it in the budget the price ends there.
-            price = if price < 1e-2 { least } else { price.max(least) };
         }
-        best.map(|(_, paints)| paints).unwrap_or_default()
+        self.prices[usize::from(moving)] = price;
+        self.follow(last);
+        &self.path
     }
 
-    /// The paints up to one of them, in order.
-    fn path(&self, mut last: Option<u32>) -> Vec<Paint> {
-        let mut path = Vec::new();
+    /// Says that this cell of the path was not painted any more.
+    pub(super) fn cut(&mut self, index: usize) {
+        self.first = index;
+    }
+
+    /// Lists the paints up to one of them, in order.
+    fn follow(&mut self, mut last: Option<u32>) {
+        self.path.clear();
         while let Some(at) = last {
             let (paint, before) = self.paints[at as usize];
-            path.push(paint);
+            self.path.push(paint);
             last = before;
         }
-        path.reverse();
-        path
+        self.path.reverse();
     }
 }
 
-/// One way of painting a cell.
-struct Way {
-    error: u32,
-    n_bytes: usize,
-    glyph: Glyph,
-    fg: Option<Rgb>,
-    bg: Option<Rgb>,
+/// What a colour of the pen becomes.
+#[derive(Clone, Copy)]
+enum Dip {
+    Keep,
+    Above,
+    Below,
+    Flat,
 }
+
+const N_WAYS: usize = 10;
+/// The ways of painting a cell: the glyph, and what becomes of the foreground and of the background.
+const WAYS: [(Glyph, Dip, Dip); N_WAYS] = [
+    (Glyph::Upper, Dip::Keep, Dip::Keep),
+    (Glyph::Lower, Dip::Keep, Dip::Keep),
+    (Glyph::Blank, Dip::Keep, Dip::Keep),
+    (Glyph::Upper, Dip::Above, Dip::Keep),
+    (Glyph::Lower, Dip::Keep, Dip::Above),
+    (Glyph::Upper, Dip::Keep, Dip::Below),
+    (Glyph::Lower, Dip::Below, Dip::Keep),
+    (Glyph::Blank, Dip::Keep, Dip::Flat),
+    (Glyph::Upper, Dip::Above, Dip::Below),
+    (Glyph::Lower, Dip::Below, Dip::Above),
+];
 
 /// A walk through all spots at one price.
 struct Walk<'a> {
@@ -168,147 +196,163 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    /// Bytes of the best way, and its last paint.
-    fn run(
-        &self,
-        (fg, bg): (Option<Rgb>, Option<Rgb>),
-        paints: &mut Vec<(Paint, Option<u32>)>,
-    ) -> (u32, Option<u32>) {
+    /// The best way through all spots; the paints of all survivors are listed.
+    fn run(&self, (fg, bg): (Option<Rgb>, Option<Rgb>), paints: &mut Vec<(Paint, Option<u32>)>) -> Survivor {
         paints.clear();
-        let mut survivors = vec![Survivor { sum: 0.0, n_bytes: 0, fg, bg, cursor: None, last: None }];
-        let mut next = Vec::with_capacity(SURVIVORS + 1);
+        let start = Survivor { sum: 0.0, n_bytes: 0, fg, bg, cursor: None, last: None, paint: None };
+        let mut survivors = Best::of(start);
+        let worth = self.price * CHEAPEST as f32;
         for spot in self.spots {
-            // Not even one byte is worth it.
-            if spot.error <= self.price {
+            // Hardly ever is it painted for so little.
+            if spot.error <= worth {
                 continue;
             }
-            let inks = Inks::of(spot, if self.moving { self.price } else { 0.0 });
-            next.clone_from(&survivors);
-            let n_before = paints.len();
-            for survivor in &survivors {
-                self.ways(spot, &inks, survivor, &mut next, paints);
+            let inks = Inks::of(spot, self.price, self.moving);
+            let mut next = survivors;
+            for survivor in survivors.all() {
+                self.ways(spot, &inks, survivor, &mut next);
             }
-            survivors.clone_from(&next);
-            keep_used(&mut survivors, paints, n_before);
+            for survivor in &mut next.ranked[..next.n] {
+                if let Some(paint) = survivor.paint.take() {
+                    paints.push((paint, survivor.last));
+                    survivor.last = Some(paints.len() as u32 - 1);
+                }
+            }
+            survivors = next;
         }
-        survivors.first().map_or((0, None), |best| (best.n_bytes, best.last))
+        survivors.ranked[0]
     }
 
     /// Adds to `next` what becomes of a survivor that paints this spot.
-    fn ways(
-        &self,
-        spot: &Spot,
-        inks: &Inks,
-        from: &Survivor,
-        next: &mut Vec<Survivor>,
-        paints: &mut Vec<(Paint, Option<u32>)>,
-    ) {
+    fn ways(&self, spot: &Spot, inks: &Inks, from: &Survivor, next: &mut Best) {
         let far = |pen: Option<Rgb>, wanted| pen.map_or(FAR, |pen| distance(pen, wanted));
         let (fa, fb) = (far(from.fg, spot.above), far(from.fg, spot.below));
         let (ba, bb) = (far(from.bg, spot.above), far(from.bg, spot.below));
-        let (above, below, flat) = (&inks.above, &inks.below, &inks.flat);
-        let way = |error, n_bytes, glyph, fg, bg| Way { error, n_bytes, glyph, fg, bg };
-        let (a, b) = (Some(above.colour), Some(below.colour));
-        let ways = [
-            way(fa + bb, 3, Glyph::Upper, None, None),
-            way(fb + ba, 3, Glyph::Lower, None, None),
-            way(ba + bb, 1, Glyph::Blank, None, None),
-            way(above.error + bb, 6 + above.n_bytes, Glyph::Upper, a, None),
-            way(above.error + fb, 6 + above.n_bytes, Glyph::Lower, None, a),
-            way(fa + below.error, 6 + below.n_bytes, Glyph::Upper, None, b),
-            way(ba + below.error, 6 + below.n_bytes, Glyph::Lower, b, None),
-            way(flat.error, 4 + flat.n_bytes, Glyph::Blank, None, Some(flat.colour)),
-            way(above.error + below.error, 7 + above.n_bytes + below.n_bytes, Glyph::Upper, a, b),
-            way(above.error + below.error, 7 + above.n_bytes + below.n_bytes, Glyph::Lower, b, a),
+        let (above, below, flat) = (inks.above.error, inks.below.error, inks.flat.error);
+        // In the order of `WAYS`.
+        let errors = [
+            fa + bb,
+            fb + ba,
+            ba + bb,
+            above + bb,
+            above + fb,
+            fa + below,
+            ba + below,
+            flat,
+            above + below,
+            above + below,
         ];
         let go = pen::move_bytes(from.cursor, spot.index, self.columns);
-        for way in ways {
-            if !self.moving && way.error > 0 {
+        let base = go as f32 * self.price - spot.error;
+        let mut limit = next.limit(from);
+        let mut costs = [0.0; N_WAYS];
+        for ((cost, &error), &price) in costs.iter_mut().zip(&errors).zip(&inks.prices) {
+            *cost = base + error as f32 * spot.weight + price;
+        }
+        for (way, &cost) in costs.iter().enumerate() {
+            if cost >= limit || errors[way] > 0 && !self.moving {
                 continue;
             }
-            let n_bytes = way.n_bytes + go;
-            let sum = from.sum + way.error as f32 * spot.weight - spot.error + self.price * n_bytes as f32;
-            let is_full = next.len() == SURVIVORS;
-            if is_full && next.last().is_some_and(|worst| worst.sum <= sum) {
-                continue;
-            }
-            let survivor = Survivor {
-                sum,
-                n_bytes: from.n_bytes + n_bytes as u32,
-                fg: way.fg.or(from.fg),
-                bg: way.bg.or(from.bg),
+            let (glyph, fg, bg) = WAYS[way];
+            let (fg, bg) = (inks.dip(fg), inks.dip(bg));
+            next.admit(Survivor {
+                sum: from.sum + f64::from(cost),
+                n_bytes: from.n_bytes + inks.n_bytes[way] as usize + go,
+                fg: fg.or(from.fg),
+                bg: bg.or(from.bg),
                 cursor: Some(spot.index + 1),
-                last: Some(paints.len() as u32),
-            };
-            if admit(next, survivor) {
-                let paint = Paint { index: spot.index, glyph: way.glyph, fg: way.fg, bg: way.bg };
-                paints.push((paint, from.last));
+                last: from.last,
+                paint: Some(Paint { index: spot.index, glyph, fg, bg }),
+            });
+            limit = next.limit(from);
+        }
+    }
+}
+
+/// The best ways so far, no two of which leave the same pen in the same place.
+#[derive(Clone, Copy)]
+struct Best {
+    ranked: [Survivor; SURVIVORS],
+    n: usize,
+}
+
+impl Best {
+    fn of(only: Survivor) -> Self {
+        Self { ranked: [only; SURVIVORS], n: 1 }
+    }
+
+    fn all(&self) -> &[Survivor] {
+        &self.ranked[..self.n]
+    }
+
+    /// Nothing that adds this much to a survivor is admitted any more.
+    fn limit(&self, from: &Survivor) -> f32 {
+        if self.n < SURVIVORS { f32::INFINITY } else { (self.ranked[SURVIVORS - 1].sum - from.sum) as f32 }
+    }
+
+    fn admit(&mut self, new: Survivor) {
+        let is_same = |s: &Survivor| (s.fg, s.bg, s.cursor) == (new.fg, new.bg, new.cursor);
+        // Whose place is taken, if all that are better may stay.
+        let mut place = match self.all().iter().position(is_same) {
+            Some(same) if self.ranked[same].sum <= new.sum => return,
+            Some(same) => same,
+            None => {
+                self.n = (self.n + 1).min(SURVIVORS);
+                self.n - 1
             }
+        };
+        while place > 0 && self.ranked[place - 1].sum > new.sum {
+            self.ranked[place] = self.ranked[place - 1];
+            place -= 1;
         }
+        self.ranked[place] = new;
     }
-}
-
-/// Puts a survivor in its place, the best first; of two with the same pen in the same place only the better stays.
-fn admit(survivors: &mut Vec<Survivor>, new: Survivor) -> bool {
-    let same = survivors.iter().position(|s| (s.fg, s.bg, s.cursor) == (new.fg, new.bg, new.cursor));
-    if let Some(same) = same {
-        if survivors[same].sum <= new.sum {
-            return false;
-        }
-        survivors.remove(same);
-    }
-    let place = survivors.partition_point(|s| s.sum <= new.sum);
-    survivors.insert(place, new);
-    survivors.truncate(SURVIVORS);
-    place < SURVIVORS
-}
-
-/// Forgets the paints since `n_before` that no survivor has made.
-fn keep_used(survivors: &mut [Survivor], paints: &mut Vec<(Paint, Option<u32>)>, n_before: usize) {
-    let mut kept = [(Paint { index: 0, glyph: Glyph::Blank, fg: None, bg: None }, None); SURVIVORS];
-    let mut n_kept = 0;
-    for survivor in survivors {
-        if let Some(last) = survivor.last.filter(|last| *last as usize >= n_before) {
-            kept[n_kept] = paints[last as usize];
-            survivor.last = Some((n_before + n_kept) as u32);
-            n_kept += 1;
-        }
-    }
-    paints.truncate(n_before);
-    paints.extend_from_slice(&kept[..n_kept]);
 }
 
 /// A colour as it would be sent.
 struct Ink {
     colour: Rgb,
-    /// Of its parameters: `38;2;r;g;b`.
-    n_bytes: usize,
     /// What it leaves: of one pixel, or for a flat cell of both.
     error: u32,
 }
 
-/// The colours that a spot may be painted with.
+/// The colours that a spot may be painted with, and what the ways of painting it cost without the way there, bytes.
 struct Inks {
     above: Ink,
     below: Ink,
     flat: Ink,
+    n_bytes: [u32; N_WAYS],
+    /// The bytes at the walk's price.
+    prices: [f32; N_WAYS],
 }
 
 impl Inks {
-    fn of(spot: &Spot, price: f32) -> Self {
-        let limit = price / spot.weight;
+    fn of(spot: &Spot, price: f32, moving: bool) -> Self {
+        let limit = if moving { price / spot.weight } else { 0.0 };
         let (above, below) = (spot.above, spot.below);
         let mean = |k: usize| ((u16::from(above[k]) + u16::from(below[k])).div_ceil(2)) as u8;
         let flat = shorter([mean(0), mean(1), mean(2)], limit / 2.0);
-        let ink = |wanted: Rgb| {
-            let colour = shorter(wanted, limit);
-            Ink { colour, n_bytes: pen::rgb_bytes(colour), error: distance(colour, wanted) }
-        };
         let error = distance(flat, above) + distance(flat, below);
-        Self {
-            above: ink(above),
-            below: ink(below),
-            flat: Ink { colour: flat, n_bytes: pen::rgb_bytes(flat), error },
+        let flat = Ink { colour: flat, error };
+        let [above, below] = [above, below].map(|wanted| {
+            let colour = shorter(wanted, limit);
+            Ink { colour, error: distance(colour, wanted) }
+        });
+        let [a, b, f] = [&above, &below, &flat].map(|ink| pen::rgb_bytes(ink.colour) as u32);
+        let n_bytes = [3, 3, 1, 6 + a, 6 + a, 6 + b, 6 + b, 4 + f, 7 + a + b, 7 + a + b];
+        let mut prices = [0.0; N_WAYS];
+        for (way, &n) in prices.iter_mut().zip(&n_bytes) {
+            *way = n as f32 * price;
+        }
+        Self { above, below, flat, n_bytes, prices }
+    }
+
+    fn dip(&self, dip: Dip) -> Option<Rgb> {
+        match dip {
+            Dip::Keep => None,
+            Dip::Above => Some(self.above.colour),
+            Dip::Below => Some(self.below.colour),
+            Dip::Flat => Some(self.flat.colour),
         }
     }
 }

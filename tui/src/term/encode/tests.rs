@@ -100,7 +100,7 @@ fn assert_shows(screen: &vt100::Screen, frame: &Frame) {
         }
         covered = cell.cell_width().max(1) - 1;
         let there = screen.cell(y, x).unwrap();
-        if let Some(wanted) = pixels(cell) {
+        if let Some(wanted) = half(cell) {
             assert_eq!(
                 pixels_of(there),
                 wanted.map(|[r, g, b]| vt100::Color::Rgb(r, g, b)),
@@ -156,7 +156,7 @@ proptest! {
             }
         }
         let mut poorer = last.clone();
-        poorer.cells.content = encoder.wanted(&last);
+        poorer.cells.content = encoder.wanted(&last).into_owned();
         prop_assert!(poorer.cells.content.iter().all(|cell| shows(depth, cell)));
         assert_shows(emulator.screen(), &poorer);
         let mut nothing = Vec::new();

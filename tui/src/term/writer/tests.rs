@@ -51,12 +51,12 @@ impl Wire {
     }
 }
 
-/// A picture in the area, of one colour but for its first cell.
+/// A picture in the area, of two colours but for its first cell.
 fn frame(scene: u64, first: u8) -> Frame {
     let mut frame = Frame::new(10, 6);
     for at in AREA.positions() {
         let v = if (at.x, at.y) == (AREA.x, AREA.y) { first } else { 90 };
-        frame.cells[at].set_char('▀').set_fg(Color::Rgb(v, v, v)).set_bg(Color::Rgb(v, v, v));
+        frame.cells[at].set_char('▀').set_fg(Color::Rgb(v, v, v)).set_bg(Color::Rgb(v, v, v / 3));
         let i = frame.cells.index_of(at.x, at.y);
         frame.softness[i] = 1;
     }
