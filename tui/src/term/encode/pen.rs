@@ -38,6 +38,11 @@ pub(super) fn expected_bytes(cell: &Cell) -> usize {
     12 + colour(cell.fg) + colour(cell.bg)
 }
 
+/// Whether nothing of a cell is in the foreground's colour.
+fn is_flat(cell: &Cell) -> bool {
+    cell.symbol() == " " && !cell.modifier.intersects(Modifier::UNDERLINED | Modifier::REVERSED)
+}
+
 fn digits(n: u8) -> usize {
     match n {
         0..=9 => 1,
@@ -112,7 +117,7 @@ impl Pen {
     pub(super) fn put(&mut self, x: usize, y: usize, cell: &Cell, band: u8, bytes: &mut Vec<u8>) -> Cell {
         self.go_to(x, y, bytes);
         let mut painted = cell.clone();
-        if near(self.fg, cell.fg, band) {
+        if !is_flat(cell) && near(self.fg, cell.fg, band) {
             painted.fg = self.fg;
         }
         if near(self.bg, cell.bg, band) {
@@ -136,7 +141,8 @@ impl Pen {
 
     /// Sets the colours and attributes of a cell, as one sequence of what differs.
     fn dip(&mut self, cell: &Cell, bytes: &mut Vec<u8>) {
-        if (self.fg, self.bg, self.modifier) == (cell.fg, cell.bg, cell.modifier) {
+        let keeps_fg = is_flat(cell);
+        if (self.bg, self.modifier) == (cell.bg, cell.modifier) && (keeps_fg || self.fg == cell.fg) {
             return;
         }
         bytes.extend_from_slice(b"\x1b[");
@@ -150,8 +156,9 @@ impl Pen {
                 number_to(bytes, number);
             }
         }
-        if self.fg != cell.fg {
+        if self.fg != cell.fg && !keeps_fg {
             colour(cell.fg, 30, bytes);
+            self.fg = cell.fg;
         }
         if self.bg != cell.bg {
             colour(cell.bg, 40, bytes);
@@ -160,7 +167,7 @@ impl Pen {
             bytes.pop();
         }
         bytes.push(b'm');
-        (self.fg, self.bg, self.modifier) = (cell.fg, cell.bg, cell.modifier);
+        (self.bg, self.modifier) = (cell.bg, cell.modifier);
     }
 }
 
