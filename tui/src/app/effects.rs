@@ -13,6 +13,7 @@ use honami_model::track::TrackId;
 use honami_workbench::WorkbenchError;
 use honami_workbench::cluster::{self, ClusterRequest};
 use honami_workbench::plugins::{Kind, PluginInfo};
+use honami_workbench::retrack::{self, Way};
 use honami_workbench::session::Session;
 use honami_workbench::store::{Project, StoreError};
 use honami_workbench::track::{self, TrackRequest};
@@ -129,6 +130,7 @@ impl World {
             Effect::Jump(to) => self.jump(to),
             Effect::Redo(n) => self.travel("redone", n, Project::redo),
             Effect::Track(request) => self.track(&request, now),
+            Effect::Retrack { track, way, frame } => self.retrack(track, way, frame, now),
             Effect::Cluster(request) => self.cluster(&request, now),
             Effect::StopJob => {
                 self.running.iter().for_each(|(running, _)| running.stop());
@@ -170,7 +172,7 @@ impl World {
 
     fn add_feature(&mut self, frame: u32, [x, y]: [f32; 2]) -> Facts {
         let track = TrackId(self.session.project.reserve_tracks(1)?.start);
-        let mut facts = self.commit(Transaction::add_track(track, frame, x, y), "t tracks it, u undoes")?;
+        let mut facts = self.commit(Transaction::add_track(track, frame, x, y), "t r tracks it, u undoes")?;
         facts.push(Fact::Placed(track));
         Ok(facts)
     }
@@ -217,6 +219,12 @@ impl World {
     fn track(&mut self, request: &TrackRequest, now: Duration) -> Facts {
         let work = Work::Track(track::prepare(&mut self.session, request)?);
         self.start(work, &request.plugin, true, now)
+    }
+
+    fn retrack(&mut self, track: TrackId, way: Way, frame: u32, now: Duration) -> Facts {
+        let request = retrack::around(&self.session.project, track, way, frame, None)?;
+        let job = retrack::prepare(&self.session, &request)?;
+        self.start(Work::Retrack(Box::new(job)), "re-tracking", false, now)
     }
 
     fn cluster(&mut self, request: &ClusterRequest, now: Duration) -> Facts {
@@ -271,6 +279,12 @@ impl World {
                 let outcome = track::finish(&mut self.session, done?)?;
                 (outcome.line, outcome.error.is_some())
             }
+            Some(Done::Retrack(done)) => match *done {
+                Err(WorkbenchError::Stopped) => {
+                    ("re-tracking stopped; nothing was changed".to_owned(), false)
+                }
+                done => (retrack::finish(&mut self.session, done?)?.line, false),
+            },
             Some(Done::Cluster(done)) => match *done {
                 Err(WorkbenchError::Stopped) => {
                     (format!("{} stopped; nothing was changed", job.plugin), false)

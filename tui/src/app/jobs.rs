@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use honami_workbench::WorkbenchError;
 use honami_workbench::cluster::{ClusterDone, ClusterJob};
 use honami_workbench::progress::{Flow, Progress};
+use honami_workbench::retrack::{RetrackJob, Retracked};
 use honami_workbench::track::{TrackDone, TrackJob};
 
 use crate::term::signals::Waker;
@@ -18,12 +19,14 @@ const TICK: Duration = Duration::from_millis(100);
 /// A job that can be run on any thread.
 pub(super) enum Work {
     Track(TrackJob),
+    Retrack(Box<RetrackJob>),
     Cluster(ClusterJob),
 }
 
 /// What a job has come to.
 pub(super) enum Done {
     Track(Result<TrackDone, WorkbenchError>),
+    Retrack(Box<Result<Retracked, WorkbenchError>>),
     Cluster(Box<Result<ClusterDone, WorkbenchError>>),
 }
 
@@ -74,6 +77,7 @@ impl Running {
             let _end = progress.waker.at_end(&progress.ended);
             match work {
                 Work::Track(job) => Done::Track(job.run(&*progress)),
+                Work::Retrack(job) => Done::Retrack(Box::new(job.run(&*progress))),
                 Work::Cluster(job) => Done::Cluster(Box::new(job.run(&*progress))),
             }
         })?;

@@ -18,6 +18,7 @@ use honami_model::edit::Transaction;
 use honami_model::history::EntryId;
 use honami_model::track::TrackId;
 use honami_workbench::cluster::ClusterRequest;
+use honami_workbench::retrack;
 use honami_workbench::track::TrackRequest;
 
 use super::action::{Action, Context};
@@ -80,6 +81,15 @@ pub enum Effect {
     Jump(EntryId),
     /// Run a tracker.
     Track(TrackRequest),
+    /// Track again from the key-frames round a frame.
+    Retrack {
+        /// The track.
+        track: TrackId,
+        /// The direction.
+        way: retrack::Way,
+        /// Where the cursor is.
+        frame: u32,
+    },
     /// Run a clusterer.
     Cluster(ClusterRequest),
     /// Stop the running job; it keeps what it has.

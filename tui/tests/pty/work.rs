@@ -57,7 +57,7 @@ fn a_clip_is_tracked_grouped_and_corrected_and_survives_a_kill() {
     said(folder.path(), "synth leaves.y4m --size 160x120 --frames 30");
     let mut terminal = open("leaves.y4m");
     terminal.wait_for_text("no tracks yet");
-    terminal.press("t");
+    terminal.press("tr");
     terminal.wait_for_text("found anew");
     terminal.press("\r");
     terminal.wait_for("the tracks", |s| {
@@ -69,14 +69,14 @@ fn a_clip_is_tracked_grouped_and_corrected_and_survives_a_kill() {
     terminal.press("\r");
     terminal.wait_for_text("outlier frames");
     terminal.press("3.m");
-    terminal.wait_for_text("moved 0.00 px");
+    terminal.wait_for_text("0.00 px in space");
     terminal.press("l");
-    terminal.wait_for_text("moved 1.00 px");
+    terminal.wait_for_text("1.00 px in space");
     terminal.press("\r");
-    terminal.wait_for_text("key-frame at 3 (moved 1.0 px)");
-    terminal.wait_for_text("t tracks again from here");
+    terminal.wait_for_text("corrected, up to 1.0 px");
+    terminal.wait_for_text("t t tracks again round it");
     // The run that follows is for the corrected track alone.
-    terminal.press("t");
+    terminal.press("tr");
     terminal.wait_for_text("the selected track");
     terminal.press("\r");
     terminal.wait_for_text("klt: track ");
@@ -86,7 +86,7 @@ fn a_clip_is_tracked_grouped_and_corrected_and_survives_a_kill() {
     let log: Value = serde_json::from_str(&said(folder.path(), "log leaves.honami --json")).unwrap();
     let entries = log["log"].as_array().unwrap().iter();
     let labels: Vec<&str> = entries.filter_map(|entry| entry["label"].as_str()).collect();
-    assert!(labels.iter().any(|label| label.contains("key-frame at 3 (moved 1.0 px)")), "{labels:?}");
+    assert!(labels.iter().any(|label| label.contains("corrected, up to 1.0 px")), "{labels:?}");
     let mut terminal = open("leaves.honami");
     terminal.wait_for_text("groups");
     terminal.press("]");
@@ -110,7 +110,7 @@ fn a_run_that_finds_nothing_has_nothing_to_undo() {
     std::fs::write(folder.path().join("fog.y4m"), clip).unwrap();
     let mut terminal = open("fog.y4m", folder.path(), &plugins());
     terminal.wait_for_text("no tracks yet");
-    terminal.press("t");
+    terminal.press("tr");
     terminal.wait_for_text("found anew");
     terminal.press("\r");
     terminal.wait_for_text("0 tracks, frames 0-2");

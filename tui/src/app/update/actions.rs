@@ -9,6 +9,7 @@ use super::{
 use honami_model::judgement::Verdict;
 use honami_model::track::TrackSet;
 use honami_workbench::cluster::ClusterRequest;
+use honami_workbench::retrack;
 use honami_workbench::track::{Area, PointSource, TrackRequest};
 
 use super::time::Pace;
@@ -75,6 +76,9 @@ pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {
         Action::FewerGroups => return edit::cut(state, -count(state)),
         Action::Undo => return edit::repeat(state, Effect::Undo),
         Action::Redo => return edit::repeat(state, Effect::Redo),
+        Action::RetrackBoth => return edit::retrack(state, retrack::Way::Both),
+        Action::RetrackForward => return edit::retrack(state, retrack::Way::Forward),
+        Action::RetrackBackward => return edit::retrack(state, retrack::Way::Backward),
         Action::RunTracker => open_form(state, Task::Track),
         Action::RunClusterer => open_form(state, Task::Cluster),
         Action::Palette => open_menu(state, "actions"),
@@ -308,7 +312,7 @@ fn open_form(state: &mut State, task: Task) {
         return complain(state, line);
     }
     if task == Task::Cluster && state.tracks.len() < 2 {
-        return complain(state, "two tracks or more can be grouped; t follows features first");
+        return complain(state, "two tracks or more can be grouped; t r follows features first");
     }
     let features: &[Features] = match state.selected {
         None if state.tracks.is_empty() => &[Features::Found],

@@ -3,6 +3,7 @@
 use honami_model::clip::Clip;
 use honami_model::edit::Transaction;
 use honami_model::track::{Source, TrackId, TrackSet};
+use honami_workbench::retrack::Way;
 
 use super::{Effect, Mode, State, UNDO, complain, say};
 use crate::app::tracks::TrackRow;
@@ -104,6 +105,17 @@ pub(super) fn delete(state: &mut State) -> Vec<Effect> {
     let track = listed[at];
     state.selected = listed.get(at + 1).or_else(|| listed.get(at.wrapping_sub(1))).copied();
     vec![Effect::Commit(Transaction::delete_tracks(TrackSet::from(track)), UNDO)]
+}
+
+/// Tracks the selected track again from the key-frames round the cursor.
+pub(super) fn retrack(state: &mut State, way: Way) -> Vec<Effect> {
+    let Some(row) = selected(state) else { return Vec::new() };
+    if let Some(job) = &state.job {
+        let running = format!("{} is still running: wait for it, or stop it with Esc", job.plugin);
+        complain(state, running);
+        return Vec::new();
+    }
+    vec![Effect::Retrack { track: row.id, way, frame: state.frame }]
 }
 
 /// Cuts the hierarchy into so many groups more.

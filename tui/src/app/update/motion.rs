@@ -52,7 +52,7 @@ fn is_possible(state: &mut State) -> bool {
     let why = match () {
         () if state.mono => "motion is shown in colours, and this terminal has none",
         () if state.tracks.is_empty() => {
-            "motion is shown of tracks, and there are none yet: t follows features"
+            "motion is shown of tracks, and there are none yet: t r follows features"
         }
         () => return true,
     };

@@ -126,7 +126,7 @@ pub(super) fn pin(state: &mut State) {
 pub(super) fn keep(state: &mut State) -> Vec<Effect> {
     let Mode::Move(moving) = &state.mode else { return Vec::new() };
     let (moving, hint) = match moving.tool {
-        Tool::Place { .. } => (moving, "t tracks again from here, u undoes"),
+        Tool::Place { .. } => (moving, "t t tracks again round it, u undoes"),
         Tool::Slide(_) => (moving, UNDO),
     };
     let transaction = match (&moving.ghost, moving.tool) {

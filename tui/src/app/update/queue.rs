@@ -48,7 +48,7 @@ fn nothing(state: &mut State, by: i64) {
     let progress = state.review.progress();
     let line = match () {
         () if state.tracks.is_empty() => {
-            "there are no tracks yet: t follows features, a adds one by hand".to_owned()
+            "there are no tracks yet: t r follows features, a adds one by hand".to_owned()
         }
         () if state.review.queue.is_empty() && progress.total() > 0 => {
             format!("nothing is left to review: {} of {} done", progress.judged.done(), progress.total())

@@ -243,7 +243,7 @@ fn selecting_tracks() {
         (
             "empty",
             "j",
-            "review | frame 0 track - | error there are no tracks yet: t follows features, a adds one by hand",
+            "review | frame 0 track - | error there are no tracks yet: t r follows features, a adds one by hand",
         ),
     ] {
         check(from, keys, expect);
@@ -286,7 +286,7 @@ fn the_queue() {
         (
             "empty",
             "n",
-            "review | frame 0 track - | said there are no tracks yet: t follows features, a adds one by hand",
+            "review | frame 0 track - | said there are no tracks yet: t r follows features, a adds one by hand",
         ),
         ("empty", "|", "review | frame 0 track - | error select a track first: j takes the next"),
     ] {
@@ -373,11 +373,38 @@ fn editing() {
 
 #[test]
 fn every_edit_is_refused_in_a_locked_project() {
-    for keys in ["m", "a", "d", "Enter", "X", "u", "Ctrl-r", "+", "-", "t", "c"] {
+    for keys in ["m", "a", "d", "Enter", "X", "u", "Ctrl-r", "+", "-", "t t", "t f", "t b", "t r", "c"] {
         let mut state = start("locked frame=50");
         let effects = press(&mut state, keys);
         assert!(effects.is_empty() && matches!(state.mode, Mode::Review), "{keys}: {effects:?}");
         assert!(state.notice.is_some_and(|n| n.is_error && n.text.contains("ada on lab2")), "{keys}");
+    }
+}
+
+#[test]
+fn tracking_again() {
+    let retrack = |frame: u32, track: u32, way: &str| {
+        format!(
+            "review | frame {frame} track {track} | Retrack {{ track: TrackId({track}), way: {way}, frame: {frame} }}"
+        )
+    };
+    for (from, keys, expect) in [
+        ("frame=20", "t t", retrack(20, 1, "Both")),
+        ("frame=20", "t f", retrack(20, 1, "Forward")),
+        ("frame=20", "t b", retrack(20, 1, "Backward")),
+        (
+            "empty",
+            "t t",
+            "review | frame 0 track - | error select a track first: j takes the next, a click takes the nearest".to_owned(),
+        ),
+        (
+            "job",
+            "t f",
+            "review | frame 0 track 1 | error klt is still running: wait for it, or stop it with Esc"
+                .to_owned(),
+        ),
+    ] {
+        check(from, keys, &expect);
     }
 }
 
@@ -390,39 +417,39 @@ fn forms() {
     let with_radius = |px: u32| params.replace("radius=10", &format!("radius={px}"));
     let unchecked = params.replace("check=true", "check=false");
     for (from, keys, expect) in [
-        ("", "t", "form Track row 0 typed None | frame 0 track 1"),
-        ("", "t Esc", "review | frame 0 track 1"),
-        ("", "t Enter", &klt("Existing", "None", params)),
-        ("", "t j l Enter", &klt("track 1", "None", params)),
-        ("", "t j l l Enter", &klt("Detect", "None", params)),
-        ("", "t j h j l l Enter", &klt("Detect", "Some(10)", params)),
-        ("empty", "t Enter", &klt("Detect", "None", params).replace("track 1", "track -")),
-        ("", "t j j l l Enter", &klt("Existing", "None", &with_radius(12))),
-        ("", "t j j 2 5 Enter Enter", &klt("Existing", "None", &with_radius(25))),
-        ("", "t j j j j l k l l Enter", &klt("Existing", "None", &unchecked)),
-        ("", "t j j j j j j j j j k", "form Track row 5 typed None | frame 0 track 1"),
+        ("", "t r", "form Track row 0 typed None | frame 0 track 1"),
+        ("", "t r Esc", "review | frame 0 track 1"),
+        ("", "t r Enter", &klt("Existing", "None", params)),
+        ("", "t r j l Enter", &klt("track 1", "None", params)),
+        ("", "t r j l l Enter", &klt("Detect", "None", params)),
+        ("", "t r j h j l l Enter", &klt("Detect", "Some(10)", params)),
+        ("empty", "t r Enter", &klt("Detect", "None", params).replace("track 1", "track -")),
+        ("", "t r j j l l Enter", &klt("Existing", "None", &with_radius(12))),
+        ("", "t r j j 2 5 Enter Enter", &klt("Existing", "None", &with_radius(25))),
+        ("", "t r j j j j l k l l Enter", &klt("Existing", "None", &unchecked)),
+        ("", "t r j j j j j j j j j k", "form Track row 5 typed None | frame 0 track 1"),
         (
             "",
-            "t j j 9 9 Enter",
+            "t r j j 9 9 Enter",
             "form Track row 2 typed Some(\"99\") | frame 0 track 1 | error radius: wanted a whole number, 2 to 50 (px), got \"99\"",
         ),
-        ("", "t j j 9 9 Esc Esc", "review | frame 0 track 1"),
-        ("", "t l Enter", "review | frame 0 track 1 | flow follows Existing, every None "),
+        ("", "t r j j 9 9 Esc Esc", "review | frame 0 track 1"),
+        ("", "t r l Enter", "review | frame 0 track 1 | flow follows Existing, every None "),
         ("", "c Enter", "review | frame 0 track 1 | movement groups"),
         (
             "job",
-            "t Enter",
+            "t r Enter",
             "form Track row 0 typed None | frame 0 track 1 | error klt is still running: wait for it, or stop it with Esc while reviewing",
         ),
         (
             "bare",
-            "t",
+            "t r",
             "review | frame 0 track 1 | error no tracker was found; `honami doctor` says where tracker-klt is looked for",
         ),
         (
             "empty",
             "c",
-            "review | frame 0 track - | error two tracks or more can be grouped; t follows features first",
+            "review | frame 0 track - | error two tracks or more can be grouped; t r follows features first",
         ),
     ] {
         check(from, keys, expect);
@@ -431,7 +458,7 @@ fn forms() {
 
 #[test]
 fn a_run_after_work_by_hand_is_for_that_track() {
-    let followed = |state: &mut State| match &press(state, "t Enter")[..] {
+    let followed = |state: &mut State| match &press(state, "t r Enter")[..] {
         [Effect::Track(request)] => request.points.clone(),
         other => panic!("{other:?}"),
     };
@@ -451,7 +478,7 @@ fn a_run_after_work_by_hand_is_for_that_track() {
 #[test]
 fn a_text_is_typed_with_every_letter() {
     let mut state = start("");
-    press(&mut state, "t j j j j j");
+    press(&mut state, "t r j j j j j");
     press(&mut state, "l Backspace Backspace Backspace Backspace q h j k l Enter");
     let effects = press(&mut state, "Enter");
     assert!(line(&state, &effects).contains("label=qhjkl"), "{}", line(&state, &effects));
@@ -527,7 +554,7 @@ fn every_binding_answers() {
         (Context::Place, "a"),
         (Context::Move, "m l"),
         (Context::Slide, "T"),
-        (Context::Form, "t"),
+        (Context::Form, "t r"),
         (Context::Menu, ":"),
         (Context::Prompt, "g f"),
         (Context::Dial, "v d"),
@@ -609,7 +636,7 @@ fn going_about_in_the_undo_tree() {
 fn leaving_and_stopping() {
     check("", "q", "review | frame 0 track 1 | Leave");
     check("", "Q", "review | frame 0 track 1 | Leave");
-    check("", "t q", "review | frame 0 track 1");
+    check("", "t r q", "review | frame 0 track 1");
     check("job", "Esc Esc", "review | frame 0 track 1 | StopJob");
     check("", "Ctrl-l Ctrl-z", "review | frame 0 track 1 | Redraw | Suspend");
 }
@@ -691,7 +718,7 @@ fn motion_in_colours() {
     check(
         "empty",
         "v v",
-        "review | frame 0 track - | error motion is shown of tracks, and there are none yet: t follows features",
+        "review | frame 0 track - | error motion is shown of tracks, and there are none yet: t r follows features",
     );
 }
 

@@ -112,7 +112,7 @@ pub(super) fn select(state: &mut State, track: TrackId) {
 pub(super) fn step_track(state: &mut State, by: i64) {
     let n = i64::try_from(state.tracks.len()).unwrap_or(0);
     if n == 0 {
-        return complain(state, "there are no tracks yet: t follows features, a adds one by hand");
+        return complain(state, "there are no tracks yet: t r follows features, a adds one by hand");
     }
     let listed = state.listed();
     let here = state.selected.and_then(|id| listed.iter().position(|row| row.id == id));

@@ -71,7 +71,7 @@ pub(super) fn put_right(frame: &mut Frame, area: Rect, line: &Line<'_>, taken: u
 pub(super) fn track(state: &State, area: Rect, frame: &mut Frame) {
     let Some(row) = state.selected_row() else {
         let line = if state.tracks.is_empty() {
-            "no tracks yet: t follows features, a adds one by hand"
+            "no tracks yet: t r follows features, a adds one by hand"
         } else {
             "j selects a track"
         };
@@ -335,7 +335,8 @@ fn is_useful(state: &State, action: Action) -> bool {
         Action::NextItem => !state.review.queue.is_empty(),
         Action::MoveSample => !state.tracks.is_empty() && state.read_only.is_none(),
         Action::WorstFrame => state.current_item().is_some(),
-        Action::RunTracker => state.job.is_none() && state.read_only.is_none(),
+        Action::RunTracker => state.tracks.is_empty() && state.job.is_none() && state.read_only.is_none(),
+        Action::RetrackBoth => state.selected.is_some() && state.job.is_none() && state.read_only.is_none(),
         Action::RunClusterer => state.tracks.len() > 1 && state.job.is_none() && state.read_only.is_none(),
         Action::AddFeature => state.read_only.is_none(),
         _ => true,

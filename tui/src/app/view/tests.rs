@@ -117,12 +117,12 @@ fn screens() {
     check("ghost_80x24", small, "z z m 3 0 l 4 j . . 2 ( *", |_| {});
     check("slide_80x24", small, "T 2 l L", |_| {});
     check("place_80x24", small, "a", |_| {});
-    check("form_80x24", small, "t j j", |_| {});
-    check("form_120x40", large, "t j j", |_| {});
-    check("features_80x24", small, "t j h", |_| {});
+    check("form_80x24", small, "t r j j", |_| {});
+    check("form_120x40", large, "t r j j", |_| {});
+    check("features_80x24", small, "t r j h", |_| {});
     check("doubt_80x24", small, "S Tab w", |_| {});
     check("crowded_80x24", small, "", fixture::crowd);
-    check("typing_80x24", small, "t j j 2 5", |_| {});
+    check("typing_80x24", small, "t r j j 2 5", |_| {});
     check("prefix_80x24", small, "g", |_| {});
     check("history_120x40", large, "U j", |_| {});
     check("labels_80x24", small, "g l", fixture::crowd);
@@ -256,7 +256,7 @@ fn start_screens() {
 fn no_size_panics() {
     for columns in [1, 2, 7, 35, 36, 76, 77, 300] {
         for rows in [1, 2, 3, 7, 8, 100] {
-            for keys in ["", "t", ":", "g", "m", "Tab", "z", "v v", "P p"] {
+            for keys in ["", "t r", ":", "g", "m", "Tab", "z", "v v", "P p"] {
                 let mut state = fixture::state();
                 state.size = (columns, rows);
                 fixture::press(&mut state, keys);
