@@ -2,8 +2,13 @@
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::sync::atomic::{AtomicU64, Ordering};
 
-use honami_tests::{Bench, Row, by_track};
+use honami_tests::{Bench, Row, by_track, program};
+use honami_workbench::WorkbenchError;
+use honami_workbench::progress::{Flow, Progress};
+use honami_workbench::retrack::{RetrackRequest, Way, prepare};
+use honami_workbench::session::{Session, SessionOptions};
 
 /// Frames of the clip.
 const N_FRAMES: u32 = 25;
@@ -238,4 +243,34 @@ fn what_cannot_be_tracked_again_says_why() {
         assert!(ran.stderr.contains(words), "{script}: {words:?} is not in {:?}", ran.stderr);
     }
     assert_eq!(bench.log("p.honami", "run").len(), 1, "nothing is kept of what was refused");
+}
+
+/// Stops after so many reports.
+struct StopAfter(AtomicU64);
+
+impl Progress for StopAfter {
+    fn report(&self, _: u64, _: u64, _: &str) -> Flow {
+        let left = self.0.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |n| n.checked_sub(1));
+        if left.is_ok() { Flow::Continue } else { Flow::Stop }
+    }
+}
+
+#[test]
+fn a_stopped_re_tracking_leaves_nothing_behind() {
+    let bench = bench();
+    assert_eq!(bench.edit("p.honami", "confirm 3 12").code, Some(0));
+    let (before, n_entries) = (bench.samples("p.honami"), bench.log("p.honami", "log").len());
+    let options =
+        SessionOptions { plugin_paths: vec![program().parent().unwrap().to_owned()], read_only: false };
+    let session = Session::open(&bench.path("p.honami"), &options).unwrap();
+    let (track, _) = session.project.document().tracks().find(|(track, _)| track.0 == 3).unwrap();
+    let request = RetrackRequest { track, way: Way::Both, frames: 0..=N_FRAMES - 1, key: None, with: None };
+    for n_reports in [0, 5, 15] {
+        let job = prepare(&session, &request).unwrap();
+        let stopped = job.run(&StopAfter(AtomicU64::new(n_reports)));
+        assert!(matches!(stopped, Err(WorkbenchError::Stopped)), "after {n_reports} reports");
+    }
+    drop(session);
+    assert_eq!(bench.samples("p.honami"), before);
+    assert_eq!((bench.log("p.honami", "run").len(), bench.log("p.honami", "log").len()), (1, n_entries));
 }
