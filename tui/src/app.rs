@@ -6,6 +6,7 @@
 
 pub mod action;
 pub mod clock;
+pub mod command_log;
 pub mod config;
 pub mod correcting;
 pub mod door;
@@ -31,6 +32,7 @@ pub mod plotted;
 mod plotting;
 pub mod queue;
 pub mod recent;
+mod replay;
 mod reviewing;
 mod run;
 mod seat;
@@ -44,3 +46,4 @@ pub mod view;
 
 pub use door::{Gives, Offer, Offers, run};
 pub use opening::Plan;
+pub use replay::{Replay, replay};

@@ -9,6 +9,7 @@ mod help;
 mod keys;
 mod log;
 mod project;
+mod replay;
 mod report;
 mod review;
 mod spectrum;
@@ -16,7 +17,7 @@ mod synth;
 mod track;
 
 use std::io::IsTerminal as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
@@ -77,7 +78,7 @@ pub fn main() -> ExitCode {
             Err(Usage(format!("{} stands before a command", project.display())).into())
         }
         (Some(command), None) => run(command, &cli.common),
-        (None, project) => open(project.as_deref(), &cli.common).map(Outcome::Exit),
+        (None, project) => open(project.as_deref(), cli.log, &cli.common).map(Outcome::Exit),
     };
     let printed = result.and_then(|outcome| match outcome {
         Outcome::Answer(answer) => {
@@ -168,6 +169,7 @@ fn run(command: Command, common: &Common) -> anyhow::Result<Outcome> {
         Command::Plugin(args) => help::plugin(&args, common)?,
         Command::Review(args) => review::review(&args, common)?,
         Command::Log(args) => log::log(&args)?,
+        Command::Replay(args) => replay::replay(&args, common)?,
         Command::Keys(args) => keys::keys(&args),
         Command::Doctor => help::doctor(common),
         Command::Completions { shell } => help::completions(shell),
@@ -177,7 +179,7 @@ fn run(command: Command, common: &Common) -> anyhow::Result<Outcome> {
 }
 
 /// Opens the terminal UI on a project, or on a new project made from a clip; on neither, the start screen.
-fn open(path: Option<&Path>, common: &Common) -> anyhow::Result<ExitCode> {
+fn open(path: Option<&Path>, log: Option<PathBuf>, common: &Common) -> anyhow::Result<ExitCode> {
     let Some(path) = path else {
         want(std::io::stdout().is_terminal() && std::io::stdin().is_terminal() && !common.json, || {
             "a project or a clip is wanted: `honami CLIP` opens a clip, `honami demo` makes one".to_owned()
@@ -190,7 +192,7 @@ fn open(path: Option<&Path>, common: &Common) -> anyhow::Result<ExitCode> {
             path.display()
         )
     })?;
-    show(Some(Plan::of(path, &options(common))), common)
+    show(Some(Plan::of(path, &options(common)).logged(log)), common)
 }
 
 /// Shows a session in the terminal, or the start screen, until it ends; returns the status that says how.

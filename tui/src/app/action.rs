@@ -195,6 +195,8 @@ table! {
     PanelPlots "panel-plots" ["P p"] [Review ""] "show or hide curves: position, speed, quality, sway"
     PlotGroup "plot-group" ["P G"] [Review ""] "plot the selected track's group, or the track"
     WidePanel "panel-wide" ["P w"] [Review ""] "show the panel over all of the picture, or beside it"
+    PanelLog "panel-log" ["P l"] [Review ""] "show or hide the log of this session"
+    SaveLog "save-log" ["P L"] [Review ""] "save the log of this session beside the project; `honami replay` does it again"
     Glyphs "glyphs" ["v q"] [Review ""] "show the picture in half blocks, quadrants, sextants or octants (what the font has)"
     Stills "stills" ["v s"] [Review ""] "show a picture that stays in the terminal's own pixels, or not"
     NextTheme "next-theme" ["v t"] [Review ""] "change the colours: the next theme"

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use anyhow::Context as _;
 use honami_workbench::session::SessionOptions;
 
+use super::command_log::LogFile;
 use super::config::Config;
 use super::effects::World;
 use super::opening::{Opened, Opening, Plan};
@@ -89,6 +90,10 @@ fn go_about(
                 Wanted::Leave(end) => return Ok(end),
             },
         };
+        let log_file = plan.log.as_deref().map(|path| {
+            LogFile::create(path).with_context(|| format!("no log can be begun at {}", path.display()))
+        });
+        let log_file = log_file.transpose()?;
         let opening = Opening::start(plan, screen.waker()).context("no thread for opening")?;
         let (ready, typed) = match opening.watch(screen, std::mem::take(&mut typed)) {
             Ok(Opened::Ready(ready, typed)) => (ready, typed),
@@ -102,6 +107,7 @@ fn go_about(
         is_first = false;
         let (mut world, state) = *ready;
         let mut app = App::new(state, config, &world, screen)?;
+        app.write_log(log_file);
         let turned = app.turn(screen, &mut world, typed);
         config.keep(app.state());
         app.note(&world);

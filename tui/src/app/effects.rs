@@ -18,6 +18,7 @@ use honami_workbench::session::Session;
 use honami_workbench::store::{Project, StoreError};
 use honami_workbench::track::{self, TrackRequest};
 
+use super::command_log::{self, Origin};
 use super::form::{Plugin, Task};
 use super::jobs::{Done, Running, Work};
 use super::reviewing::Reviewing;
@@ -82,6 +83,19 @@ impl World {
         Ok(state)
     }
 
+    /// Which project it is, and where its document stands.
+    pub(super) fn origin(&self) -> Origin {
+        let project = &self.session.project;
+        Origin {
+            project: project
+                .path()
+                .file_stem()
+                .map_or_else(String::new, |s| s.to_string_lossy().into_owned()),
+            clip: project.clip().sha256.clone(),
+            revision: project.revision().0,
+        }
+    }
+
     /// Keeps where the user is, unless it is kept already, or cannot be because others write.
     pub(super) fn keep(&mut self, seat: Seat) -> Result<(), WorkbenchError> {
         let is_writer = self.session.project.access() == honami_workbench::store::Access::Write;
@@ -136,6 +150,7 @@ impl World {
                 self.running.iter().for_each(|(running, _)| running.stop());
                 Ok(Vec::new())
             }
+            Effect::SaveLog(text) => self.save_log(&text),
             // The loop's own.
             Effect::Follow(_)
             | Effect::Teach
@@ -168,6 +183,13 @@ impl World {
     fn layers(&self) -> Result<Option<Fact>, WorkbenchError> {
         let Some(track) = self.studied else { return Ok(None) };
         Ok(Some(Fact::Layers(self.session.project.layers(track)?.map(Arc::new))))
+    }
+
+    fn save_log(&self, text: &str) -> Facts {
+        Ok(vec![match command_log::save(text, self.session.project.path()) {
+            Ok(path) => said(format!("the log of this session is saved as {}", path.display())),
+            Err(error) => said_wrong(format!("the log of this session is not saved: {error}")),
+        }])
     }
 
     fn add_feature(&mut self, frame: u32, [x, y]: [f32; 2]) -> Facts {

@@ -148,6 +148,22 @@ impl Menu {
         Some(Choice::File(Way::Typed(path)))
     }
 
+    /// Whether what is done in it stays out of the log: in the palette and the help, of which there is what was chosen,
+    /// and among files, where the session ends.
+    #[must_use]
+    pub fn is_unlogged(&self) -> bool {
+        let is_of_actions = |row: &Row| matches!(row.choice, Choice::Action(_));
+        self.folder.is_some() || self.rows.first().is_some_and(is_of_actions)
+    }
+
+    /// Chooses the row with this label, whatever was typed; whether there is one.
+    pub fn choose(&mut self, label: &str) -> bool {
+        let Some(at) = self.rows.iter().position(|row| row.label == label) else { return false };
+        self.matching = (0..self.rows.len()).collect();
+        self.at = at;
+        true
+    }
+
     /// The rows that match what was typed, best first.
     pub fn rows(&self) -> impl ExactSizeIterator<Item = &Row> {
         self.matching.iter().map(|&i| &self.rows[i])

@@ -38,6 +38,8 @@ pub struct Plan {
     open: Open,
     /// Whether the tutorial is given on it.
     is_lesson: bool,
+    /// Where its log is written while it goes on.
+    pub(super) log: Option<PathBuf>,
 }
 
 impl Plan {
@@ -46,13 +48,19 @@ impl Plan {
         name: impl Into<String>,
         open: impl FnOnce(&Tell<'_>) -> anyhow::Result<Session> + Send + 'static,
     ) -> Self {
-        Self { name: name.into(), open: Box::new(open), is_lesson: false }
+        Self { name: name.into(), open: Box::new(open), is_lesson: false, log: None }
     }
 
     /// The same, with the tutorial on it.
     #[must_use]
     pub fn with_lesson(self) -> Self {
         Self { is_lesson: true, ..self }
+    }
+
+    /// The same, with what is done in it written to a new file.
+    #[must_use]
+    pub fn logged(self, file: Option<PathBuf>) -> Self {
+        Self { log: file, ..self }
     }
 
     /// A project, or the project that belongs to a clip; made where there is none yet.
@@ -156,7 +164,7 @@ impl Opening {
     pub(super) fn start(plan: Plan, waker: Waker) -> std::io::Result<Self> {
         let step = Arc::new(Mutex::new(String::new()));
         let told = Arc::clone(&step);
-        let (ended, Plan { name, open, is_lesson }) = (Arc::new(AtomicBool::new(false)), plan);
+        let (ended, Plan { name, open, is_lesson, .. }) = (Arc::new(AtomicBool::new(false)), plan);
         let flag = Arc::clone(&ended);
         let thread = std::thread::Builder::new().name("opening".to_owned()).spawn(move || {
             // Woken also when opening panics.

@@ -15,12 +15,14 @@ pub enum Panel {
     History,
     /// Curves of the selected track or its group.
     Plots,
+    /// What was done in this session.
+    Log,
 }
 
 impl Panel {
     /// All of them, in the order in which they follow each other.
     pub const ALL: &[Self] =
-        &[Self::Queue, Self::Tracks, Self::Groups, Self::KeyFrames, Self::History, Self::Plots];
+        &[Self::Queue, Self::Tracks, Self::Groups, Self::KeyFrames, Self::History, Self::Plots, Self::Log];
 
     /// What its title calls it.
     #[must_use]
@@ -32,6 +34,7 @@ impl Panel {
             Self::KeyFrames => "key-frames",
             Self::History => "history",
             Self::Plots => "plots",
+            Self::Log => "log",
         }
     }
 

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
+use super::command_log::{CommandLog, Head, LogFile};
 use super::config::Config;
 use super::effects::World;
 use super::files::{self, Found};
@@ -75,6 +76,8 @@ pub(super) struct App {
     seat_due: Option<Duration>,
     /// Where the user wants to go from here.
     next: Option<Next>,
+    /// Where the log is written while the session goes on.
+    log_file: Option<LogFile>,
 }
 
 impl App {
@@ -93,6 +96,7 @@ impl App {
             link_seen: Duration::ZERO,
             seat_due: None,
             next: None,
+            log_file: None,
         };
         app.state.mono = screen.is_mono();
         config.take(&mut app.state);
@@ -102,6 +106,7 @@ impl App {
         app.state.size = screen.size();
         app.state.glyphs = Glyphs::from_env(|name| std::env::var(name).ok());
         app.look_at_display(screen);
+        app.state.log = CommandLog::new(Head::of(&app.state, world.origin()));
         Ok(app)
     }
 
@@ -115,6 +120,11 @@ impl App {
         if self.state.lesson.is_none() {
             recent::note(world.project(), self.state.tracks.len());
         }
+    }
+
+    /// From now on what is done is written to a file.
+    pub(super) fn write_log(&mut self, file: Option<LogFile>) {
+        self.log_file = file;
     }
 
     /// Begins with what was typed while the project was opened; returns how it has ended.
@@ -221,7 +231,9 @@ impl App {
     /// Updates the state and does what it wants; returns whether it wants to leave.
     fn tell(&mut self, msg: Msg, screen: &mut Screen, world: &mut World) -> anyhow::Result<bool> {
         let before = self.state.shown_frame();
-        for effect in update(&mut self.state, msg) {
+        let effects = update(&mut self.state, msg);
+        self.log();
+        for effect in effects {
             match effect {
                 Effect::Leave => return Ok(true),
                 Effect::Suspend => {
@@ -251,6 +263,7 @@ impl App {
                 }
             }
         }
+        self.log();
         if self.state.shown_frame() != before {
             self.frame = None;
         }
@@ -269,6 +282,16 @@ impl App {
             self.frame = None;
         }
         Ok(())
+    }
+
+    /// Writes what was done to the log on the disk; without room there it ends, and the session goes on.
+    fn log(&mut self) {
+        let written = self.log_file.as_mut().map_or(Ok(()), |file| file.write(&self.state.log));
+        if let Err(text) = written {
+            self.log_file = None;
+            self.state.notice = Some(Notice { text, is_error: true });
+            self.frame = None;
+        }
     }
 
     /// Paints, if there is anything to paint and the link has room for it.

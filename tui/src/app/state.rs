@@ -8,6 +8,7 @@ use honami_workbench::review::Review;
 
 use super::action::Context;
 use super::clock::Play;
+use super::command_log::CommandLog;
 use super::correcting::{Moving, Tool};
 use super::form::{Form, Plugin};
 use super::history::Tree;
@@ -118,6 +119,8 @@ pub struct State {
     pub mouse: bool,
     /// The tutorial, in a project made for it.
     pub lesson: Option<Lesson>,
+    /// What was done in this session.
+    pub log: CommandLog,
 }
 
 /// What keys mean.
@@ -267,6 +270,7 @@ impl State {
             theme: 0,
             mouse: true,
             lesson: None,
+            log: CommandLog::default(),
         }
     }
 

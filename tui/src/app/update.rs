@@ -4,6 +4,7 @@ mod actions;
 mod edit;
 mod facts;
 mod history;
+mod logged;
 mod look;
 mod motion;
 mod mouse;
@@ -31,6 +32,7 @@ use crate::term::input::{Mouse, MouseKind};
 use crate::term::key::Key;
 
 pub use facts::Fact;
+pub use logged::again;
 pub use queue::Judge;
 pub(super) use time::RATES;
 
@@ -98,6 +100,8 @@ pub enum Effect {
     Follow(Way),
     /// Leave for the tutorial.
     Teach,
+    /// Save this log beside the project.
+    SaveLog(String),
     /// Take the mouse, or leave it to the terminal.
     Mouse(bool),
     /// Paint the screen anew.
@@ -120,6 +124,7 @@ pub fn update(state: &mut State, msg: Msg) -> Vec<Effect> {
             let now = state.now;
             let is_press = matches!(mouse.kind, MouseKind::Press(_));
             state.opened.iter_mut().filter(|_| is_press).for_each(|opened| opened.pressed(now));
+            logged::mouse(state, mouse);
             mouse::on_mouse(state, mouse)
         }
         Msg::Paste(text) => {
@@ -129,6 +134,7 @@ pub fn update(state: &mut State, msg: Msg) -> Vec<Effect> {
         }
         Msg::Resize(columns, rows) => {
             state.size = (columns, rows);
+            logged::screen(state);
             Vec::new()
         }
         Msg::Clock(now) => {
@@ -157,9 +163,7 @@ fn on_key(state: &mut State, key: Key) -> Vec<Effect> {
         Found::Action(action) => {
             state.pending.clear();
             state.notice = None;
-            let effects = actions::act(state, action);
-            state.count = None;
-            effects
+            call(state, action)
         }
         Found::Nothing => {
             let is_whole = state.pending.len() == 1;
@@ -176,6 +180,7 @@ fn on_key(state: &mut State, key: Key) -> Vec<Effect> {
 
 /// Characters that are no command here: text, or digits of a count.
 fn on_text(state: &mut State, text: &str) {
+    logged::text(state, text);
     let mut chars = text.chars();
     match &mut state.mode {
         Mode::Menu(menu) => menu.retype(|typed| append(typed, chars, TYPED_MAX)),
@@ -207,8 +212,9 @@ fn append(typed: &mut String, more: impl Iterator<Item = char>, n_max: usize) {
     typed.extend(more.take(n_max.saturating_sub(n)));
 }
 
-/// Calls an action as the palette, the help and the mouse do.
+/// Does an action and forgets its count.
 fn call(state: &mut State, action: Action) -> Vec<Effect> {
+    logged::action(state, action);
     let effects = actions::act(state, action);
     state.count = None;
     effects
@@ -216,12 +222,17 @@ fn call(state: &mut State, action: Action) -> Vec<Effect> {
 
 /// Says something in one line.
 fn say(state: &mut State, text: impl Into<String>) {
-    state.notice = Some(Notice { text: text.into(), is_error: false });
+    tell(state, Notice { text: text.into(), is_error: false });
 }
 
 /// Says that something cannot be done.
 fn complain(state: &mut State, text: impl Into<String>) {
-    state.notice = Some(Notice { text: text.into(), is_error: true });
+    tell(state, Notice { text: text.into(), is_error: true });
+}
+
+fn tell(state: &mut State, notice: Notice) {
+    logged::said(state, &notice);
+    state.notice = Some(notice);
 }
 
 /// Closes the menu and does what was chosen in it.

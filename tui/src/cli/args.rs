@@ -20,6 +20,9 @@ pub(super) struct Cli {
     pub(super) command: Option<Command>,
     /// Project (.honami) to open in the terminal UI, or a clip to make one from.
     pub(super) project: Option<PathBuf>,
+    /// Write what is done in the terminal UI to this new file, line by line; `honami replay` does it again.
+    #[arg(long, value_name = "FILE", requires = "project")]
+    pub(super) log: Option<PathBuf>,
     #[command(flatten)]
     pub(super) common: Common,
 }
@@ -72,6 +75,12 @@ pub(super) enum Command {
     Review(Project),
     /// Everything that was done to a project: runs, clusterings, edits.
     Log(Project),
+    /// Do again what was done in a session of the terminal UI, without a terminal.
+    ///
+    /// The log is one that `--log` wrote or `P L` saved. The project must be as it was when the session began, such as a
+    /// copy made then. Prints what the session said, and stops with status 1 where it now goes another way.
+    /// docs/replay.md describes the log.
+    Replay(Replay),
     /// The keys of the terminal UI as they are now, your own included.
     Keys(Keys),
     /// What this machine has, what each missing piece would add, and how to install it.
@@ -92,6 +101,14 @@ pub(super) enum Command {
 pub(super) struct Project {
     /// Project file (.honami).
     pub(super) project: PathBuf,
+}
+
+#[derive(Args, Debug)]
+pub(super) struct Replay {
+    /// Project file (.honami).
+    pub(super) project: PathBuf,
+    /// Log of a session.
+    pub(super) log: PathBuf,
 }
 
 #[derive(Args, Debug)]

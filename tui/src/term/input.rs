@@ -8,6 +8,8 @@
 mod csi;
 mod string;
 
+use serde::{Deserialize, Serialize};
+
 use super::key::{Code, Key};
 
 /// What the terminal has sent.
@@ -35,7 +37,8 @@ pub struct Mouse {
 }
 
 /// What a mouse did.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum MouseKind {
     /// Button 0 (left), 1 (middle) or 2 (right) went down.
     Press(u8),

@@ -28,6 +28,16 @@ impl Waker {
     }
 }
 
+/// A waker without signals, and what it wakes: a read of the stream ends when it is called.
+///
+/// # Errors
+/// When the system refuses a pipe.
+pub fn pair() -> io::Result<(Waker, UnixStream)> {
+    let (reader, writer) = UnixStream::pair()?;
+    writer.set_nonblocking(true)?;
+    Ok((Waker(Arc::new(writer)), reader))
+}
+
 /// Sets its flag and wakes when it is dropped.
 #[derive(Debug)]
 pub struct WakeAtEnd(Waker, Arc<AtomicBool>);
@@ -65,10 +75,9 @@ impl Signals {
     /// # Errors
     /// When the system refuses a pipe or a handler.
     pub fn catch() -> io::Result<Self> {
-        let (reader, writer) = UnixStream::pair()?;
+        let (waker, reader) = pair()?;
         reader.set_nonblocking(true)?;
-        writer.set_nonblocking(true)?;
-        let mut signals = Self { reader, waker: Waker(Arc::new(writer)), seen: Vec::new(), ids: Vec::new() };
+        let mut signals = Self { reader, waker, seen: Vec::new(), ids: Vec::new() };
         for signal in [SIGTERM, SIGHUP, SIGINT, SIGTSTP, SIGCONT, SIGWINCH] {
             let flag = Arc::new(AtomicBool::new(false));
             // The flag first: whoever is woken must find it set.

@@ -87,6 +87,7 @@ pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {
         Action::Suspend => return vec![Effect::Suspend],
         Action::Mouse => return mouse(state),
         Action::History => history::toggle(state),
+        Action::SaveLog => return vec![Effect::SaveLog(state.log.text())],
         other => return look_about(state, other),
     }
     Vec::new()
@@ -117,6 +118,7 @@ fn look_about(state: &mut State, action: Action) -> Vec<Effect> {
         Action::PanelPlots => show_panel(state, Panel::Plots),
         Action::PlotGroup => look::plot_group(state),
         Action::WidePanel => state.panel_is_wide = !state.panel_is_wide,
+        Action::PanelLog => show_panel(state, Panel::Log),
         Action::Glyphs => turn_glyphs(state),
         Action::Stills => turn_stills(state),
         Action::NextTheme => next_theme(state),

@@ -6,7 +6,7 @@ use honami_model::correct::Layers;
 use honami_model::history::{Entry, EntryId};
 use honami_workbench::review::Told;
 
-use super::{Mode, State, moving};
+use super::{Mode, State, logged, moving, tell};
 use crate::app::files::Listing;
 use crate::app::menu::Menu;
 use crate::app::plotted::Subject;
@@ -77,10 +77,14 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
             state.corrected = Some(track);
         }
         Fact::Job(job) => {
+            if let (Some(old), None) = (&state.job, &job) {
+                let plugin = old.plugin.clone();
+                logged::ended(state, plugin);
+            }
             let was_stopping = state.job.as_ref().is_some_and(|old| old.is_stopping);
             state.job = job.map(|job| Job { is_stopping: job.is_stopping || was_stopping, ..job });
         }
-        Fact::Said(notice) => state.notice = Some(notice),
+        Fact::Said(notice) => tell(state, notice),
         Fact::Link(link) => state.link = link,
         Fact::Dropped(dropped) => state.dropped = dropped.filter(|_| state.play.is_some()),
         Fact::Display(display) => state.display = display,

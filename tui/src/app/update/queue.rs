@@ -5,12 +5,13 @@ use std::ops::Range;
 use honami_model::judgement::{Effort, Verdict};
 use honami_model::track::TrackId;
 use honami_workbench::review::{Item, Rank};
+use serde::{Deserialize, Serialize};
 
 use super::{Effect, State, complain, edit, say, time};
 use crate::app::queue::Opened;
 
 /// A verdict to be kept: the world adds who and when.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Judge {
     /// The track.
     pub track: TrackId,
@@ -107,6 +108,7 @@ pub(super) fn judge(state: &mut State, verdict: Option<Verdict>) -> Vec<Effect> 
     if let Some(next) = rank.and_then(|rank| queue.after(rank)).or_else(|| queue.first()).cloned() {
         open(state, next);
     }
+    state.log.judged(&found);
     vec![Effect::Judge(found)]
 }
 

@@ -6,6 +6,7 @@
 mod groups;
 mod history;
 mod key_frames;
+mod log;
 mod plots;
 mod queue;
 mod tracks;
@@ -60,6 +61,7 @@ fn list<'a>(state: &'a State, panel: Panel) -> Option<Box<dyn List + 'a>> {
         Panel::Groups => Box::new(groups::GroupList::of(state)),
         Panel::KeyFrames => Box::new(key_frames::KeyFrames::of(state)),
         Panel::History => Box::new(history::History(state)),
+        Panel::Log => Box::new(log::Log(state)),
         Panel::Plots => return None,
     })
 }

@@ -1,0 +1,163 @@
+//! What is done goes into the log, and what the log says can be done again.
+
+use std::time::Duration;
+
+use honami_model::track::TrackId;
+
+use super::{Action, Effect, Mode, Msg, State, actions, on_text, time, update};
+use crate::app::action::TABLE;
+use crate::app::command_log::{Here, Line, Touch, What};
+use crate::app::layout::{Layout, Lens};
+use crate::app::state::Notice;
+use crate::term::input::Mouse;
+
+/// An action is about to be done. The palette and the help leave no lines: what is chosen there does. Nor do the ways to
+/// other projects: the session ends with them.
+pub(super) fn action(state: &mut State, action: Action) {
+    if is_unlogged(state)
+        || matches!(action, Action::Palette | Action::Help | Action::GoFile | Action::Tutorial)
+    {
+        return;
+    }
+    let chosen = match &state.mode {
+        Mode::Menu(menu) if action == Action::Accept => menu.chosen().map(|row| row.label.clone()),
+        _ => None,
+    };
+    push(state, What::Action(action.info().name.to_owned()), chosen);
+}
+
+/// Text has come. Digits of a count have no line of their own: it is in that of its action.
+pub(super) fn text(state: &mut State, text: &str) {
+    let is_kept = matches!(state.mode, Mode::Menu(_) | Mode::Prompt(_) | Mode::Form(_) | Mode::Label(_));
+    if is_kept && !is_unlogged(state) {
+        push(state, What::Text(text.to_owned()), None);
+    }
+}
+
+/// The mouse is about to do something.
+pub(super) fn mouse(state: &mut State, mouse: Mouse) {
+    if !is_unlogged(state) {
+        let at = lens(state).point_of(mouse.column, mouse.row);
+        push(state, What::Mouse(Touch { kind: mouse.kind, cell: (mouse.column, mouse.row), at }), None);
+    }
+}
+
+/// The terminal has another size.
+pub(super) fn screen(state: &mut State) {
+    let (columns, rows) = state.size;
+    push_bare(state, What::Screen(columns, rows));
+}
+
+/// A job has ended.
+pub(super) fn ended(state: &mut State, plugin: String) {
+    push_bare(state, What::Ended(plugin));
+}
+
+/// Something was said.
+pub(super) fn said(state: &mut State, notice: &Notice) {
+    let line = Line::said(state.now.as_secs_f64(), notice);
+    state.log.push(line);
+}
+
+fn is_unlogged(state: &State) -> bool {
+    matches!(&state.mode, Mode::Menu(menu) if menu.is_unlogged())
+}
+
+fn lens(state: &State) -> Lens {
+    Lens::of(state, Layout::of(state).picture)
+}
+
+fn push(state: &mut State, what: What, chosen: Option<String>) {
+    let here = Here {
+        place: state.mode.context().name().to_owned(),
+        frame: state.frame,
+        track: state.selected.map(|track| track.0),
+        zoom: Some(state.zoom).filter(|zoom| *zoom > 0),
+        count: state.count.filter(|_| matches!(what, What::Action(_))),
+        chosen,
+        judged: None,
+    };
+    state.log.push(Line { t_s: state.now.as_secs_f64(), what, here: Some(here) });
+}
+
+fn push_bare(state: &mut State, what: What) {
+    state.log.push(Line { t_s: state.now.as_secs_f64(), what, here: None });
+}
+
+/// Does again what a line of a log says, at the same time of the clock, the same frame and the same track.
+///
+/// # Errors
+/// A line that says why it cannot be done now.
+pub fn again(state: &mut State, line: &Line) -> Result<Vec<Effect>, String> {
+    let now = Duration::try_from_secs_f64(line.t_s)
+        .map_err(|_| format!("{} s is no time of a session", line.t_s))?;
+    time::on_clock(state, now);
+    if let What::Screen(columns, rows) = line.what {
+        return Ok(update(state, Msg::Resize(columns, rows)));
+    }
+    let Some(here) = &line.here else { return Ok(Vec::new()) };
+    stand(state, here)?;
+    match &line.what {
+        What::Action(name) => {
+            let known = TABLE.iter().find(|info| info.name == name).map(|info| info.action);
+            let called = known.ok_or_else(|| format!("there is no action {name}"))?;
+            if called.word_in(state.mode.context()).is_none() {
+                return Err(format!("{name} does nothing in {}", here.place));
+            }
+            if let (Mode::Menu(menu), Some(chosen)) = (&mut state.mode, &here.chosen)
+                && !menu.choose(chosen)
+            {
+                return Err(format!("{chosen} is not in the list of {}", menu.title));
+            }
+            state.count = here.count;
+            action(state, called);
+            if let Some(judge) = &here.judged {
+                return Ok(vec![Effect::Judge(judge.clone())]);
+            }
+            let effects = actions::act(state, called);
+            state.count = None;
+            Ok(effects)
+        }
+        What::Text(typed) => {
+            on_text(state, typed);
+            Ok(Vec::new())
+        }
+        What::Mouse(touch) => point(state, touch),
+        _ => Ok(Vec::new()),
+    }
+}
+
+/// Takes the user where they were.
+fn stand(state: &mut State, here: &Here) -> Result<(), String> {
+    let place = state.mode.context().name();
+    if place != here.place {
+        return Err(format!("this was done in {}, and now it would be done in {place}", here.place));
+    }
+    if here.frame > state.last_frame() {
+        return Err(format!("there is no frame {}", here.frame));
+    }
+    let track = here.track.map(TrackId);
+    if let Some(track) = track.filter(|track| state.row(*track).is_none()) {
+        return Err(format!("there is no track {track}"));
+    }
+    state.frame = here.frame;
+    state.selected = track;
+    state.opened = None;
+    state.zoom = here.zoom.unwrap_or(0);
+    time::keep_in_view(state);
+    Ok(())
+}
+
+/// The mouse at the image point where it was, or beside the picture in the same cell.
+fn point(state: &mut State, touch: &Touch) -> Result<Vec<Effect>, String> {
+    let mut cell = touch.cell;
+    if let Some([x, y]) = touch.at {
+        let lens = lens(state);
+        let (across, down) = lens
+            .place_of([x, y], (1, 1))
+            .ok_or_else(|| format!("the point {x:.1}, {y:.1} is not seen now"))?;
+        let beside = |edge: u16, n: u32| edge.saturating_add(u16::try_from(n).unwrap_or(u16::MAX));
+        cell = (beside(lens.area.x, across), beside(lens.area.y, down));
+    }
+    Ok(update(state, Msg::Mouse(Mouse { kind: touch.kind, column: cell.0, row: cell.1 })))
+}
