@@ -8,6 +8,7 @@ mod home;
 mod journal_kill;
 mod locks;
 mod real_clips;
+mod replay;
 mod retrack;
 mod simulated;
 mod stopped;

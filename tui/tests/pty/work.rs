@@ -100,6 +100,49 @@ fn a_clip_is_tracked_grouped_and_corrected_and_survives_a_kill() {
 }
 
 #[test]
+fn a_logged_session_is_done_again_on_a_copy() {
+    let (folder, plugins) = (super::folder(), plugins());
+    let path = |name: &str| folder.path().join(name);
+    said(folder.path(), "synth leaves.y4m --size 160x120 --frames 20");
+    said(folder.path(), "new p.honami leaves.y4m");
+    std::fs::copy(path("p.honami"), path("copy.honami")).unwrap();
+    let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_honami"));
+    command.args(["p.honami", "--log", "s.log.jsonl"]);
+    command.env("HONAMI_PLUGIN_PATH", &plugins);
+    let mut terminal = Terminal::start(command, folder.path(), (80, 24), true);
+    terminal.wait_for_text("no tracks yet");
+    terminal.press("t");
+    terminal.wait_for_text("found anew");
+    terminal.press("\r");
+    terminal.wait_for_text("(u undoes)");
+    terminal.press("3.m2l\r");
+    terminal.wait_for_text("key-frame at 3 (moved 2.0 px)");
+    terminal.press("u");
+    terminal.wait_for_text("undone: track");
+    terminal.press("/7\rm3k");
+    terminal.wait_for_text("moved 3.00 px");
+    terminal.press("\r");
+    terminal.wait_for_text("key-frame at 3 (moved 3.0 px)");
+    terminal.press("PL");
+    terminal.wait_for_text("is saved as");
+    // The line that said so was on the disk before it was on the screen.
+    terminal.signal(Signal::KILL);
+    assert!(!terminal.wait_for_end());
+
+    let log = std::fs::read_to_string(path("s.log.jsonl")).unwrap();
+    assert!(log.lines().last().unwrap().contains("is saved as"), "{log}");
+    let saved = std::fs::read_to_string(path("p.log.jsonl")).unwrap();
+    assert!(log.starts_with(&saved) && saved.lines().last().unwrap().contains("save-log"), "{saved}");
+    let told = said(folder.path(), &format!("replay copy.honami s.log.jsonl --plugin {}", plugins.display()));
+    assert!(told.contains("undone: track") && told.contains("lines done as in the log"), "{told}");
+    let tables = ["p", "copy"].map(|name| {
+        said(folder.path(), &format!("export {name}.honami tracks {name}.csv"));
+        std::fs::read_to_string(path(&format!("{name}.csv"))).unwrap()
+    });
+    assert!(tables[0].contains(",key") && tables[0] == tables[1]);
+}
+
+#[test]
 fn a_run_that_finds_nothing_has_nothing_to_undo() {
     let folder = super::folder();
     let mut clip = b"YUV4MPEG2 W64 H48 F25:1 Cmono\n".to_vec();

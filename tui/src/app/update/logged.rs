@@ -90,7 +90,7 @@ fn push_bare(state: &mut State, what: What) {
 /// A line that says why it cannot be done now.
 pub fn again(state: &mut State, line: &Line) -> Result<Vec<Effect>, String> {
     let now = Duration::try_from_secs_f64(line.t_s)
-        .map_err(|_| format!("{} s is no time of a session", line.t_s))?;
+        .map_err(|error| format!("{} s is no time of a session: {error}", line.t_s))?;
     time::on_clock(state, now);
     if let What::Screen(columns, rows) = line.what {
         return Ok(update(state, Msg::Resize(columns, rows)));

@@ -126,6 +126,7 @@ fn screens() {
     check("prefix_80x24", small, "g", |_| {});
     check("history_120x40", large, "U j", |_| {});
     check("labels_80x24", small, "g l", fixture::crowd);
+    check("log_80x24", small, "5 . X g f 1 2 Enter z m 3 l Esc P l", |_| {});
     check("light_80x24", small, "v t g k", |_| {});
     check("palette_80x24", small, ": f r a m e", |_| {});
     check("help_120x40", large, "?", |_| {});

@@ -1,0 +1,87 @@
+//! Sessions done again from their logs, through the real program.
+
+use std::fs;
+
+use honami_tests::Bench;
+use serde_json::json;
+
+/// A project with tracks, and the first line of a session that begins with it.
+fn bench() -> (Bench, String) {
+    let bench = Bench::new();
+    bench.synth("clip.y4m", 20, "");
+    let clip = bench.json("new p.honami clip.y4m")["sha256"].clone();
+    bench.json("track p.honami --set max_features=9");
+    let revision = bench.json("log p.honami")["revision"].clone();
+    let head = json!({
+        "honami-log": 1, "honami": "0.1.0", "project": "p", "clip": clip, "revision": revision,
+        "screen": [80, 24], "seat": {},
+    });
+    (bench, format!("{head}\n"))
+}
+
+const SESSION: &str = r#"{"t_s":1.0,"action":"move-sample","in":"review","frame":4,"track":3}
+{"t_s":1.5,"action":"right","in":"move","frame":4,"track":3,"count":2}
+{"t_s":2.0,"mouse":{"kind":{"press":0},"cell":[0,0],"at":[80.5,60.5]},"in":"move","frame":4,"track":3}
+{"t_s":2.5,"action":"accept","in":"move","frame":4,"track":3}
+{"t_s":3.0,"action":"accept","in":"review","frame":7,"track":5,"judged":{"track":5,"frames":{"start":0,"end":20},"verdict":"accepted","reasons":["NCC"],"effort":{"keystrokes":4,"key_frames":0,"seconds":2.5}}}
+{"t_s":4.0,"action":"track","in":"review","frame":7,"track":5}
+{"t_s":4.5,"action":"accept","in":"form","frame":7,"track":5}
+{"t_s":9.0,"ended":"klt"}
+{"t_s":9.5,"action":"undo","in":"review","frame":7,"track":5}
+"#;
+
+#[test]
+fn a_session_is_done_again_and_says_the_same() {
+    let (bench, head) = bench();
+    fs::copy(bench.path("p.honami"), bench.path("q.honami")).unwrap();
+    fs::write(bench.path("s.jsonl"), head + SESSION).unwrap();
+    let first = bench.json("replay p.honami s.jsonl");
+    assert_eq!((&first["difference"], &first["done"]), (&json!(null), &json!(9)), "{first}");
+    let said: Vec<&str> =
+        first["said"].as_array().unwrap().iter().map(|s| s["text"].as_str().unwrap()).collect();
+    for (said, words) in said.iter().zip(["track 3: key-frame at 4", "track 5", "klt", "undone: "]) {
+        assert!(said.contains(words), "{words} is not in {said}");
+    }
+    assert_eq!(said.len(), 4, "{said:?}");
+    let text = bench.text("replay q.honami s.jsonl");
+    assert!(text.ends_with("9 lines done as in the log; at edit 3\n"), "{text}");
+    assert_eq!(bench.samples("p.honami"), bench.samples("q.honami"));
+    let labels = ["p.honami", "q.honami"].map(|project| {
+        bench.log(project, "edit").iter().map(|edit| edit["label"].clone()).collect::<Vec<_>>()
+    });
+    assert_eq!(labels[0], labels[1]);
+}
+
+#[test]
+fn it_stops_where_it_goes_another_way() {
+    let (bench, head) = bench();
+    for (from, to, line, words) in [
+        ("\"in\":\"form\"", "\"in\":\"move\"", 8, "this was done in move, and now it would be done in form"),
+        ("right", "paint", 3, "there is no action paint"),
+        ("\"track\":5,\"judged\"", "\"track\":99,\"judged\"", 6, "there is no track 99"),
+        ("80.5,60.5", "800.5,60.5", 4, "the point 800.5, 60.5 is not seen now"),
+        (
+            "{\"t_s\":9.0,\"ended\"",
+            "{\"t_s\":9.0,\"error\":\"no room\"}\n{\"t_s\":9.0,\"ended\"",
+            9,
+            "nothing is said",
+        ),
+    ] {
+        fs::copy(bench.path("p.honami"), bench.path("q.honami")).unwrap();
+        let log = (head.clone() + SESSION).replacen(from, to, 1);
+        fs::write(bench.path("s.jsonl"), log).unwrap();
+        let ran = bench.line("replay q.honami s.jsonl");
+        assert_eq!(ran.code, Some(1), "{ran:?}");
+        let last = ran.stdout.lines().last().unwrap_or_default();
+        assert!(last.starts_with(&format!("s.jsonl, line {line}: ")) && last.contains(words), "{ran:?}");
+    }
+    fs::write(bench.path("s.jsonl"), "hello\n").unwrap();
+    for (line, words) in [
+        ("replay p.honami s.jsonl", "line 1: wanted the first line of a log of honami"),
+        ("replay p.honami gone.jsonl", "cannot read the log gone.jsonl"),
+        ("replay gone.honami s.jsonl", "there is no project gone.honami"),
+    ] {
+        let ran = bench.line(line);
+        assert!(ran.code == Some(1) && ran.stderr.contains(words), "{ran:?}");
+    }
+}
