@@ -111,18 +111,18 @@ fn a_logged_session_is_done_again_on_a_copy() {
     command.env("HONAMI_PLUGIN_PATH", &plugins);
     let mut terminal = Terminal::start(command, folder.path(), (80, 24), true);
     terminal.wait_for_text("no tracks yet");
-    terminal.press("t");
+    terminal.press("tr");
     terminal.wait_for_text("found anew");
     terminal.press("\r");
     terminal.wait_for_text("(u undoes)");
     terminal.press("3.m2l\r");
-    terminal.wait_for_text("key-frame at 3 (moved 2.0 px)");
+    terminal.wait_for_text("corrected, up to 2.0 px");
     terminal.press("u");
     terminal.wait_for_text("undone: track");
     terminal.press("/7\rm3k");
-    terminal.wait_for_text("moved 3.00 px");
+    terminal.wait_for_text("3.00 px");
     terminal.press("\r");
-    terminal.wait_for_text("key-frame at 3 (moved 3.0 px)");
+    terminal.wait_for_text("corrected, up to 3.0 px");
     terminal.press("PL");
     terminal.wait_for_text("is saved as");
     // The line that said so was on the disk before it was on the screen.
