@@ -31,6 +31,7 @@ mod pictures;
 pub mod plotted;
 mod plotting;
 pub mod queue;
+pub mod ranging;
 pub mod recent;
 mod replay;
 mod reviewing;

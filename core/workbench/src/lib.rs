@@ -5,6 +5,7 @@
 
 pub mod cluster;
 pub mod compare;
+pub mod correct;
 pub mod doctor;
 pub mod drive;
 mod ear;

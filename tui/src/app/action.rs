@@ -21,7 +21,7 @@ pub enum Context {
     Menu,
     /// Setting which directions of motion are shown.
     Dial,
-    /// Typing a number.
+    /// Typing a number or a name.
     Prompt,
     /// Typing the letters on a track.
     Label,
@@ -122,10 +122,10 @@ table! {
     FineDown "fine-down" ["J" "Shift-Down"] [Place ".25" Move ".25"] "a quarter of a pixel down"
     FineUp "fine-up" ["K" "Shift-Up"] [Place ".25" Move ".25"] "a quarter of a pixel up"
     FineRight "fine-right" ["L" "Shift-Right"] [Place ".25" Move ".25" Form "" Slide ".25"] "a quarter of a pixel right, or a tenth of a value's range up"
-    Accept "accept" ["Enter"] [Place "place" Move "keep" Form "run" Menu "choose" Prompt "go" Review "" Dial "keep" History "go there" Slide "keep" Start "open"]
+    Accept "accept" ["Enter"] [Place "place" Move "keep" Form "run" Menu "choose" Prompt "done" Review "" Dial "keep" History "go there" Slide "keep" Start "open"]
         "accept: keep, place, run or go; while reviewing, the open item, or the sample here as a key-frame"
     Back "back" ["Esc" "Ctrl-c"] [Place "back" Move "back" Form "back" Menu "back" Prompt "back" Label "back" Review "" Dial "back" History "back" Slide "back" Start ""]
-        "back: leave what is open, undone; while reviewing, stop the job or the clip"
+        "back: leave what is open, undone; while reviewing, stop the clip or the job, give up the range, then the picks"
     // Time.
     PlayPause "play" ["space"] [Review "play"] "play or pause; 200 space: at 200 %, from now on"
     PlayBackwards "play-backwards" ["B"] [Review ""] "play backwards, or pause"
@@ -161,8 +161,21 @@ table! {
     WalkBack "walk-back" ["("] [Move ""] "walk one sample back along the path, while the picture stays"
     Pin "pin" ["*"] [Move "end here"] "make the sample walked to, or looked at, a key-frame as it is: the correction ends there"
     AddFeature "add-feature" ["a"] [Review "add"] "add a feature by hand"
-    DeleteTrack "delete-track" ["d"] [Review ""] "delete the selected track (u brings it back)"
-    ClearKey "clear-key-frame" ["X"] [Review ""] "clear the key-frame here (u brings it back)"
+    Range "range" ["r"] [Review "end"] "begin a range of frames here, or end it here; what marks and deletes works on it"
+    MarkLost "mark-lost" ["x"] [Review "lost"] "the feature is lost: in the range, else from here to the next key-frame"
+    MarkOccluded "mark-occluded" ["o"] [Review "occluded"] "the feature is hidden: in the range, else in this frame"
+    MarkOutside "mark-outside" ["O"] [Review ""] "the feature is outside the picture: in the range, else in this frame"
+    DeleteRange "delete-range" ["d r"] [Review "take away"] "take the samples of the range away (u brings them back)"
+    DeleteTrack "delete-track" ["d d"] [Review ""] "delete the picked tracks, else the selected one (u brings them back)"
+    Pick "pick-track" ["y"] [Review ""] "pick the selected track, or no longer: what marks and deletes works on all picked"
+    PickGroup "pick-group" ["Y"] [Review ""] "pick the selected track's group, or no longer"
+    Split "split-track" ["e s"] [Review ""] "cut the selected track in two: from here on it is a new one"
+    Swap "swap-tracks" ["e x"] [Review ""] "exchange the selected track with another: in the range, else from here on"
+    Join "join-tracks" ["e j"] [Review ""] "fill the selected track with another, which is deleted"
+    Duplicate "duplicate-track" ["e d"] [Review ""] "make a new track like the selected one"
+    Average "average-tracks" ["e a"] [Review "average"] "make a new track in the middle of the picked ones"
+    NameTrack "name-track" ["e n"] [Review ""] "name the selected track"
+    ClearKey "clear-key-frame" ["X" "d k"] [Review ""] "clear the key-frame here (u brings it back)"
     Erase "erase" ["Backspace"] [Menu "" Prompt ""] "take back a typed letter"
     RetrackBoth "retrack-both" ["t t"] [Review "re-track"] "track again from the key-frames on both sides, and blend"
     RetrackForward "retrack-forward" ["t f"] [Review ""] "track again from the key-frame here or before, up to the next"

@@ -12,6 +12,7 @@ use honami_model::judgement::Judgement;
 use honami_model::track::TrackId;
 use honami_workbench::WorkbenchError;
 use honami_workbench::cluster::{self, ClusterRequest};
+use honami_workbench::correct;
 use honami_workbench::plugins::{Kind, PluginInfo};
 use honami_workbench::retrack::{self, Way};
 use honami_workbench::session::Session;
@@ -135,6 +136,7 @@ impl World {
         let done = match effect {
             Effect::Commit(transaction, hint) => self.commit(transaction, hint),
             Effect::Judge(found) => self.judge(found),
+            Effect::Correct(step, hint) => self.correct(&step, hint),
             Effect::Study(track) => {
                 self.studied = Some(track);
                 self.layers().map(|fact| fact.into_iter().collect())
@@ -167,6 +169,13 @@ impl World {
         self.session.project.commit(transaction)?;
         self.studied = None;
         self.shown_and(said(line))
+    }
+
+    fn correct(&mut self, step: &correct::Step, hint: Hint) -> Facts {
+        let (transaction, made) = correct::prepare(&mut self.session.project, step)?;
+        let mut facts = self.commit(transaction, hint)?;
+        facts.push(Fact::Corrected(made));
+        Ok(facts)
     }
 
     fn judge(&mut self, found: Judge) -> Facts {

@@ -20,6 +20,10 @@ pub enum Choice {
     Action(Action),
     /// Selects a track.
     Track(TrackId),
+    /// Swaps the selected track with it.
+    Swap(TrackId),
+    /// Joins it to the selected track.
+    Join(TrackId),
     /// Goes to a frame.
     Frame(u32),
     /// Opens the form of the plugin with this place in the list.
@@ -81,7 +85,23 @@ impl Menu {
     /// Every shown track.
     #[must_use]
     pub fn of_tracks(state: &State) -> Self {
-        let rows = state.listed().into_iter().map(|row| {
+        Self::of_rows(state, "tracks", state.listed(), Choice::Track)
+    }
+
+    /// Every shown track but the selected one, to do something with.
+    #[must_use]
+    pub fn of_others(state: &State, title: &'static str, choice: fn(TrackId) -> Choice) -> Self {
+        let others = state.listed().into_iter().filter(|row| Some(row.id) != state.selected);
+        Self::of_rows(state, title, others.collect(), choice)
+    }
+
+    fn of_rows(
+        state: &State,
+        title: &'static str,
+        rows: Vec<&TrackRow>,
+        choice: fn(TrackId) -> Choice,
+    ) -> Self {
+        let rows = rows.into_iter().map(|row| {
             let group = state.groups.as_ref().and_then(|g| g.of(row.id));
             let doubt = state.review.queue.of_track(row.id).next();
             let doubt = doubt.map_or_else(String::new, |item| format!("worst at {}", item.worst));
@@ -89,10 +109,10 @@ impl Menu {
                 label: format!("track {} {}", row.id, row.name.as_deref().unwrap_or_default()),
                 detail: group.map_or(doubt.clone(), |g| format!("group {}  {doubt}", g + 1)),
                 keys: String::new(),
-                choice: Choice::Track(row.id),
+                choice: choice(row.id),
             }
         });
-        Self::new("tracks", rows.collect(), Mode::Review)
+        Self::new(title, rows.collect(), Mode::Review)
     }
 
     /// The key-frames of a track.

@@ -1,5 +1,6 @@
 //! All that the terminal UI knows. Plain data: it is changed only by [`update`](super::update::update).
 
+use std::collections::BTreeSet;
 use std::time::Duration;
 
 use honami_model::clip::Clip;
@@ -19,6 +20,7 @@ use super::motion::Motion;
 use super::panel::Panel;
 use super::plotted::Plotted;
 use super::queue::Opened;
+use super::ranging::Ranging;
 use super::tracks::{Groups, TrackRow};
 use super::view::theme::Theme;
 use crate::term::capabilities::Pixels;
@@ -49,6 +51,10 @@ pub struct State {
     pub selected: Option<TrackId>,
     /// The track that was placed or moved by hand since the last run: the next run is likely for it.
     pub corrected: Option<TrackId>,
+    /// Tracks that are picked for work on all of them.
+    pub picked: BTreeSet<TrackId>,
+    /// The range of frames to work on.
+    pub range: Option<Ranging>,
     /// Whether tracks are listed by doubt, not by number.
     pub by_doubt: bool,
     /// What there is to review.
@@ -140,6 +146,8 @@ pub enum Mode {
     Dial(Motion),
     /// Typing a frame number.
     Prompt(String),
+    /// Typing a name for the selected track.
+    Name(String),
     /// Typing the letters on a track.
     Label(String),
     /// Going about in the undo tree.
@@ -166,7 +174,7 @@ impl Mode {
             Self::Form(_) => Context::Form,
             Self::Menu(_) => Context::Menu,
             Self::Dial(_) => Context::Dial,
-            Self::Prompt(_) => Context::Prompt,
+            Self::Prompt(_) | Self::Name(_) => Context::Prompt,
             Self::Label(_) => Context::Label,
             Self::History { .. } => Context::History,
         }
@@ -235,6 +243,8 @@ impl State {
             tracks: Vec::new(),
             selected: None,
             corrected: None,
+            picked: BTreeSet::new(),
+            range: None,
             by_doubt: false,
             review: Review::default(),
             opened: None,

@@ -11,7 +11,9 @@ mod mouse;
 mod moving;
 mod pick;
 mod queue;
+mod ranges;
 mod time;
+mod tracks;
 
 use std::time::Duration;
 
@@ -19,6 +21,7 @@ use honami_model::edit::Transaction;
 use honami_model::history::EntryId;
 use honami_model::track::TrackId;
 use honami_workbench::cluster::ClusterRequest;
+use honami_workbench::correct::Step;
 use honami_workbench::retrack;
 use honami_workbench::track::TrackRequest;
 
@@ -64,6 +67,8 @@ const UNDO: Hint = "u undoes";
 pub enum Effect {
     /// Commit an edit, and say what may be done next.
     Commit(Transaction, Hint),
+    /// Correct whole tracks or ranges of them, and say what may be done next.
+    Correct(Step, Hint),
     /// Tell what a track is made from, now and after every change until an edit is committed.
     Study(TrackId),
     /// Place a new track here; its number is the project's to give.
@@ -152,6 +157,8 @@ pub fn update(state: &mut State, msg: Msg) -> Vec<Effect> {
 
 /// Largest number before a command.
 const COUNT_MAX: u32 = 999_999;
+/// Longest name of a track, characters.
+const NAME_MAX: usize = 60;
 /// Longest text typed into a menu or a form, characters.
 const TYPED_MAX: usize = 256;
 
@@ -185,6 +192,7 @@ fn on_text(state: &mut State, text: &str) {
     match &mut state.mode {
         Mode::Menu(menu) => menu.retype(|typed| append(typed, chars, TYPED_MAX)),
         Mode::Prompt(typed) => append(typed, chars.filter(char::is_ascii_digit), 9),
+        Mode::Name(typed) => append(typed, chars, NAME_MAX),
         Mode::Form(form) => {
             if form.typed.is_none()
                 && let Some(first) = chars.next()
@@ -246,6 +254,8 @@ fn choose(state: &mut State) -> Vec<Effect> {
             time::select(state, track);
             Vec::new()
         }
+        Some(Choice::Swap(track)) => tracks::swap(state, track),
+        Some(Choice::Join(track)) => tracks::join(state, track),
         Some(Choice::Frame(frame)) => {
             time::go(state, frame);
             Vec::new()
@@ -270,3 +280,5 @@ fn open_menu(state: &mut State, title: &'static str) {
 mod keys_tests;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tracks_tests;

@@ -1,13 +1,14 @@
 //! The words of scripts, and what each does.
 
 use honami_host::{HostError, Kind, Values};
-use honami_model::correct::{self, Correction, Drawn, Played, Refused, Shown, tracks};
+use honami_model::correct::{self, Correction, Drawn, Played, Refused, Shown};
 use honami_model::edit::{Edit, Transaction};
 use honami_model::judgement::{Effort, Judgement, Verdict};
 use honami_model::track::{Status, TrackId};
 
 use super::arguments::Arguments;
 use super::{Act, ScriptError, Word};
+use crate::correct::{Step, prepare};
 use crate::error::WorkbenchError;
 use crate::ground::Ground;
 use crate::retrack::{self, RetrackRequest, Way};
@@ -213,39 +214,33 @@ fn mark(session: &mut Session, given: &Arguments<'_>) -> Outcome {
         "seen" => Status::Tracked,
         _ => return Err(given.wrong(0, "lost, occluded, outside or seen")),
     };
-    let frames = given.frames(2)?;
-    on_track(session, given.track(1)?, |shown| correct::mark(shown, frames, status))
+    let (tracks, frames) = (given.track(1)?.into(), given.frames(2)?);
+    stepped(session, &Step::Mark { tracks, frames, status })
 }
 
 fn range_delete(session: &mut Session, given: &Arguments<'_>) -> Outcome {
-    let frames = given.frames(1)?;
-    on_track(session, given.track(0)?, |shown| correct::delete_range(shown, frames))
+    stepped(session, &Step::DeleteRange { tracks: given.track(0)?.into(), frames: given.frames(1)? })
 }
 
 fn split(session: &mut Session, given: &Arguments<'_>) -> Outcome {
-    let (track, frame) = (given.track(0)?, given.whole(1, "frame")?);
-    on_tracks(session, &[track], |session, shown| Ok(tracks::split(&shown[0], frame, new(session)?)?))
+    stepped(session, &Step::Split { track: given.track(0)?, frame: given.whole(1, "frame")? })
 }
 
 fn swap(session: &mut Session, given: &Arguments<'_>) -> Outcome {
-    let frames = given.frames(2)?;
-    let pair = [given.track(0)?, given.track(1)?];
-    on_tracks(session, &pair, |_, shown| Ok(tracks::swap(&shown[0], &shown[1], frames)?))
+    let tracks = [given.track(0)?, given.track(1)?];
+    stepped(session, &Step::Swap { tracks, frames: given.frames(2)? })
 }
 
 fn join(session: &mut Session, given: &Arguments<'_>) -> Outcome {
-    let pair = [given.track(0)?, given.track(1)?];
-    on_tracks(session, &pair, |_, shown| Ok(tracks::join(&shown[0], &shown[1])?))
+    stepped(session, &Step::Join { track: given.track(0)?, with: given.track(1)? })
 }
 
 fn duplicate(session: &mut Session, given: &Arguments<'_>) -> Outcome {
-    let track = given.track(0)?;
-    on_tracks(session, &[track], |session, shown| Ok(tracks::duplicate(&shown[0], new(session)?)?))
+    stepped(session, &Step::Duplicate(given.track(0)?))
 }
 
 fn average(session: &mut Session, given: &Arguments<'_>) -> Outcome {
-    let all: Vec<TrackId> = given.tracks(0)?.iter().collect();
-    on_tracks(session, &all, |session, shown| Ok(tracks::average(shown, new(session)?)?))
+    stepped(session, &Step::Average(given.tracks(0)?))
 }
 
 fn name(_: &mut Session, given: &Arguments<'_>) -> Outcome {
@@ -303,14 +298,6 @@ fn on_track(
     Ok(Act::Commit(tool(&ground.shown(&session.project.clip().clip.times))?.transaction))
 }
 
-fn on_tracks(
-    session: &mut Session,
-    tracks: &[TrackId],
-    tool: impl FnOnce(&mut Session, &[Shown<'_>]) -> Result<Transaction, ScriptError>,
-) -> Outcome {
-    let grounds =
-        tracks.iter().map(|&track| Ground::of(&session.project, track)).collect::<Result<Vec<_>, _>>()?;
-    let times = session.project.clip().clip.times.clone();
-    let shown: Vec<Shown<'_>> = grounds.iter().map(|ground| ground.shown(&times)).collect();
-    Ok(Act::Commit(tool(session, &shown)?))
+fn stepped(session: &mut Session, step: &Step) -> Outcome {
+    Ok(Act::Commit(prepare(&mut session.project, step)?.0))
 }

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use super::{
     Action, Effect, Mode, State, choose, complain, edit, history, look, motion, moving, open_menu, pick,
-    queue, say, time,
+    queue, ranges, say, time, tracks,
 };
 use honami_model::judgement::Verdict;
-use honami_model::track::TrackSet;
+use honami_model::track::{Status, TrackSet};
 use honami_workbench::cluster::ClusterRequest;
 use honami_workbench::retrack;
 use honami_workbench::track::{Area, PointSource, TrackRequest};
@@ -17,6 +17,7 @@ use crate::app::correcting::nudge_px;
 use crate::app::files::Way;
 use crate::app::form::{Features, Form, Task};
 use crate::app::lesson::Lesson;
+use crate::app::menu::Choice;
 use crate::app::panel::Panel;
 
 /// Does an action. The count, if one was typed, is still in the state.
@@ -144,6 +145,19 @@ fn correct(state: &mut State, action: Action) -> Vec<Effect> {
         Action::WalkForward => moving::walk(state, count(state)),
         Action::WalkBack => moving::walk(state, -count(state)),
         Action::Pin => moving::pin(state),
+        Action::Range => ranges::begin_or_end(state),
+        Action::MarkLost => return ranges::lost(state),
+        Action::MarkOccluded => return ranges::mark(state, Status::Occluded),
+        Action::MarkOutside => return ranges::mark(state, Status::Outside),
+        Action::DeleteRange => return ranges::delete(state),
+        Action::Pick => tracks::pick(state),
+        Action::PickGroup => tracks::pick_group(state),
+        Action::Split => return tracks::split(state),
+        Action::Swap => tracks::choose_other(state, "swap with", Choice::Swap),
+        Action::Join => tracks::choose_other(state, "join with", Choice::Join),
+        Action::Duplicate => return tracks::duplicate(state),
+        Action::Average => return tracks::average(state),
+        Action::NameTrack => tracks::begin_name(state),
         other => debug_assert!(false, "{other:?} is done nowhere"),
     }
     Vec::new()
@@ -172,7 +186,7 @@ fn steer(state: &mut State, dx: f32, dy: f32, px: f32) -> Vec<Effect> {
         Mode::Menu(menu) => menu.step(rows),
         Mode::Dial(_) => motion::steer(state, f64::from(dx), f64::from(dy)),
         Mode::History { .. } => history::step(state, rows),
-        Mode::Prompt(_) | Mode::Label(_) => {}
+        Mode::Prompt(_) | Mode::Name(_) | Mode::Label(_) => {}
     }
     Vec::new()
 }
@@ -198,6 +212,7 @@ fn accept(state: &mut State) -> Vec<Effect> {
             }
             Vec::new()
         }
+        Mode::Name(_) => tracks::name(state),
         Mode::History { .. } => history::jump(state),
         Mode::Label(_) => Vec::new(),
         Mode::Form(form) if form.typed.is_some() => {
@@ -232,7 +247,8 @@ fn run(state: &mut State) -> Vec<Effect> {
     vec![Effect::Track(TrackRequest { plugin, params, points, frames, every, area })]
 }
 
-/// Leaves what is open; while reviewing, stops what runs: first the clip, then the job.
+/// Leaves what is open; while reviewing, stops what runs: first the clip, then the job; then gives up the range, and
+/// then the picks.
 fn back(state: &mut State) -> Vec<Effect> {
     match &mut state.mode {
         Mode::Review if state.play.is_some() => time::stop(state),
@@ -241,7 +257,12 @@ fn back(state: &mut State) -> Vec<Effect> {
                 job.is_stopping = true;
                 return vec![Effect::StopJob];
             }
-            if state.job.is_none() {
+            if state.range.take().is_some() {
+                return Vec::new();
+            }
+            if !state.picked.is_empty() {
+                state.picked.clear();
+            } else if state.job.is_none() {
                 state.lesson.iter_mut().for_each(Lesson::close);
             }
         }
@@ -262,7 +283,7 @@ fn erase(state: &mut State) -> Vec<Effect> {
         Mode::Menu(menu) => menu.retype(|typed| {
             typed.pop();
         }),
-        Mode::Prompt(typed) => {
+        Mode::Prompt(typed) | Mode::Name(typed) => {
             typed.pop();
         }
         Mode::Form(form) => {

@@ -2,10 +2,10 @@
 
 use honami_model::clip::Clip;
 use honami_model::edit::Transaction;
-use honami_model::track::{Source, TrackId, TrackSet};
+use honami_model::track::{Source, TrackId};
 use honami_workbench::retrack::Way;
 
-use super::{Effect, Mode, State, UNDO, complain, say};
+use super::{Effect, Mode, State, UNDO, complain, ranges, say};
 use crate::app::tracks::TrackRow;
 
 /// Whether edits are possible; says why not.
@@ -92,19 +92,15 @@ pub(super) fn clear_key(state: &mut State) -> Vec<Effect> {
     }
 }
 
-/// Deletes the selected track and selects its neighbour.
+/// Deletes the picked tracks, else the selected one, and selects the next that is left.
 pub(super) fn delete(state: &mut State) -> Vec<Effect> {
-    if !is_writable(state) {
-        return Vec::new();
-    }
+    let Some(tracks) = ranges::targets(state) else { return Vec::new() };
     let listed: Vec<TrackId> = state.listed().iter().map(|row| row.id).collect();
-    let Some(at) = listed.iter().position(|id| Some(*id) == state.selected) else {
-        complain(state, "select a track first: j takes the next");
-        return Vec::new();
-    };
-    let track = listed[at];
-    state.selected = listed.get(at + 1).or_else(|| listed.get(at.wrapping_sub(1))).copied();
-    vec![Effect::Commit(Transaction::delete_tracks(TrackSet::from(track)), UNDO)]
+    let at = listed.iter().position(|id| Some(*id) == state.selected).unwrap_or(0);
+    let (before, after) = listed.split_at(at);
+    let stays = |track: &&TrackId| !tracks.contains(**track);
+    state.selected = after.iter().find(stays).or_else(|| before.iter().rev().find(stays)).copied();
+    vec![Effect::Commit(Transaction::delete_tracks(tracks), UNDO)]
 }
 
 /// Tracks the selected track again from the key-frames round the cursor.

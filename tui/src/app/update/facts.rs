@@ -29,6 +29,8 @@ pub enum Fact {
     Layers(Option<Arc<Layers>>),
     /// A new track was placed: it becomes the selected one.
     Placed(honami_model::track::TrackId),
+    /// A correction was made, and with it perhaps a new track: that becomes the selected one.
+    Corrected(Option<honami_model::track::TrackId>),
     /// A job began, went on, or ended.
     Job(Option<Job>),
     /// Something worth a line.
@@ -54,6 +56,8 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
         Fact::Tracks(rows) => {
             state.tracks = rows;
             state.plotted.revision += 1;
+            let (tracks, picked) = (&state.tracks, &mut state.picked);
+            picked.retain(|track| tracks.binary_search_by_key(track, |row| row.id).is_ok());
             if state.selected.is_none_or(|track| state.row(track).is_none()) {
                 state.selected = state.tracks.first().map(|row| row.id);
             }
@@ -75,6 +79,10 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
         Fact::Placed(track) => {
             state.selected = Some(track);
             state.corrected = Some(track);
+        }
+        Fact::Corrected(made) => {
+            state.range = None;
+            state.selected = made.or(state.selected);
         }
         Fact::Job(job) => {
             if let (Some(old), None) = (&state.job, &job) {

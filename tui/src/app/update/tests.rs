@@ -13,7 +13,7 @@ use honami_model::track::{TrackId, TrackSet};
 use honami_workbench::track::PointSource;
 
 /// The state that a line of words describes, from the fixture: `frame=10 track=2 zoom=1 playing job …`.
-fn start(words: &str) -> State {
+pub(super) fn start(words: &str) -> State {
     let mut state = fixture::state();
     for word in words.split_whitespace() {
         let (name, value) = word.split_once('=').unwrap_or((word, "0"));
@@ -46,7 +46,7 @@ fn start(words: &str) -> State {
 }
 
 /// The state and the effects in one line.
-fn line(state: &State, effects: &[Effect]) -> String {
+pub(super) fn line(state: &State, effects: &[Effect]) -> String {
     let mut words = vec![match &state.mode {
         Mode::Review => "review".to_owned(),
         Mode::Place([x, y]) => format!("place {x} {y}"),
@@ -72,6 +72,7 @@ fn line(state: &State, effects: &[Effect]) -> String {
         Mode::History { at, .. } => format!("history row {at}"),
         Mode::Label(typed) => format!("label {typed}"),
         Mode::Prompt(typed) => format!("prompt {typed:?}"),
+        Mode::Name(typed) => format!("name {typed:?}"),
     }];
     words.push(format!(
         "frame {} track {}",
@@ -98,6 +99,7 @@ fn line(state: &State, effects: &[Effect]) -> String {
             let (word, n) = (verdict.word(), effort.keystrokes);
             format!("track {track} {}-{} {word} with {n} keys", frames.start, frames.end - 1)
         }
+        Effect::Correct(step, _) => format!("{step:?}"),
         Effect::Cluster(ClusterRequest { plugin, .. }) => format!("{plugin} groups"),
         other => format!("{other:?}"),
     }));
@@ -106,7 +108,7 @@ fn line(state: &State, effects: &[Effect]) -> String {
 
 /// The one door.
 #[track_caller]
-fn check(from: &str, keys: &str, expect: &str) {
+pub(super) fn check(from: &str, keys: &str, expect: &str) {
     let mut state = start(from);
     let effects = press(&mut state, keys);
     assert_eq!(line(&state, &effects), expect, "from `{from}` by `{keys}`");
@@ -344,8 +346,8 @@ fn editing() {
             "X",
             &format!("{sway} | error no key-frame of the selected track is here; [ and ] go to them"),
         ),
-        ("", "d", "review | frame 0 track 2 | commit track 1 deleted"),
-        ("track=7", "d", "review | frame 0 track 2 | commit track 7 deleted"),
+        ("", "d d", "review | frame 0 track 2 | commit track 1 deleted"),
+        ("track=7", "d d", "review | frame 0 track 2 | commit track 7 deleted"),
         ("", "a", "place 160 120 | frame 0 track 1"),
         ("", "a 1 0 h J Enter", "review | frame 0 track 1 | AddFeature { frame: 0, at: [150.0, 120.25] }"),
         ("", "a 9 9 9 h Enter", "review | frame 0 track 1 | AddFeature { frame: 0, at: [0.0, 120.0] }"),
@@ -363,7 +365,7 @@ fn editing() {
         ),
         (
             "locked",
-            "d",
+            "d d",
             "review | frame 0 track 1 | error read only: ada on lab2 holds this project; nothing can be changed here",
         ),
     ] {
@@ -373,7 +375,7 @@ fn editing() {
 
 #[test]
 fn every_edit_is_refused_in_a_locked_project() {
-    for keys in ["m", "a", "d", "Enter", "X", "u", "Ctrl-r", "+", "-", "t t", "t f", "t b", "t r", "c"] {
+    for keys in ["m", "a", "d d", "Enter", "X", "u", "Ctrl-r", "+", "-", "t t", "t f", "t b", "t r", "c"] {
         let mut state = start("locked frame=50");
         let effects = press(&mut state, keys);
         assert!(effects.is_empty() && matches!(state.mode, Mode::Review), "{keys}: {effects:?}");

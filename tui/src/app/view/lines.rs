@@ -174,6 +174,7 @@ pub(super) fn time(state: &State, area: Rect, frame: &mut Frame) {
         Mode::Move(moving) => moving.affected(),
         _ => None,
     };
+    let range = state.range.map(|range| range.frames(state.frame));
     let looped = state.play.and_then(|play| play.loop_frames(n));
     for x in bar.left()..bar.right() {
         let frames = frame_at(bar, n, x)..=frame_at(bar, n, x + 1).max(frame_at(bar, n, x) + 1) - 1;
@@ -187,6 +188,7 @@ pub(super) fn time(state: &State, area: Rect, frame: &mut Frame) {
         let outlier = outliers.iter().any(|f| frames.contains(f));
         let (glyph, style) = match () {
             () if affected.as_ref().is_some_and(|a| overlap(a, &frames)) => ("━", style::ACCENT),
+            () if range.as_ref().is_some_and(|r| overlap(r, &frames)) => ("▄", style::ACCENT),
             () if is_looped => (if lost { "░" } else { "═" }, style::ACCENT),
             () if lost => ("░", style::ERROR),
             () if *frames.start() >= state.n_ready.max(1) => ("·", style::DIM),
@@ -212,11 +214,15 @@ fn overlap(range: &Range<u32>, frames: &RangeInclusive<u32>) -> bool {
 pub(super) fn hints(state: &State, area: Rect, frame: &mut Frame) {
     let mut left = match &state.mode {
         Mode::Prompt(typed) => format!("go to frame {typed}▏"),
+        Mode::Name(typed) => format!("name {typed}▏"),
         Mode::Label(typed) => format!("letters of a track {typed}▏"),
         Mode::Move(moving) => moving_words(moving, state.frame),
         _ => {
             let t_s = state.clip.times.get(state.frame).unwrap_or_default();
-            format!("{}/{}  {t_s:.2} s", state.frame, state.last_frame())
+            let mut words = format!("{}/{}  {t_s:.2} s", state.frame, state.last_frame());
+            words.extend(state.range.map(|range| format!("  {}", range.words(state.frame))));
+            words.extend(Some(state.picked.len()).filter(|n| *n > 0).map(|n| format!("  {n} picked")));
+            words
         }
     };
     left.push_str(&play_words(state));
@@ -301,8 +307,12 @@ fn hint_line(state: &State, room: usize) -> Line<'static> {
         .filter(|(_, word)| useful.contains(word))
         .map(|(keys, word)| (keys, scaled(word, context, state.zoom)))
         .collect();
-    // What is open can be kept: that must be seen on the narrowest screen.
-    hints.sort_by_key(|(_, word)| word != "keep");
+    // What is open can be kept, and what is marked worked on: that must be seen on the narrowest screen.
+    hints.sort_by_key(|(_, word)| match word.as_str() {
+        "keep" => 0,
+        "end" | "lost" | "occluded" | "take away" | "average" => 1,
+        _ => 2,
+    });
     let width =
         |(keys, word): &(String, String)| Line::raw(keys.as_str()).width() + 1 + word.chars().count() + 2;
     let help = hints.iter().position(|(_, word)| word == "help").map(|at| hints.remove(at));
@@ -338,6 +348,9 @@ fn is_useful(state: &State, action: Action) -> bool {
         Action::RunTracker => state.tracks.is_empty() && state.job.is_none() && state.read_only.is_none(),
         Action::RetrackBoth => state.selected.is_some() && state.job.is_none() && state.read_only.is_none(),
         Action::RunClusterer => state.tracks.len() > 1 && state.job.is_none() && state.read_only.is_none(),
+        Action::Range => state.range.is_some_and(|range| range.to.is_none()),
+        Action::MarkLost | Action::MarkOccluded | Action::DeleteRange => state.range.is_some(),
+        Action::Average => state.picked.len() > 1,
         Action::AddFeature => state.read_only.is_none(),
         _ => true,
     }

@@ -42,6 +42,8 @@ const WHITE: [u8; 3] = [255, 255, 255];
 /// Round rings and in crosses: they must be seen on petals and on sky.
 const DARK: [u8; 3] = [20, 20, 20];
 const KEY: [u8; 3] = [255, 215, 95];
+/// Round the tracks that are picked.
+const PICKED: [u8; 3] = [80, 255, 120];
 const CURSOR: [u8; 3] = [255, 60, 255];
 const UNSEEN: [u8; 3] = [130, 130, 130];
 
@@ -161,7 +163,8 @@ impl<'a> Canvas<'a> {
         }
         let nth = marks_nth(state, self.lens, frame);
         let is_marked = |i: usize, row: &TrackRow| {
-            state.selected == Some(row.id) || (state.marks_all && i.is_multiple_of(nth))
+            let is_meant = state.selected == Some(row.id) || state.picked.contains(&row.id);
+            is_meant || (state.marks_all && i.is_multiple_of(nth))
         };
         for (_, row) in state.tracks.iter().enumerate().filter(|(i, row)| is_marked(*i, row)) {
             let Some(sample) = row.span.get(frame) else { continue };
@@ -174,13 +177,17 @@ impl<'a> Canvas<'a> {
             };
             self.mark([sample.x, sample.y], &[], colour, 'o');
             self.tint([sample.x, sample.y], colour);
+            if state.picked.contains(&row.id) {
+                self.mark([sample.x, sample.y], &RING, PICKED, '#');
+            }
         }
         let moving = matches!(state.mode, Mode::Move(_));
         if let Some(row) = selected.filter(|_| !moving)
             && let Some(at) = row.at(frame)
         {
             let ring = if row.keys.binary_search(&frame).is_ok() { KEY } else { WHITE };
-            self.mark(at, &HALO, DARK, ' ');
+            let halo = if state.picked.contains(&row.id) { PICKED } else { DARK };
+            self.mark(at, &HALO, halo, ' ');
             self.mark(at, &RING, ring, '@');
         }
     }

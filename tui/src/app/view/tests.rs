@@ -114,8 +114,6 @@ fn screens() {
         state.n_ready = 60;
     });
     check("move_80x24", small, "m 3 l", |_| {});
-    check("ghost_80x24", small, "z z m 3 0 l 4 j . . 2 ( *", |_| {});
-    check("slide_80x24", small, "T 2 l L", |_| {});
     check("place_80x24", small, "a", |_| {});
     check("form_80x24", small, "t r j j", |_| {});
     check("form_120x40", large, "t r j j", |_| {});
@@ -137,7 +135,7 @@ fn screens() {
         state.notice =
             Some(Notice { text: "radius: wanted 2 to 50 (px), got 99".to_owned(), is_error: true });
     });
-    check("locked_80x24", small, "d", |state| {
+    check("locked_80x24", small, "d d", |state| {
         state.read_only = Some("ada@lab2 (pid 4711) since 2026-11-22T02:27:01Z".to_owned());
     });
     check("zoomed_80x24", small, "z z f", |_| {});
@@ -153,6 +151,13 @@ fn screens() {
     check("view_80x24", small, "v", |_| {});
     check("prefix_40x12", (40, 12), "g", |_| {});
     check("mono_80x24", small, "m l", |state| state.mono = true);
+}
+
+#[test]
+fn screens_of_corrections() {
+    check("slide_80x24", (80, 24), "T 2 l L", |_| {});
+    check("ghost_80x24", (80, 24), "z z m 3 0 l 4 j . . 2 ( *", |_| {});
+    check("range_120x40", (120, 40), "P t y j y r 1 9 l", |_| {});
 }
 
 #[test]

@@ -46,7 +46,10 @@ impl List for Tracks<'_> {
         let worst = self.state.review.queue.of_track(row.id).next();
         let worst = worst.map_or_else(String::new, |item| item.worst.to_string());
         Line::from(vec![
-            Span::styled("●", style::group_text(group)),
+            Span::styled(
+                if self.state.picked.contains(&row.id) { "✓" } else { "●" },
+                style::group_text(group),
+            ),
             Span::raw(format!("{:>5} {name:<8} ", row.id.to_string())),
             Span::styled(sparkline(self.state, row.id, BARS), style::DIM),
             Span::styled(format!(" {worst:>6}"), style::DIM),

@@ -1,0 +1,106 @@
+//! Steps on the tracks of a project: ranges marked or taken away; tracks split, swapped, joined, doubled, averaged.
+//!
+//! The screen and the scripts ask for the same steps; what each does is the model's (see
+//! [`correct`](mod@honami_model::correct)).
+
+use std::ops::Range;
+
+use honami_model::correct::{Refused, Shown, delete_range, mark, tracks};
+use honami_model::edit::Transaction;
+use honami_model::track::{Status, TrackId, TrackSet};
+use honami_store::Project;
+
+use crate::error::WorkbenchError;
+use crate::ground::Ground;
+
+/// What is to be done.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Step {
+    /// Say what is known of features in a range of frames.
+    Mark {
+        /// Their tracks; those that have nothing there are left out.
+        tracks: TrackSet,
+        /// The frames.
+        frames: Range<u32>,
+        /// What is known.
+        status: Status,
+    },
+    /// Take a range of frames away.
+    DeleteRange {
+        /// From these tracks; those that have nothing there are left out.
+        tracks: TrackSet,
+        /// The frames.
+        frames: Range<u32>,
+    },
+    /// Cut a track in two.
+    Split {
+        /// The track.
+        track: TrackId,
+        /// First frame of the second part, which is a new track.
+        frame: u32,
+    },
+    /// Exchange two tracks.
+    Swap {
+        /// The two.
+        tracks: [TrackId; 2],
+        /// The frames.
+        frames: Range<u32>,
+    },
+    /// Fill a track with what another one has seen, and delete the other.
+    Join {
+        /// The one that stays.
+        track: TrackId,
+        /// The one that fills it.
+        with: TrackId,
+    },
+    /// Make a new track like another one.
+    Duplicate(TrackId),
+    /// Make a new track in the middle of others.
+    Average(TrackSet),
+}
+
+/// A step as one edit, not committed yet, and the track that it makes.
+///
+/// # Errors
+/// What the correction is refused for, and what the project met.
+pub fn prepare(project: &mut Project, step: &Step) -> Result<(Transaction, Option<TrackId>), WorkbenchError> {
+    let new = match step {
+        Step::Split { .. } | Step::Duplicate(_) | Step::Average(_) => {
+            Some(TrackId(project.reserve_tracks(1)?.start))
+        }
+        Step::Mark { .. } | Step::DeleteRange { .. } | Step::Swap { .. } | Step::Join { .. } => None,
+    };
+    let ids = step.tracks();
+    let grounds = ids.iter().map(|&id| Ground::of(project, id)).collect::<Result<Vec<Ground>, _>>()?;
+    let times = &project.clip().clip.times;
+    let shown: Vec<Shown<'_>> = grounds.iter().map(|ground| ground.shown(times)).collect();
+    let edit = match (step, &shown[..], new) {
+        (Step::Mark { frames, status, .. }, ..) => {
+            tracks::many(&shown, |shown| mark(shown, frames.clone(), *status))
+        }
+        (Step::DeleteRange { frames, .. }, ..) => {
+            tracks::many(&shown, |shown| delete_range(shown, frames.clone()))
+        }
+        (Step::Split { frame, .. }, [shown], Some(new)) => tracks::split(shown, *frame, new),
+        (Step::Swap { frames, .. }, [a, b], _) => tracks::swap(a, b, frames.clone()),
+        (Step::Join { .. }, [a, b], _) => tracks::join(a, b),
+        (Step::Duplicate(_), [shown], Some(new)) => tracks::duplicate(shown, new),
+        (Step::Average(_), _, Some(new)) => tracks::average(&shown, new),
+        _ => Err(Refused::NothingSeen),
+    };
+    Ok((edit?, new))
+}
+
+impl Step {
+    /// The tracks it works on, the one that stays first.
+    fn tracks(&self) -> Vec<TrackId> {
+        match self {
+            Self::Mark { tracks, .. } | Self::DeleteRange { tracks, .. } | Self::Average(tracks) => {
+                tracks.iter().collect()
+            }
+            Self::Split { track, .. } | Self::Duplicate(track) => vec![*track],
+            Self::Swap { tracks, .. } => tracks.to_vec(),
+            Self::Join { track, with } => vec![*track, *with],
+        }
+    }
+}
