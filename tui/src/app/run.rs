@@ -32,6 +32,8 @@ const DECODING_TICK: Duration = Duration::from_millis(250);
 const SEAT_TICK: Duration = Duration::from_secs(5);
 /// Figures of the link change this often at most.
 const LINK_TICK: Duration = Duration::from_secs(1);
+/// What a link is taken to carry that has only seen frames too small to measure it by, bytes per second.
+const UNMEASURED: f64 = 64.0 * 1024.0;
 
 /// How a turn of the wheel has ended.
 pub(super) enum Turned {
@@ -341,6 +343,10 @@ impl App {
             self.pace.painted(now, (frame, lens));
             self.tally.painted(frame);
         }
+        // A picture that is exact from now on may stay: nothing else wakes the screen for its still.
+        if self.is_exact {
+            self.look_at_still(screen);
+        }
         Ok(())
     }
 
@@ -354,10 +360,8 @@ impl App {
         }
         let made = self.stills.take();
         let frame = self.frame.as_ref().filter(|_| self.is_exact && self.state.play.is_none());
-        let goodput = screen.link().goodput();
-        let (Some(frame), Some(pixels), Some(shot), Some(goodput)) =
-            (frame, pixels, self.pictures.shot(), goodput)
-        else {
+        let goodput = screen.link().goodput().unwrap_or(UNMEASURED);
+        let (Some(frame), Some(pixels), Some(shot)) = (frame, pixels, self.pictures.shot()) else {
             return self.stills.see(None, screen.has_still(), screen.now());
         };
         if let Some(still) = made {
