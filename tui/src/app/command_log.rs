@@ -155,7 +155,7 @@ impl Line {
     }
 }
 
-/// What was done in a session, the last [`N_KEPT`] lines of it.
+/// What was done in a session, the last `N_KEPT` lines of it.
 #[derive(Clone, Debug, Default)]
 pub struct CommandLog {
     head: Head,

@@ -1,6 +1,6 @@
 //! The start screen: for those who have opened nothing yet.
 //!
-//! Its state and what keys and mouse do to it are pure; [`Start::watch`] is the only part that looks at the disk.
+//! Its state and what keys and mouse do to it are pure; `Start::watch` is the only part that looks at the disk.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
