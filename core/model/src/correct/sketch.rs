@@ -4,7 +4,7 @@ use super::{Correction, Refused, Shown};
 use crate::over::{Laid, Over};
 use crate::track::{Quality, Sample, Source, Status};
 
-/// How late a hand follows what the eye sees, seconds (Diener 2009, 3.4.2, after [ES00]).
+/// How late a hand follows what the eye sees, seconds (Diener 2009, 3.4.2, after its reference ES00).
 pub const HUMAN_DELAY_S: f64 = 0.115;
 
 /// A point of a stroke.
