@@ -1,9 +1,11 @@
 //! Terminals that can show pixels, that answer late, and that lie.
 
+use std::time::{Duration, Instant};
+
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD as BASE64;
 
-use super::{STATUS, Terminal, folder};
+use super::{PATIENCE, STATUS, Terminal, folder};
 
 const KITTY: &[(&[u8], &[u8])] = &[
     STATUS,
@@ -64,7 +66,7 @@ fn a_paused_picture_becomes_pixels_and_a_key_takes_them_away() {
 }
 
 #[test]
-fn jpeg_in_parts_is_the_picture_too() {
+fn jpeg_in_parts_is_the_picture_too_and_is_sent_once() {
     let folder = folder();
     let mut terminal = honami(folder.path(), ITERM);
     let begun = terminal.wait_for_bytes(0, "MultipartFile=");
@@ -72,6 +74,18 @@ fn jpeg_in_parts_is_the_picture_too() {
     let still = picture(&terminal.seen[begun..whole], "FilePart=", "\x07");
     let middle = still[(still.width() / 4, still.height() / 2)].0;
     assert!(middle.iter().all(|&c| c > 240), "{middle:?}");
+    // It is there once, and then nothing is sent.
+    let until = Instant::now() + PATIENCE;
+    while terminal.listen(Duration::from_millis(2500)).0 {
+        assert!(Instant::now() < until, "it never falls silent");
+    }
+    let seen = String::from_utf8_lossy(&terminal.seen).into_owned();
+    let stills =
+        seen.split("MultipartFile=").skip(1).map(|still| picture(still.as_bytes(), "FilePart=", "\x07"));
+    let mut stills: Vec<Vec<u8>> = stills.map(image::RgbImage::into_raw).collect();
+    let n_sent = stills.len();
+    stills.dedup();
+    assert_eq!(stills.len(), n_sent, "a picture was sent twice");
     terminal.press("q");
     assert!(terminal.wait_for_end());
     terminal.assert_restored();

@@ -10,7 +10,7 @@ use serde_json::Value;
 use super::Terminal;
 
 /// Folder of the shipped plugins, as cargo built them: the tests of this package do not build them.
-fn plugins() -> PathBuf {
+pub(super) fn plugins() -> PathBuf {
     let profile = if cfg!(debug_assertions) { "dev" } else { "release" };
     let output = Command::new(env!("CARGO"))
         .args(["build", "--quiet", "--message-format=json", "--profile", profile])
@@ -31,7 +31,7 @@ fn plugins() -> PathBuf {
 }
 
 /// What the program says on a command line.
-fn said(folder: &Path, line: &str) -> String {
+pub(super) fn said(folder: &Path, line: &str) -> String {
     let mut command = Command::new(env!("CARGO_BIN_EXE_honami"));
     command.args(line.split_whitespace()).current_dir(folder);
     for name in ["XDG_STATE_HOME", "XDG_CACHE_HOME", "XDG_DATA_HOME", "HOME"] {
@@ -43,7 +43,7 @@ fn said(folder: &Path, line: &str) -> String {
 }
 
 /// A clip or a project in the terminal, with plugins.
-fn open(what: &str, folder: &Path, plugins: &Path) -> Terminal {
+pub(super) fn open(what: &str, folder: &Path, plugins: &Path) -> Terminal {
     let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_honami"));
     command.arg(what);
     command.env("HONAMI_PLUGIN_PATH", plugins);
