@@ -5,10 +5,12 @@
 //! the plugins; `run` turns the wheel; `door` leads from one project to the next, by way of the start screen.
 
 pub mod action;
+mod behind;
 pub mod clock;
 pub mod command_log;
 pub mod config;
 pub mod correcting;
+pub mod dense;
 pub mod door;
 mod effects;
 pub mod files;
@@ -29,7 +31,6 @@ mod pace;
 pub mod panel;
 mod pictures;
 pub mod plotted;
-mod plotting;
 pub mod queue;
 pub mod ranging;
 pub mod recent;

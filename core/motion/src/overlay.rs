@@ -4,10 +4,14 @@
 //! hue, so the single cone that the text draws is HSV: `H = θ`, `S = 1`, `V = min(c ρ, 1)`, opacity `V` too.
 //! Directions are those of the image, y down: 0 is right, a quarter turn is down.
 
+mod dense;
+
 use std::f64::consts::{PI, TAU};
 
 use honami_model::clip::FrameTimes;
 use honami_model::track::Span;
+
+pub use dense::{VelocityField, paint_field};
 
 /// Soft discs reach this far at least and at most, screen pixels.
 const DISC: (f64, f64) = (1.5, 6.0);

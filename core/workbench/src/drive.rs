@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use honami_host::{CallContext, DetectRequest, FrameView, HostError, Point, Points, StreamInfo, Tracker};
-use honami_media::Media;
+use honami_media::{FrameRef, Media};
 use honami_model::clip::Clip;
 use honami_model::picture::Gray;
 use honami_model::track::{Quality, Sample, Source, Span, Status, TrackId};
@@ -169,11 +169,7 @@ impl Ride<'_> {
         call: &CallContext<'_>,
     ) -> Result<(), WorkbenchError> {
         let picture = self.media.frame(frame)?;
-        let view = FrameView {
-            gray: picture.planes().y,
-            index: i64::from(frame),
-            time_s: self.media.clip().times.get(frame).unwrap_or_default(),
-        };
+        let view = view(self.media, &picture, frame);
         let begun = Instant::now();
         let first = frame == self.plan.frames.start;
         // Seeds hold in the frame pushed last; only those of the first frame come before it.
@@ -236,6 +232,12 @@ impl Ride<'_> {
         self.tracker_secs += begun.elapsed().as_secs_f64();
         Ok(())
     }
+}
+
+/// A frame of a clip as plugins are given it.
+pub(crate) fn view<'a>(media: &Media, picture: &'a FrameRef, frame: u32) -> FrameView<'a> {
+    let time_s = media.clip().times.get(frame).unwrap_or_default();
+    FrameView { gray: picture.planes().y, index: i64::from(frame), time_s }
 }
 
 fn frame_of(view: &FrameView<'_>) -> u32 {

@@ -73,6 +73,15 @@ pub enum WorkbenchError {
         /// The file.
         path: PathBuf,
     },
+    /// A tracker measures no dense motion.
+    #[error("{plugin} was asked for dense motion and offers none: only that of tracks can be shown")]
+    NoDense {
+        /// Its short name.
+        plugin: String,
+    },
+    /// A clip of one frame.
+    #[error("nothing moves in a clip of one frame")]
+    OneFrame,
     /// There is nothing to track.
     #[error(
         "there are no features to track: place some, give a table of points, or let the tracker find them"

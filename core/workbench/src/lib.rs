@@ -6,6 +6,7 @@
 pub mod cluster;
 pub mod compare;
 pub mod correct;
+pub mod dense;
 pub mod doctor;
 pub mod drive;
 mod ear;

@@ -28,6 +28,7 @@ use crate::error::WorkbenchError;
 use crate::ground::Ground;
 use crate::progress::Progress;
 use crate::session::Session;
+pub(crate) use direction::usual;
 use direction::{Direction, Made};
 use lay::{Runs, Tracked};
 use pass::{Found, Meter, Scene};
@@ -127,8 +128,7 @@ pub fn prepare(session: &Session, request: &RetrackRequest) -> Result<RetrackJob
     if stretches.is_empty() {
         return Err(WorkbenchError::NoAnchor { track: request.track, first, last });
     }
-    let (plugin, values) =
-        request.with.clone().map_or_else(|| direction::usual(session, request.track), Ok)?;
+    let (plugin, values) = request.with.clone().map_or_else(|| usual(session, Some(request.track)), Ok)?;
     let start = |pass: fn(&Stretch) -> Option<Pass>, word| {
         let passes: Vec<Pass> = stretches.iter().filter_map(pass).collect();
         Direction::start(session, request.track, (&plugin, &values), &passes, word)

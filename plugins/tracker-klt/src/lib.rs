@@ -1,5 +1,6 @@
 //! The pyramidal KLT tracker as a honami plugin; the algorithm is `honami_vision::klt`.
 
+mod dense;
 mod settings;
 #[cfg(test)]
 mod tests;
@@ -7,8 +8,8 @@ mod tests;
 use std::collections::BTreeMap;
 
 use honami_plugin::{
-    Cx, Detect, DetectFn, Error, Feature, Frame, Info, Point, Points, Result, Seed, Status, Stream, Tracker,
-    export,
+    Cx, Detect, DetectFn, Error, Feature, FieldFn, Frame, Info, Point, Points, Result, Seed, Status, Stream,
+    Tracker, export,
 };
 use honami_vision::klt::{self, State};
 use honami_vision::ncc::Ncc;
@@ -41,12 +42,14 @@ impl Tracker for Klt {
         name: "Pyramidal KLT",
         doc: "Moves a window until its brightness agrees with that of the frame before: \
               `(Σ g gᵀ) dv = -Σ δ g`, from the coarsest level of a pyramid to the finest, \
-              then tracks back for the forward-backward error. Brightness must stay; displacements may reach \
+              then tracks back for the forward-backward error. Dense motion is the same search from the nodes of a grid, \
+              one radius apart, and 0 where a node does not come back to within a pixel. Brightness must stay; displacements may reach \
               about `2^(levels-1)` radii.",
         cite: &["Lucas, Kanade 1981", "Bouguet 2000", "Shi, Tomasi 1994", "Kalal, Mikolajczyk, Matas 2010"],
         ..Info::NEW
     };
     const DETECT: Option<DetectFn<Settings>> = Some(features);
+    const FIELD: Option<FieldFn<Settings>> = Some(dense::field);
 
     fn begin(settings: &Settings, stream: &Stream, _: &Cx<'_>) -> Result<Self> {
         let params = settings.tracking();

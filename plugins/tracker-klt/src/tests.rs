@@ -5,6 +5,8 @@ use honami_vision::texture;
 
 use super::*;
 
+mod dense;
+
 const WIDTH: u32 = 240;
 const HEIGHT: u32 = 180;
 /// Motion from each frame to the next, pixels.

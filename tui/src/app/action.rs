@@ -199,6 +199,7 @@ table! {
     MotionGainUp "motion-gain-up" ["v +"] [Review ""] "stronger colours of motion"
     MotionGainDown "motion-gain-down" ["v -"] [Review ""] "weaker colours of motion"
     MotionDial "motion-dial" ["v d"] [Review ""] "choose the directions of motion that are shown"
+    MotionSource "motion-source" ["v f"] [Review ""] "show motion everywhere in the picture, if a tracker measures it"
     Marks "marks" ["M"] [Review ""] "mark all tracks in the picture, or only the selected one"
     Column "next-panel" ["Tab"] [Review "" Move "model"] "show the next panel beside the picture, after the last none; while moving, offer the next correction"
     PanelQueue "panel-queue" ["P q"] [Review ""] "show or hide the queue of doubtful segments"

@@ -12,14 +12,15 @@ use honami_model::judgement::Judgement;
 use honami_model::track::TrackId;
 use honami_workbench::WorkbenchError;
 use honami_workbench::cluster::{self, ClusterRequest};
-use honami_workbench::correct;
 use honami_workbench::plugins::{Kind, PluginInfo};
 use honami_workbench::retrack::{self, Way};
 use honami_workbench::session::Session;
 use honami_workbench::store::{Project, StoreError};
 use honami_workbench::track::{self, TrackRequest};
+use honami_workbench::{correct, dense};
 
 use super::command_log::{self, Origin};
+use super::dense::Measuring;
 use super::form::{Plugin, Task};
 use super::jobs::{Done, Running, Work};
 use super::reviewing::Reviewing;
@@ -36,6 +37,8 @@ pub(super) struct World {
     running: Option<(Running, Job)>,
     /// Measures suspicion; `None` where there is no thread for it.
     reviewing: Option<Reviewing>,
+    /// Measures dense motion, once that was asked for.
+    measuring: Option<Measuring>,
     rows: BTreeMap<TrackId, TrackRow>,
     /// Entries of the undo tree that the state has been told of.
     n_told: usize,
@@ -52,7 +55,8 @@ impl World {
     pub(super) fn new(session: Session, waker: Waker) -> Self {
         let reviewing = Reviewing::start(Arc::clone(&session.media), waker.clone()).ok();
         let (rows, seat) = (BTreeMap::new(), Seat::default());
-        Self { session, waker, running: None, reviewing, rows, n_told: 0, seat, studied: None }
+        let (running, measuring) = (None, None);
+        Self { session, waker, running, reviewing, measuring, rows, n_told: 0, seat, studied: None }
     }
 
     /// The state to begin with, of the usual size.
@@ -147,6 +151,7 @@ impl World {
             Effect::Redo(n) => self.travel("redone", n, Project::redo),
             Effect::Track(request) => self.track(&request, now),
             Effect::Retrack { track, way, frame } => self.retrack(track, way, frame, now),
+            Effect::Measure(track) => self.measure(track),
             Effect::Cluster(request) => self.cluster(&request, now),
             Effect::StopJob => {
                 self.running.iter().for_each(|(running, _)| running.stop());
@@ -261,6 +266,25 @@ impl World {
     fn cluster(&mut self, request: &ClusterRequest, now: Duration) -> Facts {
         let work = Work::Cluster(cluster::prepare(&self.session, request)?);
         self.start(work, &request.plugin, false, now)
+    }
+
+    /// Has a tracker measure dense motion from now on.
+    fn measure(&mut self, track: Option<TrackId>) -> Facts {
+        let meter = dense::prepare(&self.session, track)?;
+        let plugin = meter.plugin().to_owned();
+        self.measuring = Some(Measuring::new(meter, self.waker.clone()));
+        Ok(vec![Fact::Measures(plugin)])
+    }
+
+    /// What is known of the dense motion of the shown frame, where it is shown and that has changed.
+    pub(super) fn dense(&mut self, state: &State) -> Option<Fact> {
+        let shown = state.dense.as_ref().filter(|_| state.motion.is_on)?;
+        let (frame, n_frames) = (state.shown_frame(), state.clip.n_frames());
+        let n_ready = self.n_ready();
+        match self.measuring.as_mut()?.look(frame, state.play.is_some(), n_ready, n_frames) {
+            Ok(field) => (shown.field != field).then_some(Fact::Dense(field)),
+            Err(error) => Some(Fact::NotMeasured(error.to_string())),
+        }
     }
 
     fn start(&mut self, work: Work, plugin: &str, keeps_frames: bool, since: Duration) -> Facts {

@@ -8,6 +8,9 @@ use honami_workbench::plots::Plots;
 
 use super::state::State;
 
+/// Curves, of what and in which state of the tracks.
+pub type Lot = ((Subject, u64), Arc<Plots>);
+
 /// What is plotted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Subject {
@@ -38,7 +41,7 @@ pub struct Plotted {
     /// What was last asked for.
     pub asked: Option<(Subject, u64)>,
     /// What has come.
-    pub plots: Option<((Subject, u64), Arc<Plots>)>,
+    pub plots: Option<Lot>,
 }
 
 impl Plotted {

@@ -1,8 +1,12 @@
 //! The wheel: wait, update, carry out, draw, paint. Draws only what changed, sends nothing when nothing does.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Duration;
 
+use honami_workbench::plots;
+
+use super::behind::Behind;
 use super::command_log::{CommandLog, Head, LogFile};
 use super::config::Config;
 use super::effects::World;
@@ -11,8 +15,7 @@ use super::layout::{Layout, Lens};
 use super::pace::Pace;
 use super::panel::Panel;
 use super::pictures::Pictures;
-use super::plotted::Plotted;
-use super::plotting::Plotting;
+use super::plotted::{Lot, PlotRequest, Plotted};
 use super::recent;
 use super::seat::Seat;
 use super::state::{Display, Link, Notice, State};
@@ -71,7 +74,7 @@ pub(super) struct App {
     pace: Pace,
     /// Pictures dropped while playing.
     tally: Tally,
-    plotting: Plotting,
+    plotting: Behind<Lot>,
     /// When the figures of the link were last looked at.
     link_seen: Duration,
     /// When to keep where the user is.
@@ -94,7 +97,7 @@ impl App {
             is_exact: false,
             pace: Pace::default(),
             tally: Tally::default(),
-            plotting: Plotting::new(screen.waker()),
+            plotting: Behind::new("plots", screen.waker()),
             link_seen: Duration::ZERO,
             seat_due: None,
             next: None,
@@ -275,15 +278,23 @@ impl App {
     /// Has the curves of the plots worked out, and takes them when they are.
     fn plot(&mut self) -> anyhow::Result<()> {
         if self.state.panel == Some(Panel::Plots)
-            && let Some(request) = Plotted::request(&mut self.state)
+            && let Some(PlotRequest { subject, tracks, times }) = Plotted::request(&mut self.state)
         {
-            self.plotting.ask(request)?;
+            self.plotting.ask(move || (subject, Arc::new(plots::of(&tracks, &times))))?;
         }
         if let Some((subject, plots)) = self.plotting.news()? {
             update(&mut self.state, Msg::Fact(Fact::Plots(subject, plots)));
             self.frame = None;
         }
         Ok(())
+    }
+
+    /// Takes the dense motion of the shown frame, where that is shown, as soon as it is measured.
+    fn measure(&mut self, world: &mut World) {
+        if let Some(fact) = world.dense(&self.state) {
+            update(&mut self.state, Msg::Fact(fact));
+            self.frame = None;
+        }
     }
 
     /// Writes what was done to the log on the disk; without room there it ends, and the session goes on.
@@ -297,8 +308,9 @@ impl App {
     }
 
     /// Paints, if there is anything to paint and the link has room for it.
-    fn show(&mut self, screen: &mut Screen, world: &World) -> anyhow::Result<()> {
+    fn show(&mut self, screen: &mut Screen, world: &mut World) -> anyhow::Result<()> {
         self.plot()?;
+        self.measure(world);
         let n_ready = world.n_ready();
         if n_ready != self.state.n_ready {
             update(&mut self.state, Msg::Fact(Fact::Ready(n_ready)));

@@ -11,6 +11,7 @@ use super::action::Context;
 use super::clock::Play;
 use super::command_log::CommandLog;
 use super::correcting::{Moving, Tool};
+use super::dense::Dense;
 use super::form::{Form, Plugin};
 use super::history::Tree;
 use super::keymap::KeyMap;
@@ -77,6 +78,8 @@ pub struct State {
     pub count: Option<u32>,
     /// Colours of motion over the picture.
     pub motion: Motion,
+    /// Dense motion, where the colours show that; `None`: that of the tracks.
+    pub dense: Option<Dense>,
     /// Whether all tracks are marked in the picture, not only the selected one.
     pub marks_all: bool,
     /// What the plots show.
@@ -256,6 +259,7 @@ impl State {
             pending: Vec::new(),
             count: None,
             motion: Motion::default(),
+            dense: None,
             marks_all: true,
             plotted: Plotted::default(),
             panel_is_wide: false,

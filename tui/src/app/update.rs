@@ -97,6 +97,8 @@ pub enum Effect {
         /// Where the cursor is.
         frame: u32,
     },
+    /// Measure dense motion with the tracker of this track.
+    Measure(Option<TrackId>),
     /// Run a clusterer.
     Cluster(ClusterRequest),
     /// Stop the running job; it keeps what it has.

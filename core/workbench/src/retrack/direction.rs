@@ -63,13 +63,13 @@ impl Direction {
 
 /// The tracker and the parameters that made a track, or else those of the last run; a tracker that is not at hand any
 /// more is passed over.
-pub(super) fn usual(session: &Session, track: TrackId) -> Result<(String, Values), WorkbenchError> {
+pub(crate) fn usual(session: &Session, track: Option<TrackId>) -> Result<(String, Values), WorkbenchError> {
     let known = |provenance: Provenance| {
         let plugin = session.registry.find(Kind::Tracker, &provenance.plugin_id).ok()?;
         Some((plugin.id.clone(), provenance.params.into_iter().collect::<Values>()))
     };
     let project = &session.project;
-    for run in project.document().runs_of(track).rev() {
+    for run in track.into_iter().flat_map(|track| project.document().runs_of(track).rev()) {
         if let Some(usual) = known(project.run(run)?.head.provenance) {
             return Ok(usual);
         }

@@ -8,6 +8,7 @@ use honami_model::track::{Quality, Sample, Source, Span, Status, TrackId};
 
 use super::crop::{Bounds, Crop};
 use super::plan::Pass;
+use crate::drive::view;
 use crate::ear::Ear;
 use crate::error::WorkbenchError;
 use crate::progress::{Flow, Progress};
@@ -145,12 +146,9 @@ impl Rider<'_> {
         call: &CallContext<'_>,
     ) -> Result<Vec<Points>, WorkbenchError> {
         let picture = self.scene.media.frame(frame)?;
-        let view = FrameView {
-            gray: crop.of(picture.planes().y),
-            index: i64::from(frame),
-            time_s: self.scene.media.clip().times.get(frame).unwrap_or_default(),
-        };
-        self.tracker.push(&view, call).map_err(stopped)
+        let whole = view(self.scene.media, &picture, frame);
+        let part = FrameView { gray: crop.of(whole.gray), ..whole };
+        self.tracker.push(&part, call).map_err(stopped)
     }
 }
 

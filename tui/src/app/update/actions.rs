@@ -109,6 +109,7 @@ fn look_about(state: &mut State, action: Action) -> Vec<Effect> {
         Action::MotionGainUp => motion::gain(state, count(state)),
         Action::MotionGainDown => motion::gain(state, -count(state)),
         Action::MotionDial => motion::open_dial(state),
+        Action::MotionSource => return motion::change_source(state),
         Action::Marks => state.marks_all = !state.marks_all,
         Action::Column if matches!(state.mode, Mode::Move(_)) => moving::next_model(state),
         Action::Column => state.panel = Panel::after(state.panel),

@@ -6,7 +6,8 @@ use honami_model::correct::Layers;
 use honami_model::history::{Entry, EntryId};
 use honami_workbench::review::Told;
 
-use super::{Mode, State, logged, moving, tell};
+use super::{Mode, State, logged, motion, moving, tell};
+use crate::app::dense::FieldOf;
 use crate::app::files::Listing;
 use crate::app::menu::Menu;
 use crate::app::plotted::Subject;
@@ -43,6 +44,12 @@ pub enum Fact {
     Display(Display),
     /// Curves were worked out.
     Plots((Subject, u64), std::sync::Arc<Plots>),
+    /// This tracker measures dense motion from now on.
+    Measures(String),
+    /// The dense motion that is shown; `None` while it is being measured.
+    Dense(Option<FieldOf>),
+    /// Dense motion cannot be measured, for this reason.
+    NotMeasured(String),
     /// So many frames can be shown without waiting.
     Ready(u32),
     /// The undo tree has these entries more, and the document stands there.
@@ -96,6 +103,13 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
         Fact::Link(link) => state.link = link,
         Fact::Dropped(dropped) => state.dropped = dropped.filter(|_| state.play.is_some()),
         Fact::Display(display) => state.display = display,
+        Fact::Measures(plugin) => motion::on_measures(state, plugin),
+        Fact::Dense(field) => motion::on_field(state, field),
+        Fact::NotMeasured(text) => {
+            state.dense = None;
+            // Of its own time, not an answer to a key: it has no place in the log.
+            state.notice = Some(Notice { text, is_error: true });
+        }
         Fact::Ready(n) => state.n_ready = n,
         Fact::History(new, head) => state.history.grow(new, head),
         Fact::Files(listing) => state.mode = Mode::Menu(Box::new(Menu::of_files(listing))),

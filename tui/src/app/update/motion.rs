@@ -1,7 +1,8 @@
 //! Colours of motion, and the dial of their directions.
 
 use super::actions::count;
-use super::{Mode, State, complain, say};
+use super::{Effect, Mode, State, complain, say};
+use crate::app::dense::{Dense, FieldOf};
 use honami_model::track::Span;
 use honami_workbench::overlay::usual_speed;
 
@@ -14,8 +15,38 @@ pub(super) fn turn_on(state: &mut State) {
     if state.motion.is_on {
         begin(state);
         let speed = state.motion.full_px_s();
-        say(state, format!("motion of the tracks: full colour at {speed:.0} px/s (v + v - gain, v d dial)"));
+        let of = state.dense.as_ref().map_or_else(
+            || "motion of the tracks".to_owned(),
+            |dense| format!("dense motion by {}", dense.plugin),
+        );
+        say(state, format!("{of}: full colour at {speed:.0} px/s (v + v - gain, v d dial)"));
     }
+}
+
+/// Shows dense motion, where a tracker measures that, or again that of the tracks.
+pub(super) fn change_source(state: &mut State) -> Vec<Effect> {
+    if state.motion.is_on && state.dense.take().is_some() {
+        state.motion.is_on = false;
+        turn_on(state);
+    } else if has_colours(state) {
+        return vec![Effect::Measure(state.selected)];
+    }
+    Vec::new()
+}
+
+/// A tracker measures dense motion: that is shown.
+pub(super) fn on_measures(state: &mut State, plugin: String) {
+    say(state, format!("dense motion by {plugin}: measured frame by frame (v f back to the tracks)"));
+    state.dense = Some(Dense { plugin, field: None });
+    begin(state);
+}
+
+/// A field was measured; without tracks the first of them says which gain suits the clip.
+pub(super) fn on_field(state: &mut State, field: Option<FieldOf>) {
+    if let Some((_, field)) = &field {
+        state.motion.full_px_s = state.motion.full_px_s.or_else(|| field.usual_speed());
+    }
+    state.dense.iter_mut().for_each(|dense| dense.field = field.clone());
 }
 
 /// More gain, or less; shows the colours.
@@ -49,15 +80,18 @@ pub(super) fn steer(state: &mut State, across: f64, down: f64) {
 }
 
 fn is_possible(state: &mut State) -> bool {
-    let why = match () {
-        () if state.mono => "motion is shown in colours, and this terminal has none",
-        () if state.tracks.is_empty() => {
-            "motion is shown of tracks, and there are none yet: t r follows features"
-        }
-        () => return true,
-    };
-    complain(state, why);
-    false
+    let has_motion = state.dense.is_some() || !state.tracks.is_empty();
+    if !has_motion {
+        complain(state, "motion is shown of tracks, and there are none yet: t r follows features");
+    }
+    has_motion && has_colours(state)
+}
+
+fn has_colours(state: &mut State) -> bool {
+    if state.mono {
+        complain(state, "motion is shown in colours, and this terminal has none");
+    }
+    !state.mono
 }
 
 /// Shows the colours; the first time with the gain that suits the clip.
@@ -68,3 +102,6 @@ fn begin(state: &mut State) {
         state.motion.full_px_s = usual_speed(&spans, &state.clip.times);
     }
 }
+
+#[cfg(test)]
+mod tests;

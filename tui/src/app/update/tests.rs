@@ -691,40 +691,6 @@ fn looking() {
 }
 
 #[test]
-fn motion_in_colours() {
-    for (keys, expect) in [
-        ("v d", "dial  at 98"),
-        ("v d l", "dial → 10° ± 45° at 98"),
-        ("v d 3 h", "dial ↗ 330° ± 45° at 98"),
-        ("v d 9 l k", "dial ↓ 90° ± 55° at 98"),
-        ("v d 9 9 j", "dial → 0° ± 1° at 98"),
-        ("v d l 9 9 k", "dial  at 98"),
-        ("v d 2 +", "dial  at 49 | said full colour at 49 px/s"),
-        ("v d - -", "dial  at 196 | said full colour at 196 px/s"),
-    ] {
-        let mut state = start("");
-        let effects = press(&mut state, keys);
-        let expect = expect.replace(" |", " | frame 0 track 1 |");
-        let expect = if expect.contains("said") { expect } else { format!("{expect} | frame 0 track 1") };
-        assert_eq!(line(&state, &effects), expect, "by `{keys}`");
-    }
-    let mut state = start("");
-    press(&mut state, "v v");
-    let before = state.motion;
-    press(&mut state, "v d 5 l + Esc");
-    assert_eq!(state.motion, before, "Esc sets it back");
-    press(&mut state, "v d 5 l Enter");
-    assert!(state.motion.is_on && state.motion.dial != before.dial, "Enter keeps it");
-    press(&mut state, "v v");
-    assert!(!state.motion.is_on);
-    check(
-        "empty",
-        "v v",
-        "review | frame 0 track - | error motion is shown of tracks, and there are none yet: t r follows features",
-    );
-}
-
-#[test]
 fn the_wheel_and_dragging_keep_the_point_under_the_mouse() {
     let mut state = start("");
     let under = |state: &State, column, row| {

@@ -9,6 +9,7 @@ use crate::app::plotted::{Plotted, Subject};
 use crate::app::state::{Job, Link, Notice};
 use crate::app::update::{Fact, Msg, update};
 use honami_model::track::TrackId;
+use honami_workbench::overlay::VelocityField;
 use ratatui::style::{Color, Modifier};
 
 /// The screen as text, then its styles as runs: `row: columns style`. Cells of the picture in half blocks are `▒`
@@ -164,6 +165,13 @@ fn screens_of_corrections() {
 fn screens_of_motion_and_plots() {
     let (small, large) = ((80, 24), (120, 40));
     check("motion_80x24", small, "v v", |_| {});
+    check("measuring_80x24", small, "", |state| {
+        update(state, Msg::Fact(Fact::Measures("klt".to_owned())));
+    });
+    check("dense_80x24", small, "v d 4 l Enter", |state| {
+        update(state, Msg::Fact(Fact::Measures("klt".to_owned())));
+        update(state, Msg::Fact(Fact::Dense(Some((0, halves())))));
+    });
     check("dial_120x40", large, "v d 3 h", |_| {});
     check("plots_80x24", small, "P p", plot);
     check("plots_120x40", large, "", |state| {
@@ -179,6 +187,28 @@ fn screens_of_motion_and_plots() {
         });
         plot(state);
     });
+}
+
+/// The upper half of the picture goes right, the lower left.
+fn halves() -> std::sync::Arc<VelocityField> {
+    let velocities = vec![[1e3, 0.0], [-1e3, 0.0]];
+    std::sync::Arc::new(VelocityField { origin: [160.0, 0.0], step_px: 400.0, nx: 1, velocities })
+}
+
+#[test]
+fn dense_motion_colours_the_whole_picture() {
+    let mut state = fixture::state();
+    let shot = fixture::shot(&state, Layout::of(&state).picture);
+    state.marks_all = false;
+    state.selected = None;
+    update(&mut state, Msg::Fact(Fact::Measures("klt".to_owned())));
+    assert_eq!(picture::compose(&state, &shot), shot.pixels, "nothing is measured yet");
+    update(&mut state, Msg::Fact(Fact::Dense(Some((0, halves())))));
+    let pixels = picture::compose(&state, &shot);
+    assert_eq!([pixels[0], pixels[pixels.len() - 1]], [[255, 0, 0], [0, 255, 255]]);
+    fixture::press(&mut state, "v d 1 8 l Enter");
+    let dialled = picture::compose(&state, &shot);
+    assert_eq!([dialled[0], dialled[pixels.len() - 1]], [shot.pixels[0], [0, 255, 255]], "only to the left");
 }
 
 /// Works out what the plots show.

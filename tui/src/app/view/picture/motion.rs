@@ -6,7 +6,9 @@ use ratatui::layout::Rect;
 use ratatui::style::{Color, Style};
 use ratatui::text::Line;
 
-use honami_workbench::overlay::{Disc, disc_radius, over, paint_discs, velocity};
+use honami_workbench::overlay::{
+    Dial, Disc, VelocityField, disc_radius, over, paint_discs, paint_field, velocity,
+};
 
 use super::Canvas;
 use crate::app::state::{Mode, State};
@@ -21,10 +23,13 @@ const GROUND: [u8; 3] = [38, 38, 38];
 const OFF: [u8; 3] = [70, 70, 70];
 
 impl Canvas<'_> {
-    /// Colours the surroundings of every track by its velocity.
+    /// Colours the surroundings of every track by its velocity, or every pixel where that is known.
     pub(super) fn motion(&mut self, state: &State, frame: u32) {
         if !state.motion.is_on || self.letters.is_some() {
             return;
+        }
+        if let Some(dense) = &state.dense {
+            return dense.field.iter().for_each(|(of, field)| self.dense(state, *of, field));
         }
         let (columns, rows) = self.lens.size();
         let across = f64::from(columns) / self.lens.width;
@@ -51,6 +56,17 @@ impl Canvas<'_> {
         let radius = [radius * f64::from(x), radius * f64::from(y) / 2.0];
         paint_discs(&mut self.pixels, columns as usize, &discs, radius);
     }
+
+    fn dense(&mut self, state: &State, of: u32, field: &VelocityField) {
+        let mapping = state.motion.mapping();
+        let Dial { centre_rad, half_width_rad } = mapping.dial;
+        (of, [mapping.gain_s_px, centre_rad, half_width_rad].map(f64::to_bits)).hash(&mut self.scene);
+        let (columns, rows) = self.lens.size();
+        let lens = self.lens;
+        let side = [lens.width / f64::from(columns), lens.height / f64::from(rows)];
+        let image_of = |[x, y]: [f64; 2]| [lens.x + (x + 0.5) * side[0], lens.y + (y + 0.5) * side[1]];
+        paint_field(&mut self.pixels, columns as usize, field, &mapping, image_of);
+    }
 }
 
 /// The wheel in the upper right corner: each direction in its colour, brighter with speed; below it the speed of its
@@ -61,6 +77,10 @@ pub(in crate::app::view) fn legend(state: &State, area: Rect, frame: &mut Frame)
     let digits = |x: f64| if x < 10.0 { 1 } else { 0 };
     let mut lines = vec![format!("rim {speed:.*} px/s", digits(speed))];
     lines.extend(fps.map(|fps| format!("= {:.*} px/frame", digits(speed / fps), speed / fps)));
+    lines.extend(state.dense.as_ref().map(|dense| match dense.field {
+        Some(_) => format!("dense by {}", dense.plugin),
+        None => "measuring …".to_owned(),
+    }));
     lines.extend(state.motion.dial_words());
     let (width, height) = (WHEEL.0 + 4, WHEEL.1 + lines.len() as u16);
     if !state.motion.is_on || state.mono || area.width < 2 * width || area.height < height + 2 {

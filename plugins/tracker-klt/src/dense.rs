@@ -1,0 +1,46 @@
+//! Dense motion: the tracker's own search from the nodes of a grid, there and back.
+
+use honami_plugin::{Cx, Field, Frame, Result};
+use honami_vision::klt::{self, State};
+use honami_vision::pyramid::Pyramid;
+
+use crate::picture;
+use crate::settings::Settings;
+
+/// Nodes are a radius apart, so that windows overlap by half: closer ones would mostly see the same. At least, pixels:
+const STEP_PX: u32 = 4;
+/// A node whose way there and back ends farther than this from its start has no known motion, pixels.
+const ASTRAY_PX: f32 = 1.0;
+
+/// Displacements between two frames; (0, 0) where nothing could be measured: no texture, hidden, or out of the picture.
+pub(crate) fn field(
+    settings: &Settings,
+    from: &Frame<'_>,
+    to: &Frame<'_>,
+    max_threads: u32,
+    cx: &Cx<'_>,
+) -> Result<Field> {
+    let params = settings.tracking();
+    let [from, to] = [from, to].map(picture);
+    let step = params.radius_px.max(STEP_PX);
+    let n = [from.width, from.height].map(|size| size.div_ceil(step));
+    // As far from one edge as from the other.
+    let origin =
+        [0, 1].map(|axis| ([from.width, from.height][axis] - 1) as f32 - ((n[axis] - 1) * step) as f32);
+    let origin = origin.map(|rest| rest / 2.0);
+    let node = |i: u32, axis: usize| origin[axis] + (i * step) as f32;
+    let nodes: Vec<_> = (0..n[1]).flat_map(|y| (0..n[0]).map(move |x| [node(x, 0), node(y, 1)])).collect();
+
+    let [from, to] = [from, to].map(|gray| Pyramid::new(&gray, params.levels, params.radius_px));
+    let there = klt::track(&from, &to, &nodes, None, &params, max_threads as usize);
+    cx.progress(0.5, "tracking back")?;
+    let ends: Vec<_> = there.iter().map(|flow| flow.to).collect();
+    let back = klt::track(&to, &from, &ends, None, &params, max_threads as usize);
+    let moved = |((at, there), back): ((&[f32; 2], &klt::Flow), &klt::Flow)| {
+        let is_found = there.state == State::Tracked && back.state == State::Tracked;
+        let is_back = (back.to[0] - at[0]).hypot(back.to[1] - at[1]) <= ASTRAY_PX;
+        if is_found && is_back { (there.to[0] - at[0], there.to[1] - at[1]) } else { (0.0, 0.0) }
+    };
+    let (u, v) = nodes.iter().zip(&there).zip(&back).map(moved).unzip();
+    Ok(Field { origin, step: step as f32, nx: n[0], ny: n[1], u, v })
+}

@@ -1,0 +1,98 @@
+//! Dense motion on pictures that turn, drift and hide: known everywhere.
+
+use super::*;
+use crate::dense;
+
+/// Radians from one frame to the next, about the middle of the picture.
+const TURN: f64 = 0.03;
+
+/// The texture turned by so many radians.
+fn turned(angle: f64) -> Vec<u8> {
+    let (sin, cos) = angle.sin_cos();
+    let middle = [f64::from(WIDTH - 1) / 2.0, f64::from(HEIGHT - 1) / 2.0];
+    texture::render(WIDTH, HEIGHT, |x, y| {
+        let (dx, dy) = (x - middle[0], y - middle[1]);
+        texture::value(5, middle[0] + cos * dx + sin * dy, middle[1] - sin * dx + cos * dy)
+    })
+}
+
+fn field(pictures: [&[u8]; 2], max_threads: u32) -> honami_plugin::Field {
+    let frame = |data, index| Frame { gray: Gray::packed(data, WIDTH, HEIGHT), index, time_s: index as f64 };
+    let [from, to] = [frame(pictures[0], 0), frame(pictures[1], 1)];
+    dense::field(&Settings::default(), &from, &to, max_threads, &testing::cx()).unwrap()
+}
+
+/// Where each node lies, and its displacement.
+fn nodes(field: &honami_plugin::Field) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
+    (0..field.nx * field.ny).map(|i| {
+        let place = [i % field.nx, i / field.nx].map(|n| n as f32 * field.step);
+        let at = [0, 1].map(|axis| f64::from(field.origin[axis] + place[axis]));
+        (at, [field.u[i as usize], field.v[i as usize]].map(f64::from))
+    })
+}
+
+fn is_unknown(moved: [f64; 2]) -> bool {
+    moved.iter().all(|v| *v == 0.0)
+}
+
+#[test]
+fn a_turn_is_measured_at_every_node_that_stays_in_the_picture() {
+    let (before, after) = (turned(0.0), turned(TURN));
+    let field = field([&before, &after], 2);
+    assert_eq!((field.nx, field.ny, field.step), (24, 18, 10.0));
+    let (sin, cos) = TURN.sin_cos();
+    let mut errors = Vec::new();
+    let mut n_unknown = 0;
+    for ([x, y], [u, v]) in nodes(&field) {
+        let (dx, dy) = (x - f64::from(WIDTH - 1) / 2.0, y - f64::from(HEIGHT - 1) / 2.0);
+        let truth = [(cos - 1.0) * dx - sin * dy, sin * dx + (cos - 1.0) * dy];
+        match is_unknown([u, v]) {
+            true => n_unknown += 1,
+            false => errors.push((u - truth[0]).hypot(v - truth[1])),
+        }
+    }
+    errors.sort_by(f64::total_cmp);
+    let (median, high) = (errors[errors.len() / 2], errors[errors.len() * 95 / 100]);
+    // A window moves as the middle of its texture does, which in a turn is a few pixels off its own.
+    assert!(median < 0.1 && high < 0.3, "median {median} px, 95 % below {high} px");
+    assert!(n_unknown < 24, "{n_unknown} of 432 nodes are not known");
+}
+
+#[test]
+fn what_drifts_hides_and_shows_no_texture() {
+    let clip = clip(4);
+    let (mut n, mut n_good) = (0, 0);
+    for (at, moved) in nodes(&field([&clip[1], &clip[2]], 1)) {
+        let is_inside = (20.0..220.0).contains(&at[0]) && (20.0..160.0).contains(&at[1]);
+        let error = (moved[0] - STEP[0]).hypot(moved[1] - STEP[1]);
+        n += usize::from(is_inside);
+        n_good += usize::from(is_inside && error < 0.1);
+    }
+    assert_eq!(n_good, n, "nodes away from the edges");
+    // The disc appears in frame 3: what it hides goes nowhere, and is at rest at least where all is gray.
+    let hidden =
+        nodes(&field([&clip[2], &clip[3]], 1)).find(|(at, _)| (at[0] - 60.0).hypot(at[1] - 60.0) < 8.0);
+    assert!(is_unknown(hidden.unwrap().1));
+    let gray = vec![128; clip[0].len()];
+    assert!(nodes(&field([&gray, &gray], 1)).all(|(_, moved)| is_unknown(moved)));
+}
+
+#[test]
+fn time_turned_round_turns_the_motion_and_threads_change_nothing() {
+    let clip = clip(3);
+    let there = field([&clip[1], &clip[2]], 1);
+    assert_eq!(there, field([&clip[1], &clip[2]], 5));
+    let back = field([&clip[2], &clip[1]], 1);
+    let middle = (9 * back.nx + 12) as usize;
+    assert!((there.u[middle] + back.u[middle]).abs() < 0.05 && back.u[middle] < -1.5, "{}", back.u[middle]);
+}
+
+#[test]
+fn a_picture_smaller_than_a_window_has_one_node() {
+    let frame = Frame { gray: Gray::packed(&[7; 6], 3, 2), index: 0, time_s: 0.0 };
+    let field = dense::field(&Settings::default(), &frame, &frame, 1, &testing::cx()).unwrap();
+    assert_eq!(
+        (field.nx, field.ny, field.origin, field.u, field.v),
+        (1, 1, [1.0, 0.5], vec![0.0], vec![0.0])
+    );
+}

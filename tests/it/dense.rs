@@ -1,0 +1,53 @@
+//! Dense motion of a generated clip, against how its leaves really move.
+
+use honami_tests::{Bench, program};
+use honami_workbench::WorkbenchError;
+use honami_workbench::compare::read_truth;
+use honami_workbench::dense;
+use honami_workbench::session::{Session, SessionOptions};
+
+const N_FRAMES: u32 = 12;
+
+#[test]
+fn dense_motion_is_that_of_the_leaves() {
+    let bench = Bench::new();
+    bench.json(&format!("synth clip.y4m --size 320x240 --frames {N_FRAMES} --leaves 60 --wind wind"));
+    let truth = read_truth(&bench.path("clip.truth.csv"), N_FRAMES).unwrap();
+    let options =
+        SessionOptions { plugin_paths: vec![program().parent().unwrap().to_owned()], read_only: false };
+    let session = Session::create(&bench.path("p.honami"), &bench.path("clip.y4m"), None, &options).unwrap();
+    let times = &session.media.clip().times;
+    let mut meter = dense::prepare(&session, None).unwrap();
+    assert_eq!(meter.plugin(), "klt");
+    let (mut errors, mut speeds) = (Vec::new(), Vec::new());
+    // In the last frame motion is that of the way which led there.
+    for (frame, other) in
+        (0..N_FRAMES).map(|frame| (frame, if frame + 1 < N_FRAMES { frame + 1 } else { frame - 1 }))
+    {
+        let field = meter.measure(frame).unwrap();
+        let step_s = times.get(other).unwrap() - times.get(frame).unwrap();
+        for path in truth.values() {
+            let at = |frame: u32| path.positions.get(frame.checked_sub(path.first_frame)? as usize).copied();
+            let (Some((x, y, true)), Some((x1, y1, true))) = (at(frame), at(other)) else { continue };
+            let Some([u, v]) = field.at([x, y]) else { continue };
+            let (tu, tv) = ((x1 - x) / step_s, (y1 - y) / step_s);
+            errors.push((u - tu).hypot(v - tv));
+            speeds.push(tu.hypot(tv));
+        }
+    }
+    let median = |values: &mut Vec<f64>| {
+        values.sort_by(f64::total_cmp);
+        values[values.len() / 2]
+    };
+    let (error, speed) = (median(&mut errors), median(&mut speeds));
+    assert!(
+        errors.len() > 200 && error < 0.3 * speed,
+        "off by {error} px/s of {speed} px/s, {} leaves",
+        errors.len()
+    );
+
+    let picture = [b"YUV4MPEG2 W16 H16 F25:1 Cmono\nFRAME\n".as_slice(), &[128; 256]].concat();
+    std::fs::write(bench.path("still.y4m"), picture).unwrap();
+    let still = Session::create(&bench.path("s.honami"), &bench.path("still.y4m"), None, &options).unwrap();
+    assert!(matches!(dense::prepare(&still, None), Err(WorkbenchError::OneFrame)));
+}
