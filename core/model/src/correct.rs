@@ -23,7 +23,7 @@ pub use blend::{Blended, Side, backward, blend, blended, forward, lay};
 pub use interpolate::{hermite, linear};
 pub use mark::{delete_range, mark};
 pub use refused::Refused;
-pub use sketch::{Drawn, HUMAN_DELAY_S, Played, sketch};
+pub use sketch::{Drawn, HUMAN_DELAY_S, Played, Stroke, sketch};
 pub use space::space;
 pub use time::{Slid, time};
 

@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use honami_model::correct::{Refused, Shown, delete_range, mark, tracks};
+use honami_model::correct::{Refused, Shown, Stroke, delete_range, mark, sketch, tracks};
 use honami_model::edit::Transaction;
 use honami_model::track::{Status, TrackId, TrackSet};
 use honami_store::Project;
@@ -31,6 +31,13 @@ pub enum Step {
         tracks: TrackSet,
         /// The frames.
         frames: Range<u32>,
+    },
+    /// Lay what was drawn while the clip played over a track.
+    Sketch {
+        /// The track.
+        track: TrackId,
+        /// What was drawn.
+        strokes: Vec<Stroke>,
     },
     /// Cut a track in two.
     Split {
@@ -68,7 +75,11 @@ pub fn prepare(project: &mut Project, step: &Step) -> Result<(Transaction, Optio
         Step::Split { .. } | Step::Duplicate(_) | Step::Average(_) => {
             Some(TrackId(project.reserve_tracks(1)?.start))
         }
-        Step::Mark { .. } | Step::DeleteRange { .. } | Step::Swap { .. } | Step::Join { .. } => None,
+        Step::Mark { .. }
+        | Step::DeleteRange { .. }
+        | Step::Sketch { .. }
+        | Step::Swap { .. }
+        | Step::Join { .. } => None,
     };
     let ids = step.tracks();
     let grounds = ids.iter().map(|&id| Ground::of(project, id)).collect::<Result<Vec<Ground>, _>>()?;
@@ -80,6 +91,9 @@ pub fn prepare(project: &mut Project, step: &Step) -> Result<(Transaction, Optio
         }
         (Step::DeleteRange { frames, .. }, ..) => {
             tracks::many(&shown, |shown| delete_range(shown, frames.clone()))
+        }
+        (Step::Sketch { strokes, .. }, [shown], _) => {
+            sketch(shown, strokes).map(|correction| correction.transaction)
         }
         (Step::Split { frame, .. }, [shown], Some(new)) => tracks::split(shown, *frame, new),
         (Step::Swap { frames, .. }, [a, b], _) => tracks::swap(a, b, frames.clone()),
@@ -98,7 +112,7 @@ impl Step {
             Self::Mark { tracks, .. } | Self::DeleteRange { tracks, .. } | Self::Average(tracks) => {
                 tracks.iter().collect()
             }
-            Self::Split { track, .. } | Self::Duplicate(track) => vec![*track],
+            Self::Sketch { track, .. } | Self::Split { track, .. } | Self::Duplicate(track) => vec![*track],
             Self::Swap { tracks, .. } => tracks.to_vec(),
             Self::Join { track, with } => vec![*track, *with],
         }

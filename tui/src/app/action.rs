@@ -15,6 +15,8 @@ pub enum Context {
     Move,
     /// Sliding a sample along its path.
     Slide,
+    /// Drawing a track while the clip plays.
+    Sketch,
     /// Setting the parameters of a plugin.
     Form,
     /// Choosing from a list by typing a part of its name.
@@ -33,11 +35,12 @@ pub enum Context {
 
 impl Context {
     /// All of them.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Review,
         Self::Place,
         Self::Move,
         Self::Slide,
+        Self::Sketch,
         Self::Form,
         Self::Menu,
         Self::Dial,
@@ -55,6 +58,7 @@ impl Context {
             Self::Place => "place",
             Self::Move => "move",
             Self::Slide => "slide",
+            Self::Sketch => "sketch",
             Self::Form => "form",
             Self::Menu => "menu",
             Self::Dial => "dial",
@@ -110,27 +114,27 @@ macro_rules! table {
 
 table! {
     // Moving about: hjkl and the arrows.
-    Left "left" ["h" "Left"] [Review "" Place "1 px" Move "1 px" Form "change" Dial "turn" Slide "1 frame"]
+    Left "left" ["h" "Left"] [Review "" Place "1 px" Move "1 px" Form "change" Dial "turn" Slide "1 frame" Sketch "steer"]
         "left: the previous frame, one pixel, or a smaller value"
-    Down "down" ["j" "Down"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "narrower" History "" Start ""]
+    Down "down" ["j" "Down"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "narrower" History "" Start "" Sketch "steer"]
         "down: the next track, one pixel, or the next row"
-    Up "up" ["k" "Up"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "wider" History "" Start ""]
+    Up "up" ["k" "Up"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "wider" History "" Start "" Sketch "steer"]
         "up: the previous track, one pixel, or the previous row"
-    Right "right" ["l" "Right"] [Review "" Place "1 px" Move "1 px" Form "change" Dial "turn" Slide "1 frame"]
+    Right "right" ["l" "Right"] [Review "" Place "1 px" Move "1 px" Form "change" Dial "turn" Slide "1 frame" Sketch "steer"]
         "right: the next frame, one pixel, or a larger value"
-    FineLeft "fine-left" ["H" "Shift-Left"] [Place ".25" Move ".25" Form "" Slide ".25"] "a quarter of a pixel left, or a tenth of a value's range down"
-    FineDown "fine-down" ["J" "Shift-Down"] [Place ".25" Move ".25"] "a quarter of a pixel down"
-    FineUp "fine-up" ["K" "Shift-Up"] [Place ".25" Move ".25"] "a quarter of a pixel up"
-    FineRight "fine-right" ["L" "Shift-Right"] [Place ".25" Move ".25" Form "" Slide ".25"] "a quarter of a pixel right, or a tenth of a value's range up"
-    Accept "accept" ["Enter"] [Place "place" Move "keep" Form "run" Menu "choose" Prompt "done" Review "" Dial "keep" History "go there" Slide "keep" Start "open"]
+    FineLeft "fine-left" ["H" "Shift-Left"] [Place ".25" Move ".25" Form "" Slide ".25" Sketch ""] "a quarter of a pixel left, or a tenth of a value's range down"
+    FineDown "fine-down" ["J" "Shift-Down"] [Place ".25" Move ".25" Sketch ""] "a quarter of a pixel down"
+    FineUp "fine-up" ["K" "Shift-Up"] [Place ".25" Move ".25" Sketch ""] "a quarter of a pixel up"
+    FineRight "fine-right" ["L" "Shift-Right"] [Place ".25" Move ".25" Form "" Slide ".25" Sketch ""] "a quarter of a pixel right, or a tenth of a value's range up"
+    Accept "accept" ["Enter"] [Place "place" Move "keep" Form "run" Menu "choose" Prompt "done" Review "" Dial "keep" History "go there" Slide "keep" Start "open" Sketch "keep"]
         "accept: keep, place, run or go; while reviewing, the open item, or the sample here as a key-frame"
-    Back "back" ["Esc" "Ctrl-c"] [Place "back" Move "back" Form "back" Menu "back" Prompt "back" Label "back" Review "" Dial "back" History "back" Slide "back" Start ""]
+    Back "back" ["Esc" "Ctrl-c"] [Place "back" Move "back" Form "back" Menu "back" Prompt "back" Label "back" Review "" Dial "back" History "back" Slide "back" Start "" Sketch "back"]
         "back: leave what is open, undone; while reviewing, stop the clip or the job, give up the range, then the picks"
     // Time.
-    PlayPause "play" ["space"] [Review "play"] "play or pause; 200 space: at 200 %, from now on"
-    PlayBackwards "play-backwards" ["B"] [Review ""] "play backwards, or pause"
-    SlowForward "play-slow" [";"] [Review ""] "play slowly or pause; 25 ; : at 25 %, from now on"
-    SlowBackward "play-slow-backwards" ["'"] [Review ""] "play slowly backwards, or pause"
+    PlayPause "play" ["space"] [Review "play" Sketch ""] "play or pause; 200 space: at 200 %, from now on"
+    PlayBackwards "play-backwards" ["B"] [Review "" Sketch ""] "play backwards, or pause"
+    SlowForward "play-slow" [";"] [Review "" Sketch "play, draw"] "play slowly or pause; 25 ; : at 25 %, from now on"
+    SlowBackward "play-slow-backwards" ["'"] [Review "" Sketch ""] "play slowly backwards, or pause"
     Loop "loop" ["b"] [Review ""] "loop round this frame, or stop; 12 b: 12 frames to both sides"
     NextItem "next-item" ["n"] [Review "next"] "open the next item of the queue, at its worst frame"
     PreviousItem "previous-item" ["p"] [Review ""] "open the previous item of the queue"
@@ -139,12 +143,12 @@ table! {
     Bisect "bisect" ["|"] [Review ""] "go half-way between the key-frames around"
     Reject "reject" ["R"] [Review ""] "the open item's track is of no use; on to the next item"
     Later "later" ["E"] [Review ""] "put the open item off; on to the next item"
-    StepForward "step" ["."] [Review "" Move "" Slide ""] "one frame forward; a number before it steps so many"
-    StepBack "step-back" [","] [Review "" Move "" Slide ""] "one frame back"
+    StepForward "step" ["."] [Review "" Move "" Slide "" Sketch "put, next"] "one frame forward, or so many; while drawing, the point is put down here first"
+    StepBack "step-back" [","] [Review "" Move "" Slide "" Sketch ""] "one frame back"
     LeapForward "leap" [">"] [Review ""] "ten frames forward"
     LeapBack "leap-back" ["<"] [Review ""] "ten frames back"
-    NextKey "next-key-frame" ["]"] [Review "" Move "" Slide ""] "go to the next key-frame of the selected track"
-    PreviousKey "previous-key-frame" ["["] [Review "" Move "" Slide ""] "go to the previous key-frame of the selected track"
+    NextKey "next-key-frame" ["]"] [Review "" Move "" Slide "" Sketch ""] "go to the next key-frame of the selected track"
+    PreviousKey "previous-key-frame" ["["] [Review "" Move "" Slide "" Sketch ""] "go to the previous key-frame of the selected track"
     GoStart "go-start" ["g s" "Home"] [Review ""] "go to the first frame"
     GoEnd "go-end" ["g e" "End"] [Review ""] "go to the last frame"
     GoFrame "go-frame" ["g f"] [Review ""] "go to a frame by its number (120 g f goes at once)"
@@ -157,6 +161,7 @@ table! {
     // Work.
     MoveSample "move-sample" ["m"] [Review "move"] "move the sample here; it becomes a key-frame"
     CorrectTime "correct-time" ["T"] [Review ""] "slide the sample here along its path: what is right in space but not in time"
+    Sketch "sketch" ["s"] [Review ""] "draw the selected track by mouse or arrows while the clip plays, or frame by frame"
     WalkForward "walk" [")"] [Move ""] "walk one sample on along the path, while the picture stays"
     WalkBack "walk-back" ["("] [Move ""] "walk one sample back along the path, while the picture stays"
     Pin "pin" ["*"] [Move "end here"] "make the sample walked to, or looked at, a key-frame as it is: the correction ends there"
@@ -176,19 +181,19 @@ table! {
     Average "average-tracks" ["e a"] [Review "average"] "make a new track in the middle of the picked ones"
     NameTrack "name-track" ["e n"] [Review ""] "name the selected track"
     ClearKey "clear-key-frame" ["X" "d k"] [Review ""] "clear the key-frame here (u brings it back)"
-    Erase "erase" ["Backspace"] [Menu "" Prompt ""] "take back a typed letter"
+    Erase "erase" ["Backspace"] [Menu "" Prompt "" Sketch "take back"] "take back a typed letter, or the stroke drawn last"
     RetrackBoth "retrack-both" ["t t"] [Review "re-track"] "track again from the key-frames on both sides, and blend"
     RetrackForward "retrack-forward" ["t f"] [Review ""] "track again from the key-frame here or before, up to the next"
     RetrackBackward "retrack-backward" ["t b"] [Review ""] "track again from the key-frame here or after, down to the one before"
     RunTracker "track" ["t r"] [Review "track"] "follow features with a tracker"
     RunClusterer "cluster" ["c"] [Review "cluster"] "group the tracks by their movement"
-    MoreGroups "more-groups" ["+" "="] [Review "" Dial "gain"] "one group more; at the dial, more gain"
-    FewerGroups "fewer-groups" ["-"] [Review "" Dial "gain"] "one group fewer; at the dial, less gain"
+    MoreGroups "more-groups" ["+" "="] [Review "" Dial "gain" Sketch "step"] "one group more; at the dial, more gain; while drawing, a step twice as large"
+    FewerGroups "fewer-groups" ["-"] [Review "" Dial "gain" Sketch "step"] "one group fewer; at the dial, less gain; while drawing, a step half as large"
     Undo "undo" ["u"] [Review ""] "undo: take the last edit back"
     Redo "redo" ["Ctrl-r"] [Review ""] "redo: do again what was undone"
     // Looking.
-    ZoomIn "zoom-in" ["z"] [Review "" Place "" Move "" Slide ""] "look closer, at the selected track or the cursor"
-    ZoomOut "zoom-out" ["Z"] [Review "" Place "" Move "" Slide ""] "look from farther away"
+    ZoomIn "zoom-in" ["z"] [Review "" Place "" Move "" Slide "" Sketch ""] "look closer, at the selected track or the cursor"
+    ZoomOut "zoom-out" ["Z"] [Review "" Place "" Move "" Slide "" Sketch ""] "look from farther away"
     PanLeft "pan-left" ["Ctrl-Left"] [Review "" Place "" Move ""] "look a quarter of the view further left; a tenth of a pixel while placing or moving"
     PanDown "pan-down" ["Ctrl-Down"] [Review "" Place "" Move ""] "look a quarter of the view further down; a tenth of a pixel while placing or moving"
     PanUp "pan-up" ["Ctrl-Up"] [Review "" Place "" Move ""] "look a quarter of the view further up; a tenth of a pixel while placing or moving"
@@ -216,13 +221,13 @@ table! {
     NextTheme "next-theme" ["v t"] [Review ""] "change the colours: the next theme"
     Mouse "mouse" ["v m"] [Review ""] "leave the mouse to the terminal, for selecting text, or take it back"
     History "history" ["U" "P u"] [Review "" History ""] "show the undo tree; j and k choose an edit there, Enter goes to it"
-    Palette "palette" [":"] [Review "" Place "" Move "" Form "" Dial "" History "" Slide ""] "find any action by name, key or what it does"
-    Help "help" ["?"] [Review "help" Place "" Move "" Form "help" Dial "help" History "help" Slide ""] "list what works here; Enter does it"
+    Palette "palette" [":"] [Review "" Place "" Move "" Form "" Dial "" History "" Slide "" Sketch ""] "find any action by name, key or what it does"
+    Help "help" ["?"] [Review "help" Place "" Move "" Form "help" Dial "help" History "help" Slide "" Sketch "help"] "list what works here; Enter does it"
     Tutorial "tutorial" ["g ?"] [Review ""] "five minutes on a generated clip: what to press, one step at a time"
-    Redraw "redraw" ["Ctrl-l"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label "" History "" Slide "" Start ""] "paint the screen anew"
-    Suspend "suspend" ["Ctrl-z"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label "" History "" Slide "" Start ""] "stop honami until `fg`"
-    Quit "quit" ["q"] [Review "leave" Place "" Move "" Form "" Dial "" History "" Slide "" Start "leave"] "back; while reviewing, leave honami"
-    Leave "leave" ["Q"] [Review "" Place "" Move "" Form "" Dial "" History "" Slide "" Start ""] "leave honami (everything is kept)"
+    Redraw "redraw" ["Ctrl-l"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label "" History "" Slide "" Start "" Sketch ""] "paint the screen anew"
+    Suspend "suspend" ["Ctrl-z"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label "" History "" Slide "" Start "" Sketch ""] "stop honami until `fg`"
+    Quit "quit" ["q"] [Review "leave" Place "" Move "" Form "" Dial "" History "" Slide "" Start "leave" Sketch ""] "back; while reviewing, leave honami"
+    Leave "leave" ["Q"] [Review "" Place "" Move "" Form "" Dial "" History "" Slide "" Start "" Sketch ""] "leave honami (everything is kept)"
 }
 
 impl Action {

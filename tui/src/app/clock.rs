@@ -53,6 +53,14 @@ impl Play {
         Some(self.since + Duration::from_secs_f64(ahead_s.max(0.0)) + Duration::from_nanos(1))
     }
 
+    /// When the clock comes to a frame of playing straight on.
+    #[must_use]
+    pub fn due(&self, times_s: &[f64], frame: u32) -> Option<Duration> {
+        let ahead_s = (times_s.get(frame as usize)? - times_s[self.first(times_s)]) / self.rate;
+        let ahead = Duration::try_from_secs_f64(ahead_s.max(0.0)).ok()?;
+        self.around.is_none().then_some(self.since + ahead)
+    }
+
     /// Number of frames that have become due since the beginning.
     #[must_use]
     pub fn n_due(&self, times_s: &[f64], now: Duration) -> u64 {

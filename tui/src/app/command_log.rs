@@ -6,6 +6,7 @@ mod file;
 
 use std::collections::VecDeque;
 
+use honami_model::correct::Stroke;
 use serde::{Deserialize, Serialize};
 
 use super::seat::Seat;
@@ -124,6 +125,9 @@ pub struct Here {
     /// The verdict that was given: which item was open was up to a queue that is filled while people work.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub judged: Option<Judge>,
+    /// What was drawn, and how late that was: links are as they are.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sketched: Option<Vec<Stroke>>,
 }
 
 /// What the mouse did, and where.

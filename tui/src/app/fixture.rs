@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use std::time::Duration;
 
 use honami_model::clip::{Clip, FrameTimes};
 use honami_model::correct::Layers;
@@ -19,6 +20,7 @@ use super::state::State;
 use super::tracks::{Groups, TrackRow};
 use super::update::{Effect, Fact, Msg, update};
 use super::view::Shot;
+use crate::term::input::{Mouse, MouseKind};
 
 /// The state that tests begin with.
 pub(super) fn state() -> State {
@@ -103,6 +105,25 @@ pub(super) fn press(state: &mut State, keys: &str) -> Vec<Effect> {
         effects.extend(send(state, Msg::Key(key.parse().expect("a key"))));
     }
     effects
+}
+
+/// What a word stands for: a key, `at:SECONDS` of the clock, `late:MS` for how late a picture was on screen, and
+/// `press:COLUMN,ROW`, `drag:COLUMN,ROW`, `release:COLUMN,ROW` of the mouse's first button.
+pub(super) fn msg(word: &str) -> Msg {
+    let (name, value) = word.split_once(':').filter(|(_, value)| !value.is_empty()).unwrap_or((word, "0"));
+    let n: f64 = value.split(',').next().and_then(|n| n.parse().ok()).expect("a number");
+    let mouse = |kind| {
+        let row = value.split(',').nth(1).and_then(|n| n.parse().ok()).expect("a row");
+        Msg::Mouse(Mouse { kind, column: n as u16, row })
+    };
+    match name {
+        "at" => Msg::Clock(Duration::from_secs_f64(n)),
+        "late" => Msg::Fact(Fact::Late(Duration::from_secs_f64(n / 1e3))),
+        "press" => mouse(MouseKind::Press(0)),
+        "drag" => mouse(MouseKind::Drag(0)),
+        "release" => mouse(MouseKind::Release(0)),
+        key => Msg::Key(key.parse().expect("a key")),
+    }
 }
 
 /// Sends one message, as the program does.

@@ -11,6 +11,7 @@ use super::command_log::{CommandLog, Head, LogFile};
 use super::config::Config;
 use super::effects::World;
 use super::files::{self, Found};
+use super::late::Late;
 use super::layout::{Layout, Lens};
 use super::pace::Pace;
 use super::panel::Panel;
@@ -18,7 +19,7 @@ use super::pictures::Pictures;
 use super::plotted::{Lot, PlotRequest, Plotted};
 use super::recent;
 use super::seat::Seat;
-use super::state::{Display, Link, Notice, State};
+use super::state::{Display, Link, Mode, Notice, State};
 use super::stills::{self, Stills};
 use super::tally::Tally;
 use super::update::{Effect, Fact, Msg, update};
@@ -74,6 +75,8 @@ pub(super) struct App {
     pace: Pace,
     /// Pictures dropped while playing.
     tally: Tally,
+    /// How late pictures are on screen while something is drawn after them.
+    late: Late,
     plotting: Behind<Lot>,
     /// When the figures of the link were last looked at.
     link_seen: Duration,
@@ -97,6 +100,7 @@ impl App {
             is_exact: false,
             pace: Pace::default(),
             tally: Tally::default(),
+            late: Late::default(),
             plotting: Behind::new("plots", screen.waker()),
             link_seen: Duration::ZERO,
             seat_due: None,
@@ -212,7 +216,12 @@ impl App {
                 Event::Key(key) => Msg::Key(key),
                 Event::Mouse(mouse) => Msg::Mouse(mouse),
                 Event::Paste(text) => Msg::Paste(text),
-                Event::Reply(Reply::Ready) => continue,
+                Event::Reply(Reply::Ready) => {
+                    if let Some(by) = self.late.answered(screen.link().n_answered(), screen.now()) {
+                        update(&mut self.state, Msg::Fact(Fact::Late(by)));
+                    }
+                    continue;
+                }
                 // What was learnt may show the same frame differently.
                 Event::Reply(_) => {
                     self.is_exact = false;
@@ -354,12 +363,23 @@ impl App {
         if let Some((frame, lens)) = picture {
             self.pace.painted(now, (frame, lens));
             self.tally.painted(frame);
+            self.await_answer(frame, screen);
         }
         // A picture that is exact from now on may stay: nothing else wakes the screen for its still.
         if self.is_exact {
             self.look_at_still(screen);
         }
         Ok(())
+    }
+
+    /// Under a hand that draws it is measured how late the pictures are that it follows.
+    fn await_answer(&mut self, frame: u32, screen: &Screen) {
+        let play = self.state.play.filter(|_| matches!(self.state.mode, Mode::Sketch(_)));
+        let due = play.and_then(|play| play.due(self.state.clip.times.as_slice(), frame));
+        match due.filter(|_| !screen.link().is_silent()) {
+            Some(due) => self.late.painted(frame, due, screen.link().n_sent()),
+            None => self.late.forget(),
+        }
     }
 
     /// Sees to it that a picture that stays is shown in the terminal's own pixels, and no other is.

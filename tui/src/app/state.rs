@@ -22,6 +22,7 @@ use super::panel::Panel;
 use super::plotted::Plotted;
 use super::queue::Opened;
 use super::ranging::Ranging;
+use super::sketching::Sketching;
 use super::tracks::{Groups, TrackRow};
 use super::view::theme::Theme;
 use crate::term::capabilities::Pixels;
@@ -141,6 +142,8 @@ pub enum Mode {
     Place([f32; 2]),
     /// Moving a sample of the selected track.
     Move(Box<Moving>),
+    /// Drawing the selected track.
+    Sketch(Box<Sketching>),
     /// Setting the parameters of a plugin.
     Form(Box<Form>),
     /// Choosing from a list.
@@ -173,6 +176,7 @@ impl Mode {
                 Tool::Place { .. } => Context::Move,
                 Tool::Slide(_) => Context::Slide,
             },
+            Self::Sketch(_) => Context::Sketch,
             Self::Form(form) if form.typed.is_some() => Context::Prompt,
             Self::Form(_) => Context::Form,
             Self::Menu(_) => Context::Menu,

@@ -12,6 +12,7 @@ mod moving;
 mod pick;
 mod queue;
 mod ranges;
+mod sketch;
 mod time;
 mod tracks;
 
@@ -206,7 +207,12 @@ fn on_text(state: &mut State, text: &str) {
             }
         }
         Mode::Label(_) => chars.for_each(|c| pick::type_label(state, c)),
-        Mode::Review | Mode::Place(_) | Mode::Move(_) | Mode::Dial(_) | Mode::History { .. } => {
+        Mode::Review
+        | Mode::Place(_)
+        | Mode::Move(_)
+        | Mode::Sketch(_)
+        | Mode::Dial(_)
+        | Mode::History { .. } => {
             for c in chars {
                 state.count = c.to_digit(10).map(|digit| {
                     state.count.unwrap_or(0).saturating_mul(10).saturating_add(digit).min(COUNT_MAX)
@@ -280,6 +286,8 @@ fn open_menu(state: &mut State, title: &'static str) {
 
 #[cfg(test)]
 mod keys_tests;
+#[cfg(test)]
+mod sketch_tests;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]

@@ -44,6 +44,8 @@ pub enum MouseKind {
     Press(u8),
     /// It moved with that button down.
     Drag(u8),
+    /// That button went up.
+    Release(u8),
     /// The wheel turned away from the user.
     WheelUp,
     /// The wheel turned towards the user.

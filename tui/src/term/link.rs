@@ -42,6 +42,8 @@ struct Flight {
 #[derive(Debug, Default)]
 pub struct Link {
     flights: VecDeque<Flight>,
+    /// Frames that were sent so far.
+    n_sent: u64,
     last_sent: Option<Duration>,
     last_answer: Option<Duration>,
     /// Least time from sending to answer, and when it was seen.
@@ -55,6 +57,7 @@ pub struct Link {
 impl Link {
     /// A frame has been handed to the terminal.
     pub fn sent(&mut self, now: Duration, n_bytes: usize) {
+        self.n_sent += 1;
         self.flights.push_back(Flight { sent: now, n_bytes });
         self.last_sent = Some(now);
         if self.silent {
@@ -86,6 +89,18 @@ impl Link {
             }
         }
         self.last_answer = Some(now);
+    }
+
+    /// Number of frames that were handed to the terminal so far.
+    #[must_use]
+    pub fn n_sent(&self) -> u64 {
+        self.n_sent
+    }
+
+    /// Number of those whose answers have come, or are not waited for any more.
+    #[must_use]
+    pub fn n_answered(&self) -> u64 {
+        self.n_sent - self.flights.len() as u64
     }
 
     /// Delay there and back of an empty queue; `None` while unknown.

@@ -119,14 +119,15 @@ fn every_tool(
     let at = |to: [f32; 2]| to.map(f64::from);
     let drawn =
         [(0.0, to), (0.1, [5.0, 6.0]), (0.7, to)].map(|(elapsed_s, to)| Drawn { elapsed_s, at: at(to) });
-    let played = Played { from_s: shown.times().get(frame).unwrap_or(0.0), rate: 0.5, link_s: 0.08 };
+    let played = Played { from_s: shown.times().get(frame).unwrap_or(0.0), rate: 0.5, delay_s: 0.195 };
+    let stroke = Stroke { played, drawn: drawn.to_vec() };
     vec![
         ("key only", key_only(shown, frame, to)),
         ("linear", linear(shown, frame, to)),
         ("hermite", hermite(shown, frame, to)),
         ("space", space(shown, frame, to)),
         ("time", time(shown, frame, f64::from(to[0]) / 200.0 - 0.25).map(|slid| slid.correction)),
-        ("sketch", sketch(shown, &drawn, played)),
+        ("sketch", sketch(shown, &[stroke])),
         ("forward", forward(shown, &found[0], RunId(9), frame)),
         ("backward", backward(shown, &found[1], RunId(9), frame)),
         ("lay", lay(shown, &found[0], None, frames.clone())),
@@ -235,7 +236,6 @@ fn refusals_say_what_to_do() {
     let mut short = given.clone();
     short.runs[0].1.samples.truncate(10);
     let none = Span::default();
-    let played = Played { from_s: 0.0, rate: 0.5, link_s: 0.0 };
     for (refused, want) in [
         (
             space(&short.shown(), 12, [1.0, 1.0]).err(),
@@ -251,7 +251,7 @@ fn refusals_say_what_to_do() {
         (blend(&shown, &none, &none, RunId(1), (5, 6)).err(), "track 42 has no samples in frame 6"),
         (forward(&shown, &none, RunId(1), 6).err(), "track 42 has no samples in frames 7-23"),
         (
-            sketch(&shown, &[], played).err(),
+            sketch(&shown, &[]).err(),
             "the stroke covers no frame; draw while the clip plays, for longer than its delay",
         ),
         (key_only(&shown, 3, [f32::NAN, 0.0]).err(), "track 42: the position at frame 3 is not finite"),

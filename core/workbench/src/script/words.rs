@@ -1,7 +1,7 @@
 //! The words of scripts, and what each does.
 
 use honami_host::{HostError, Kind, Values};
-use honami_model::correct::{self, Correction, Drawn, Played, Refused, Shown};
+use honami_model::correct::{self, Correction, Drawn, Played, Refused, Shown, Stroke};
 use honami_model::edit::{Edit, Transaction};
 use honami_model::judgement::{Effort, Judgement, Verdict};
 use honami_model::track::{Status, TrackId};
@@ -175,8 +175,8 @@ fn sketch(session: &mut Session, given: &Arguments<'_>) -> Outcome {
         }
     });
     let drawn = drawn.collect::<Result<Vec<Drawn>, _>>()?;
-    let played = Played { from_s, rate, link_s: 0.0 };
-    on_track(session, given.track(0)?, |shown| correct::sketch(shown, &drawn, played))
+    let stroke = Stroke { played: Played::under_hand(from_s, rate, 0.0), drawn };
+    on_track(session, given.track(0)?, |shown| correct::sketch(shown, &[stroke]))
 }
 
 fn retrack(session: &mut Session, given: &Arguments<'_>) -> Outcome {

@@ -52,6 +52,20 @@ fn uneven_frames_last_as_long_as_they_do() {
 }
 
 #[test]
+fn a_frame_is_due_when_the_clock_comes_to_it() {
+    for (play, frame, ms) in [
+        (play(1.0, 0, None), 4, 1000),
+        (play(0.5, 1, None), 2, 320),
+        (play(-0.5, 5, None), 4, 200),
+        (play(1.0, 3, None), 2, 0),
+    ] {
+        assert_eq!(play.due(&UNEVEN, frame), Some(play.since + Duration::from_millis(ms)));
+    }
+    assert_eq!(play(1.0, 0, Some(2)).due(&UNEVEN, 1), None, "in a loop it is due again and again");
+    assert_eq!(play(1.0, 0, None).due(&UNEVEN, 6), None);
+}
+
+#[test]
 fn a_loop_goes_there_and_back() {
     let even: Vec<f64> = (0..20).map(|k| f64::from(k) / 25.0).collect();
     assert_eq!(ticked(&play(1.0, 10, Some(2)), &even, 9), [10, 11, 12, 11, 10, 9, 8, 9, 10, 11]);

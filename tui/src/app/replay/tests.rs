@@ -9,6 +9,7 @@ use tempfile::TempDir;
 
 use super::*;
 use crate::app::command_log::CommandLog;
+use crate::app::fixture;
 
 const N_FRAMES: usize = 12;
 
@@ -39,15 +40,15 @@ impl Bench {
         Session::open(&self.path(project), &Default::default()).unwrap()
     }
 
-    /// The log of a session in which these keys are pressed, five a second.
-    fn record(&self, keys: &str) -> String {
+    /// The log of a session in which these keys are pressed and the mouse does this, five a second.
+    fn record(&self, words: &str) -> String {
         let (waker, _woken) = signals::pair().unwrap();
         let mut world = World::new(self.session("p.honami"), waker);
         let mut state = world.state().unwrap();
         state.log = CommandLog::new(Head::of(&state, world.origin()));
-        for (n, key) in keys.split_whitespace().enumerate() {
+        for (n, word) in words.split_whitespace().enumerate() {
             update(&mut state, Msg::Clock(Duration::from_millis(200 * n as u64)));
-            for effect in update(&mut state, Msg::Key(key.parse().unwrap())) {
+            for effect in update(&mut state, fixture::msg(word)) {
                 for fact in world.carry_out(effect, state.now) {
                     update(&mut state, Msg::Fact(fact));
                 }
@@ -81,6 +82,9 @@ fn a_session_done_again_makes_the_same_document() {
         ": a d d Enter Enter g f 7 Enter m H Enter [ [ X X : u n d o Enter",
         "a Enter z z m 3 l Enter a Enter / 0 Enter f . . m J Enter v q P L P l",
         "a Enter space . m l Enter ; Esc b m l Enter Enter Enter g e space m Enter",
+        "a Enter s . 2 l . k . . Backspace Enter u Ctrl-r 5 g f s 2 5 ; l l Esc Enter",
+        "a Enter z s press:30,8 ; late:90 drag:31,8 late:80 drag:32,9 late:90 drag:33,9 release:33,9 Enter T l Enter u u",
+        "a Enter s press:40,9 release:40,9 5 0 ; j j l Esc Esc s . Backspace Enter Esc m l Enter",
         "a Enter g l a m l Enter ? Esc g k Enter m l Enter 9 9 g f d d u",
     ] {
         let bench = Bench::new();
@@ -125,6 +129,21 @@ fn the_first_difference_is_named() {
     ] {
         check(from, to, expect);
     }
+}
+
+#[test]
+fn a_sketch_is_laid_as_late_as_it_was_drawn() {
+    let bench = Bench::new();
+    let log = bench.record(
+        "a Enter s press:30,8 ; late:90 drag:32,8 late:80 drag:36,9 late:90 drag:38,9 release:38,9 Enter",
+    );
+    let accept = log.lines().find(|line| line.contains("\"sketched\"")).unwrap();
+    assert!(accept.contains(r#""from_s":0.0,"rate":0.5,"delay_s":0.205"#), "{accept}");
+    assert!(!log.contains("drag") && log.contains("release"), "{log}");
+    let (done, _) = bench.replay(&log.replace("\"delay_s\":0.205", "\"delay_s\":0.115"));
+    assert_eq!(done.unwrap().difference, None, "another delay is said in the same words");
+    let (here, there) = (made(&bench.path("p.honami")), made(&bench.path("copy.honami")));
+    assert!(here.1 == there.1 && here.0 != there.0, "and laid elsewhere");
 }
 
 #[test]

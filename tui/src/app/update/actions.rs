@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::{
     Action, Effect, Mode, State, choose, complain, edit, history, look, motion, moving, open_menu, pick,
-    queue, ranges, say, time, tracks,
+    queue, ranges, say, sketch, time, tracks,
 };
 use honami_model::judgement::Verdict;
 use honami_model::track::{Status, TrackSet};
@@ -43,7 +43,7 @@ pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {
         Action::SlowForward => time::play(state, Pace::Slow, 1.0),
         Action::SlowBackward => time::play(state, Pace::Slow, -1.0),
         Action::Loop => time::repeat(state),
-        Action::StepForward => time::step(state, count(state)),
+        Action::StepForward => forward(state, count(state)),
         Action::StepBack => time::step(state, -count(state)),
         Action::LeapForward => time::step(state, 10 * count(state)),
         Action::LeapBack => time::step(state, -10 * count(state)),
@@ -71,10 +71,8 @@ pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {
         Action::GoFile => return vec![Effect::Follow(Way::Folder(PathBuf::from(".")))],
         Action::Sort => time::sort(state),
         Action::DeleteTrack => return edit::delete(state),
-        Action::MoreGroups if matches!(state.mode, Mode::Dial(_)) => motion::gain(state, count(state)),
-        Action::FewerGroups if matches!(state.mode, Mode::Dial(_)) => motion::gain(state, -count(state)),
-        Action::MoreGroups => return edit::cut(state, count(state)),
-        Action::FewerGroups => return edit::cut(state, -count(state)),
+        Action::MoreGroups => return more(state, count(state)),
+        Action::FewerGroups => return more(state, -count(state)),
         Action::Undo => return edit::repeat(state, Effect::Undo),
         Action::Redo => return edit::repeat(state, Effect::Redo),
         Action::RetrackBoth => return edit::retrack(state, retrack::Way::Both),
@@ -129,6 +127,24 @@ fn look_about(state: &mut State, action: Action) -> Vec<Effect> {
     Vec::new()
 }
 
+/// Frames forward; the point that a hand leads stays behind in the one that is left.
+fn forward(state: &mut State, frames: i64) {
+    match state.mode {
+        Mode::Sketch(_) => sketch::put(state, frames),
+        _ => time::step(state, frames),
+    }
+}
+
+/// More or less of what there is: groups, colour at the dial, the step of a hand that draws.
+fn more(state: &mut State, by: i64) -> Vec<Effect> {
+    match state.mode {
+        Mode::Dial(_) => motion::gain(state, by),
+        Mode::Sketch(_) => sketch::scale_step(state, by),
+        _ => return edit::cut(state, by),
+    }
+    Vec::new()
+}
+
 /// Ctrl and the arrows: finest nudges where a point is moved, else what is seen.
 fn pan(state: &mut State, dx: f32, dy: f32) -> Vec<Effect> {
     match state.mode {
@@ -142,6 +158,7 @@ fn pan(state: &mut State, dx: f32, dy: f32) -> Vec<Effect> {
 fn correct(state: &mut State, action: Action) -> Vec<Effect> {
     match action {
         Action::MoveSample => return moving::begin(state),
+        Action::Sketch => return sketch::begin(state),
         Action::CorrectTime => return moving::begin_slide(state),
         Action::WalkForward => moving::walk(state, count(state)),
         Action::WalkBack => moving::walk(state, -count(state)),
@@ -182,6 +199,7 @@ fn steer(state: &mut State, dx: f32, dy: f32, px: f32) -> Vec<Effect> {
             *at = edit::within(&state.clip, [at[0] + by[0] * px, at[1] + by[1] * px]);
         }
         Mode::Move(_) => moving::nudge(state, by),
+        Mode::Sketch(_) => sketch::steer(state, by),
         Mode::Form(form) if columns != 0 => form.change(columns, px < 1.0),
         Mode::Form(form) => form.step(rows),
         Mode::Menu(menu) => menu.step(rows),
@@ -200,6 +218,7 @@ fn accept(state: &mut State) -> Vec<Effect> {
         },
         Mode::Place(_) => edit::place(state),
         Mode::Move(_) => moving::keep(state),
+        Mode::Sketch(_) => sketch::keep(state),
         Mode::Menu(_) => choose(state),
         Mode::Dial(_) => {
             state.mode = Mode::Review;
@@ -274,6 +293,7 @@ fn back(state: &mut State) -> Vec<Effect> {
         }
         Mode::Menu(menu) => state.mode = std::mem::replace(&mut menu.below, Mode::Review),
         Mode::History { .. } => history::close(state),
+        Mode::Sketch(_) => sketch::back(state),
         _ => state.mode = Mode::Review,
     }
     Vec::new()
@@ -292,6 +312,7 @@ fn erase(state: &mut State) -> Vec<Effect> {
                 typed.pop();
             }
         }
+        Mode::Sketch(_) => sketch::take_back(state),
         Mode::Review
         | Mode::Place(_)
         | Mode::Move(_)

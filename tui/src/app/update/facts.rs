@@ -1,12 +1,13 @@
 //! What the world tells the state.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use honami_model::correct::Layers;
 use honami_model::history::{Entry, EntryId};
 use honami_workbench::review::Told;
 
-use super::{Mode, State, logged, motion, moving, tell};
+use super::{Mode, State, logged, motion, moving, sketch, tell};
 use crate::app::dense::FieldOf;
 use crate::app::files::Listing;
 use crate::app::menu::Menu;
@@ -38,6 +39,8 @@ pub enum Fact {
     Said(Notice),
     /// What is known of the link.
     Link(Link),
+    /// A picture of the clip that plays was on screen so late.
+    Late(Duration),
     /// Pictures per second that were shown and that were due, where some were dropped.
     Dropped(Option<[u32; 2]>),
     /// What is known of the terminal.
@@ -69,11 +72,24 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
                 state.selected = state.tracks.first().map(|row| row.id);
             }
             // The sample being moved is gone: there is nothing to keep.
-            if matches!(&state.mode, Mode::Move(moving) if state.row(moving.track).is_none()) {
+            let track = match &state.mode {
+                Mode::Move(moving) => Some(moving.track),
+                Mode::Sketch(sketching) => Some(sketching.track),
+                _ => None,
+            };
+            if track.is_some_and(|track| state.row(track).is_none()) {
                 state.mode = Mode::Review;
             }
         }
-        Fact::Layers(layers) => moving::on_layers(state, layers),
+        Fact::Layers(layers) => {
+            sketch::on_layers(state, layers.as_ref());
+            moving::on_layers(state, layers);
+        }
+        Fact::Late(by) => {
+            if let Mode::Sketch(sketching) = &mut state.mode {
+                sketching.late(by);
+            }
+        }
         Fact::Review(told) => {
             told.into_iter().for_each(|(track, segments)| state.review.set(track, segments));
         }

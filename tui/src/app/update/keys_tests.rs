@@ -17,6 +17,7 @@ fn in_place(context: Context) -> State {
         Context::Place => press("z a"),
         Context::Move => press("g f 4 0 Enter m"),
         Context::Slide => press("g f 4 0 Enter T"),
+        Context::Sketch => press("g f 4 0 Enter s ."),
         Context::Form => press("t r j"),
         Context::Menu => press("/ 1"),
         Context::Prompt => press("g f 4"),

@@ -9,7 +9,7 @@ use crate::app::action::TABLE;
 use crate::app::command_log::{Here, Line, Touch, What};
 use crate::app::layout::{Layout, Lens};
 use crate::app::state::Notice;
-use crate::term::input::Mouse;
+use crate::term::input::{Mouse, MouseKind};
 
 /// An action is about to be done. The palette and the help leave no lines: what is chosen there does. Nor do the ways to
 /// other projects: the session ends with them.
@@ -23,22 +23,34 @@ pub(super) fn action(state: &mut State, action: Action) {
         Mode::Menu(menu) if action == Action::Accept => menu.chosen().map(|row| row.label.clone()),
         _ => None,
     };
-    push(state, What::Action(action.info().name.to_owned()), chosen);
+    let sketched = match &state.mode {
+        Mode::Sketch(sketching) if action == Action::Accept => Some(sketching.ended(state.now)),
+        _ => None,
+    };
+    let what = What::Action(action.info().name.to_owned());
+    push_line(state, what, |here| Here { chosen, sketched, ..here });
 }
 
 /// Text has come. Digits of a count have no line of their own: it is in that of its action.
 pub(super) fn text(state: &mut State, text: &str) {
     let is_kept = matches!(state.mode, Mode::Menu(_) | Mode::Prompt(_) | Mode::Form(_) | Mode::Label(_));
     if is_kept && !is_unlogged(state) {
-        push(state, What::Text(text.to_owned()), None);
+        push(state, What::Text(text.to_owned()));
     }
 }
 
-/// The mouse is about to do something.
+/// The mouse is about to do something. What is drawn leaves one line, when it is kept; and a button that goes up does
+/// something only where is drawn.
 pub(super) fn mouse(state: &mut State, mouse: Mouse) {
-    if !is_unlogged(state) {
+    let is_sketch = matches!(state.mode, Mode::Sketch(_));
+    let is_silent = match mouse.kind {
+        MouseKind::Drag(_) => is_sketch,
+        MouseKind::Release(_) => !is_sketch,
+        _ => false,
+    };
+    if !is_silent && !is_unlogged(state) {
         let at = lens(state).point_of(mouse.column, mouse.row);
-        push(state, What::Mouse(Touch { kind: mouse.kind, cell: (mouse.column, mouse.row), at }), None);
+        push(state, What::Mouse(Touch { kind: mouse.kind, cell: (mouse.column, mouse.row), at }));
     }
 }
 
@@ -67,17 +79,22 @@ fn lens(state: &State) -> Lens {
     Lens::of(state, Layout::of(state).picture)
 }
 
-fn push(state: &mut State, what: What, chosen: Option<String>) {
+fn push(state: &mut State, what: What) {
+    push_line(state, what, |here| here);
+}
+
+fn push_line(state: &mut State, what: What, more: impl FnOnce(Here) -> Here) {
     let here = Here {
         place: state.mode.context().name().to_owned(),
         frame: state.frame,
         track: state.selected.map(|track| track.0),
         zoom: Some(state.zoom).filter(|zoom| *zoom > 0),
         count: state.count.filter(|_| matches!(what, What::Action(_))),
-        chosen,
+        chosen: None,
         judged: None,
+        sketched: None,
     };
-    state.log.push(Line { t_s: state.now.as_secs_f64(), what, here: Some(here) });
+    state.log.push(Line { t_s: state.now.as_secs_f64(), what, here: Some(more(here)) });
 }
 
 fn push_bare(state: &mut State, what: What) {
@@ -108,6 +125,9 @@ pub fn again(state: &mut State, line: &Line) -> Result<Vec<Effect>, String> {
                 && !menu.choose(chosen)
             {
                 return Err(format!("{chosen} is not in the list of {}", menu.title));
+            }
+            if let (Mode::Sketch(sketching), Some(strokes)) = (&mut state.mode, &here.sketched) {
+                sketching.take(strokes.clone());
             }
             state.count = here.count;
             action(state, called);

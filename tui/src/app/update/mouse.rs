@@ -1,6 +1,6 @@
 //! The mouse: selects, places, scrubs; whatever it does, keys do too.
 
-use super::{Effect, Mode, State, history, look, moving, queue, time};
+use super::{Effect, Mode, State, history, look, moving, queue, sketch, time};
 use crate::app::layout::{Layout, Lens, bar, frame_at};
 use crate::app::view::column::{self, Pick};
 use crate::term::input::{Mouse, MouseKind};
@@ -11,7 +11,8 @@ const REACH_CELLS: f32 = 3.0;
 pub(super) fn on_mouse(state: &mut State, mouse: Mouse) -> Vec<Effect> {
     let layout = Layout::of(state);
     let lens = Lens::of(state, layout.picture);
-    let here = (mouse.column, mouse.row).into();
+    let cell = (mouse.column, mouse.row);
+    let here = cell.into();
     match mouse.kind {
         MouseKind::WheelUp | MouseKind::WheelDown => {
             let by = if mouse.kind == MouseKind::WheelUp { -1 } else { 1 };
@@ -20,7 +21,7 @@ pub(super) fn on_mouse(state: &mut State, mouse: Mouse) -> Vec<Effect> {
                 Mode::Form(form) => form.step(by),
                 Mode::Review if layout.column.contains(here) => pick(state, column::pick_beside(state, by)),
                 Mode::Review if layout.time.contains(here) => time::step(state, by),
-                Mode::Review | Mode::Place(_) | Mode::Move(_) => {
+                Mode::Review | Mode::Place(_) | Mode::Move(_) | Mode::Sketch(_) => {
                     if let Some(point) = lens.point_of(mouse.column, mouse.row) {
                         look::zoom_at(state, -by, point);
                     }
@@ -36,6 +37,7 @@ pub(super) fn on_mouse(state: &mut State, mouse: Mouse) -> Vec<Effect> {
                 look::drag(state, (by(mouse.column, column), by(mouse.row, row)));
             }
         }
+        MouseKind::Release(0) => sketch::release(state),
         MouseKind::Press(0) | MouseKind::Drag(0) if layout.time.contains(here) => {
             if matches!(state.mode, Mode::Review | Mode::Move(_)) {
                 let n_frames = state.clip.n_frames();
@@ -45,6 +47,8 @@ pub(super) fn on_mouse(state: &mut State, mouse: Mouse) -> Vec<Effect> {
         MouseKind::Press(0) if layout.column.contains(here) => {
             pick(state, column::pick_at(state, layout.column, mouse.row));
         }
+        MouseKind::Press(0) if matches!(state.mode, Mode::Sketch(_)) => sketch::press(state, &lens, cell),
+        MouseKind::Drag(0) if matches!(state.mode, Mode::Sketch(_)) => sketch::drag(state, &lens, cell),
         MouseKind::Press(0) | MouseKind::Drag(0) => {
             if let Some(point) = lens.point_of(mouse.column, mouse.row) {
                 match &mut state.mode {

@@ -58,6 +58,7 @@ pub(super) fn line(state: &State, effects: &[Effect]) -> String {
             }
             words
         }
+        Mode::Sketch(sketching) => format!("sketch {}", sketching.strokes.len()),
         Mode::Form(form) => format!("form {:?} row {} typed {:?}", form.task, form.at, form.typed),
         Mode::Menu(menu) => {
             format!("menu {:?} of {}", menu.chosen().map(|r| r.label.as_str()), menu.rows().len())
@@ -556,6 +557,7 @@ fn every_binding_answers() {
         (Context::Place, "a"),
         (Context::Move, "m l"),
         (Context::Slide, "T"),
+        (Context::Sketch, "s"),
         (Context::Form, "t r"),
         (Context::Menu, ":"),
         (Context::Prompt, "g f"),
@@ -601,6 +603,7 @@ fn prepared(context: Context, action: Action) -> &'static str {
         (Context::Prompt, Action::Erase) => "1",
         (Context::Review, Action::Back) => "space",
         (Context::Move, Action::Pin) => ")",
+        (Context::Sketch, Action::Erase) => ".",
         _ => "",
     }
 }

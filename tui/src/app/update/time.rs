@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use honami_model::track::TrackId;
 
-use super::{Mode, State, complain, say};
+use super::{Mode, State, complain, say, sketch};
 use crate::app::clock::Play;
 use crate::app::menu::Menu;
 
@@ -29,7 +29,7 @@ pub(super) fn on_clock(state: &mut State, now: Duration) {
         state.frame = play.frame(state.clip.times.as_slice(), now);
         let end = if play.rate >= 0.0 { state.last_frame() } else { 0 };
         if state.frame == end {
-            stop(state);
+            halt(state);
         }
     }
     keep_in_view(state);
@@ -37,6 +37,12 @@ pub(super) fn on_clock(state: &mut State, now: Duration) {
 
 /// Stops playing; a loop goes back to the frame round which it went.
 pub(super) fn stop(state: &mut State) {
+    halt(state);
+    sketch::on_stop(state);
+}
+
+/// The clip stands; a hand that follows it is still on its way.
+fn halt(state: &mut State) {
     state.play = None;
     state.dropped = None;
     keep_in_view(state);
@@ -77,7 +83,9 @@ pub(super) fn repeat(state: &mut State) {
 
 fn begin(state: &mut State, rate: f64, around: Option<u32>) {
     state.dropped = None;
-    state.play = Some(Play { rate, since: state.now, from: state.frame, around });
+    let play = Play { rate, since: state.now, from: state.frame, around };
+    state.play = Some(play);
+    sketch::on_play(state, play);
 }
 
 /// Goes to a frame, the last one at most; stops playing. A loop goes on round that frame.
@@ -95,12 +103,18 @@ pub(super) fn go(state: &mut State, frame: u32) {
     if let Mode::Move(moving) = &mut state.mode {
         moving.walked = None;
     }
+    sketch::on_arrival(state);
     keep_in_view(state);
 }
 
 pub(super) fn step(state: &mut State, frames: i64) {
+    go(state, stepped(state, frames));
+}
+
+/// The frame so many further on, as far as there are any.
+pub(super) fn stepped(state: &State, frames: i64) -> u32 {
     let target = (i64::from(state.frame) + frames).clamp(0, i64::from(state.last_frame()));
-    go(state, u32::try_from(target).unwrap_or(0));
+    u32::try_from(target).unwrap_or(0)
 }
 
 pub(super) fn select(state: &mut State, track: TrackId) {
@@ -170,9 +184,10 @@ pub(super) fn go_key(state: &mut State, by: i64) {
     }
 }
 
-/// Following, the selected track stays in the middle.
+/// Following, the selected track stays in the middle; the view stands still under a hand that draws.
 pub(super) fn keep_in_view(state: &mut State) {
     if state.follow
+        && !matches!(state.mode, Mode::Sketch(_))
         && let Some(at) = state.selected_row().and_then(|row| row.at(state.shown_frame()))
     {
         state.centre = at;

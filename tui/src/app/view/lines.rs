@@ -15,6 +15,7 @@ use crate::app::clock::rate_words;
 use crate::app::correcting::{Moving, Tool, nudge_px};
 use crate::app::keymap::shown;
 use crate::app::layout::{Layout, Lens, bar, column_of, frame_at};
+use crate::app::sketching::Sketching;
 use crate::app::state::{Job, Mode, State};
 use crate::app::tracks::TrackRow;
 use crate::term::encode::Frame;
@@ -172,6 +173,7 @@ pub(super) fn time(state: &State, area: Rect, frame: &mut Frame) {
     let outliers = state.groups.as_ref().map_or(&[][..], |g| &g.outlier_frames);
     let affected = match &state.mode {
         Mode::Move(moving) => moving.affected(),
+        Mode::Sketch(sketching) => sketching.correction().map(|ghost| ghost.affected.clone()),
         _ => None,
     };
     let range = state.range.map(|range| range.frames(state.frame));
@@ -217,6 +219,7 @@ pub(super) fn hints(state: &State, area: Rect, frame: &mut Frame) {
         Mode::Name(typed) => format!("name {typed}▏"),
         Mode::Label(typed) => format!("letters of a track {typed}▏"),
         Mode::Move(moving) => moving_words(moving, state.frame),
+        Mode::Sketch(sketching) => sketching_words(sketching, state.frame),
         _ => {
             let t_s = state.clip.times.get(state.frame).unwrap_or_default();
             let mut words = format!("{}/{}  {t_s:.2} s", state.frame, state.last_frame());
@@ -274,6 +277,25 @@ fn moving_words(moving: &Moving, frame: u32) -> String {
         words.push_str(&format!("  at {walked}"));
     } else if frame != moving.frame {
         words.push_str(&format!("  seeing {frame}"));
+    }
+    words
+}
+
+/// What was drawn so far, how late it was taken to be, and the step of the keys.
+fn sketching_words(sketching: &Sketching, frame: u32) -> String {
+    let mut words = format!("{frame}  sketch");
+    match &sketching.ghost {
+        Some(Ok(ghost)) if !ghost.affected.is_empty() => {
+            words.push_str(&format!("  {}-{}", ghost.affected.start, ghost.affected.end - 1));
+        }
+        Some(Err(_)) => words.push_str("  too short"),
+        _ => {}
+    }
+    if let Some([hand, link]) = sketching.late_ms() {
+        words.push_str(&format!("  hand {hand} + link {link} ms"));
+    }
+    if (sketching.step - 1.0).abs() > 0.0 {
+        words.push_str(&format!("  step {}", sketching.step));
     }
     words
 }

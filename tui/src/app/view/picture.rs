@@ -3,6 +3,7 @@
 mod ghost;
 pub(super) mod motion;
 mod path;
+mod sketch;
 
 use std::collections::BTreeMap;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
@@ -181,7 +182,7 @@ impl<'a> Canvas<'a> {
                 self.mark([sample.x, sample.y], &RING, PICKED, '#');
             }
         }
-        let moving = matches!(state.mode, Mode::Move(_));
+        let moving = matches!(state.mode, Mode::Move(_) | Mode::Sketch(_));
         if let Some(row) = selected.filter(|_| !moving)
             && let Some(at) = row.at(frame)
         {
@@ -196,6 +197,7 @@ impl<'a> Canvas<'a> {
         match state.mode {
             Mode::Place(at) => self.cross(at),
             Mode::Move(ref moving) => self.ghost(moving, state.selected_row(), frame),
+            Mode::Sketch(ref sketching) => self.sketch(sketching, state.selected_row(), frame),
             _ => {}
         }
     }

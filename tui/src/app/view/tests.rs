@@ -158,6 +158,8 @@ fn screens() {
 fn screens_of_corrections() {
     check("slide_80x24", (80, 24), "T 2 l L", |_| {});
     check("ghost_80x24", (80, 24), "z z m 3 0 l 4 j . . 2 ( *", |_| {});
+    check("sketch_80x24", (80, 24), "z s 4 l . 3 l k . 3 l k . 2 l . + +", |_| {});
+    check("sketch_mono_40x12", (40, 12), "s 4 l . 8 l 3 k 3 . 8 l .", |state| state.mono = true);
     check("range_120x40", (120, 40), "P t y j y r 1 9 l", |_| {});
 }
 

@@ -60,7 +60,7 @@ fn event(body: &str, final_byte: u8) -> Option<Event> {
         };
     }
     if let Some(body) = body.strip_prefix('<') {
-        return mouse(&numbers(body)).filter(|_| final_byte == b'M').map(Event::Mouse);
+        return mouse(&numbers(body), final_byte).map(Event::Mouse);
     }
     let p = numbers(body);
     let modifiers = p.get(1).copied().unwrap_or(1);
@@ -91,11 +91,13 @@ fn numbers(body: &str) -> Vec<u16> {
         .collect()
 }
 
-/// Presses, drags and turns of the wheel; nobody wants to know of the rest.
-fn mouse(p: &[u16]) -> Option<Mouse> {
+/// What a button or the wheel does; nobody wants to know of the rest.
+fn mouse(p: &[u16], final_byte: u8) -> Option<Mouse> {
     let &[bits, column, row] = p else { return None };
     let button = u8::try_from(bits & 3).ok()?;
     let kind = match (bits & 64 != 0, bits & 32 != 0) {
+        _ if final_byte == b'm' => (bits & 96 == 0).then_some(MouseKind::Release(button))?,
+        _ if final_byte != b'M' => return None,
         (true, _) if button == 0 => MouseKind::WheelUp,
         (true, _) if button == 1 => MouseKind::WheelDown,
         (true, _) => return None,

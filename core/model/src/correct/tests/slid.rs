@@ -60,16 +60,16 @@ fn a_stroke_is_shifted_by_hand_and_link() {
     for (rate, link_s, want_s) in
         [(1.0, 0.0, 0.115), (0.5, 0.0, 0.0575), (0.5, 0.08, 0.0975), (-0.5, 0.0, -0.0575)]
     {
-        let played = Played { from_s: 0.0, rate, link_s };
+        let played = Played::under_hand(0.0, rate, link_s);
         assert!((played.shift_s() - want_s).abs() < 1e-12);
     }
     // The pointer moves 100 px a second of the clip, late by the delays: laid down where the feature was.
     let given = Given::run(|_| [0.0, 0.0]).keyed(&[(10, 7.0, 7.0)]);
-    let played = Played { from_s: 0.2, rate: 0.5, link_s: 0.08 };
+    let played = Played::under_hand(0.2, 0.5, 0.08);
     let drawn: Vec<Drawn> = (0..=10)
         .map(|k| Drawn { elapsed_s: 0.195 + 0.1 * f64::from(k), at: [20.0 + 5.0 * f64::from(k), 0.0] })
         .collect();
-    let sketched = sketch(&given.shown(), &drawn, played).unwrap();
+    let sketched = sketch(&given.shown(), &[Stroke { played, drawn: drawn.clone() }]).unwrap();
     assert_eq!(sketched.affected, 5..18, "0.2 s to 0.7 s of the clip");
     for frame in (5..18).filter(|frame| *frame != 10) {
         let sample = sketched.span.get(frame).unwrap();
@@ -78,5 +78,44 @@ fn a_stroke_is_shifted_by_hand_and_link() {
     }
     assert_eq!(sketched.span.get(10), given.shown().span().get(10), "a key-frame stands");
     let backwards = Played { rate: -0.5, from_s: 0.7, ..played };
-    assert_eq!(sketch(&given.shown(), &drawn, backwards).unwrap().affected, 5..18);
+    let stroke = Stroke { played: backwards, drawn };
+    assert_eq!(sketch(&given.shown(), &[stroke]).unwrap().affected, 5..18);
+}
+
+#[test]
+fn what_nobody_can_have_seen_is_not_drawn() {
+    // The hand waits where the feature is until the first picture moves, and goes on until the clip has stood for its
+    // delay: nothing before the frame from which it played is covered.
+    let given = Given::run(|_| [0.0, 0.0]);
+    let point = |elapsed_s: f64, x: f64| Drawn { elapsed_s, at: [x, 0.0] };
+    for (from_s, rate, affected) in [(0.2, 0.5, 5..8), (0.2, -0.5, 3..6)] {
+        let played = Played { from_s, rate, delay_s: 0.2 };
+        // The shift is 0.1 s: what is drawn until 0.2 s of the wall's clock is the hand at rest.
+        let drawn = vec![point(0.0, 50.0), point(0.2, 50.0), point(0.36, 66.0)];
+        let sketched = sketch(&given.shown(), &[Stroke { played, drawn }]).unwrap();
+        assert_eq!(sketched.affected, affected, "at {rate}");
+        for frame in affected {
+            let wanted = 50.0 + 8.0 * f64::from(frame.abs_diff(5));
+            let x = sketched.span.get(frame).unwrap().x;
+            assert!((f64::from(x) - wanted).abs() < 1e-3, "frame {frame} at {rate}: {x}, not {wanted}");
+        }
+    }
+}
+
+#[test]
+fn strokes_do_not_run_into_each_other_and_the_last_one_counts() {
+    let given = Given::run(|_| [0.0, 0.0]);
+    let step = |frame: u32, x: f64| Drawn { elapsed_s: f64::from(frame) / 25.0, at: [x, 1.0] };
+    let stroke = |drawn: &[Drawn]| Stroke { played: Played::STEPWISE, drawn: drawn.to_vec() };
+    let strokes = [
+        stroke(&[step(2, 10.0), step(4, 20.0), step(5, 30.0)]),
+        stroke(&[step(9, 7.0)]),
+        stroke(&[step(4, 8.0)]),
+    ];
+    let sketched = sketch(&given.shown(), &strokes).unwrap();
+    let x: Vec<f32> = (1..=10).map(|frame| sketched.span.get(frame).unwrap().x).collect();
+    assert_eq!(x, [0.0, 10.0, 15.0, 8.0, 30.0, 0.0, 0.0, 0.0, 7.0, 0.0]);
+    let text = serde_json::to_string(&strokes[1]).unwrap();
+    assert_eq!(text, r#"{"from_s":0.0,"rate":1.0,"delay_s":0.0,"drawn":[[0.36,7.0,1.0]]}"#);
+    assert_eq!(serde_json::from_str::<Stroke>(&text).unwrap(), strokes[1]);
 }

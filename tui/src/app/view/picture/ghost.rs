@@ -5,12 +5,12 @@ use crate::app::correcting::Moving;
 use crate::app::tracks::TrackRow;
 
 /// So many frames of it are drawn to both sides of what is looked at.
-const NEAR: u32 = 12;
+pub(super) const NEAR: u32 = 12;
 
 /// The path as it would be.
-const GHOST: [u8; 3] = [255, 120, 255];
+pub(super) const GHOST: [u8; 3] = [255, 120, 255];
 /// The part of the path that would change.
-const AFFECTED: [u8; 3] = [255, 150, 60];
+pub(super) const AFFECTED: [u8; 3] = [255, 150, 60];
 
 impl Canvas<'_> {
     /// The open correction, as seen in a frame.
