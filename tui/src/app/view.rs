@@ -12,9 +12,9 @@ pub mod start;
 pub mod style;
 pub mod theme;
 
-use ratatui::layout::Rect;
+use ratatui::layout::{Alignment, Rect};
 use ratatui::style::Style;
-use ratatui::text::Line;
+use ratatui::text::{Line, Span};
 
 use super::layout::Layout;
 use super::state::{Mode, State};
@@ -51,11 +51,64 @@ pub fn draw(state: &State, shot: Option<&Shot>) -> Frame {
     frame
 }
 
-/// A line of text at the left of an area's row.
+/// A line of text in an area's row, where its alignment says. One that is too long ends with `…`.
 fn put(frame: &mut Frame, area: Rect, row: u16, line: &Line<'_>) {
-    if row < area.height {
-        frame.cells.set_line(area.x, area.y + row, line, area.width);
+    if row >= area.height || area.width == 0 {
+        return;
     }
+    let text: String = line.spans.iter().map(|span| span.content.as_ref()).collect();
+    let width = width(text.trim_end());
+    let spare = area.width.saturating_sub(u16::try_from(width).unwrap_or(u16::MAX));
+    let indent = match line.alignment {
+        Some(Alignment::Center) => spare / 2,
+        Some(Alignment::Right) => spare,
+        Some(Alignment::Left) | None => 0,
+    };
+    let y = area.y + row;
+    frame.cells.set_line(area.x + indent, y, line, area.width - indent);
+    if width > usize::from(area.width) {
+        cut(frame, area, y);
+    }
+}
+
+/// Ends a row of an area with `…`; half a wide character does not stay.
+fn cut(frame: &mut Frame, area: Rect, y: u16) {
+    let last = area.right() - 1;
+    if last > area.x {
+        let before = &mut frame.cells[(last - 1, y)];
+        if width(before.symbol()) > 1 {
+            before.set_symbol(" ");
+        }
+        let style = before.style();
+        frame.cells[(last, y)].set_style(style);
+    }
+    frame.cells[(last, y)].set_symbol("…");
+}
+
+/// Cells that a text takes.
+fn width(text: &str) -> usize {
+    Line::raw(text).width()
+}
+
+/// A text with blanks behind it, so many cells wide, or as wide as it is.
+fn padded(text: &str, cells: usize) -> String {
+    format!("{text}{}", " ".repeat(cells.saturating_sub(width(text))))
+}
+
+/// A text in exactly so many cells: with blanks behind it, or cut and ended with `…`.
+fn fitted(text: &str, cells: usize) -> String {
+    if width(text) <= cells {
+        return padded(text, cells);
+    }
+    let mut short = String::new();
+    for grapheme in Span::raw(text).styled_graphemes(Style::new()) {
+        if width(&short) + width(grapheme.symbol) >= cells {
+            break;
+        }
+        short.push_str(grapheme.symbol);
+    }
+    short.extend((cells > 0).then_some('…'));
+    padded(&short, cells)
 }
 
 /// The lowest `rows` rows of an area as a panel over the picture; returns its inside.

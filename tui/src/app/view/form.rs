@@ -6,10 +6,13 @@ use ratatui::text::{Line, Span};
 
 use honami_workbench::plugins::{Numeric, Param, ParamKind, Value};
 
-use super::{panel, put, style};
+use super::lines::wrapped;
+use super::{padded, panel, put, style, width};
 use crate::app::form::{Form, Row, Task, slider};
 use crate::term::encode::Frame;
 
+/// Cells of the panel, at most.
+const WIDTH: u16 = 78;
 /// Cells of a slider.
 const SLIDER: usize = 14;
 /// Cells of the labels, least and most.
@@ -17,20 +20,28 @@ const LABEL: (usize, usize) = (16, 32);
 
 pub(super) fn draw(form: &Form, area: Rect, frame: &mut Frame) {
     let rows = form.rows();
+    let room = usize::from(area.width.min(WIDTH).saturating_sub(2));
+    let docs = rows.get(form.at).and_then(doc).map_or_else(Vec::new, |doc| wrapped(&doc, room));
+    let n_docs = u16::try_from(docs.len().max(1)).unwrap_or(u16::MAX);
     // Blank, rows, blank, doc of the row.
-    let wanted = u16::try_from(rows.len() + 3).unwrap_or(u16::MAX);
-    let inside = panel(frame, area, 78, wanted);
-    let n_listed = usize::from(inside.height.saturating_sub(3)).max(1);
+    let wanted = u16::try_from(rows.len() + 2).unwrap_or(u16::MAX).saturating_add(n_docs);
+    let inside = panel(frame, area, WIDTH, wanted);
+    let n_listed = usize::from(inside.height.saturating_sub(2 + n_docs)).max(1);
     let first = form.at.saturating_sub(n_listed - 1);
     let labels = rows
         .iter()
         .filter_map(|row| if let Row::Param(param, _) = row { Some(label_of(param)) } else { None });
-    let label_width = labels.map(|label| label.chars().count()).max().unwrap_or(0).clamp(LABEL.0, LABEL.1);
+    let label_width = labels.map(width).max().unwrap_or(0).clamp(LABEL.0, LABEL.1);
     for (y, (i, row)) in (1..).zip(rows.iter().enumerate().skip(first).take(n_listed)) {
-        put(frame, inside, y, &row_line(form, row, i == form.at, label_width));
+        let mut line = row_line(form, row, i == form.at, label_width);
+        // A slider is seen whole or not at all.
+        if line.width() > usize::from(inside.width) && line.spans.len() > 2 {
+            line.spans.truncate(2);
+        }
+        put(frame, inside, y, &line);
     }
-    if let Some(doc) = rows.get(form.at).and_then(doc) {
-        put(frame, inside, inside.height.saturating_sub(1), &Line::styled(doc, style::DIM));
+    for (y, doc) in (inside.height.saturating_sub(n_docs)..).zip(docs) {
+        put(frame, inside, y, &Line::styled(doc, style::DIM));
     }
 }
 
@@ -47,10 +58,10 @@ fn label_of(param: &Param) -> &str {
     if param.label.is_empty() { &param.id } else { &param.label }
 }
 
-fn row_line(form: &Form, row: &Row<'_>, is_here: bool, width: usize) -> Line<'static> {
+fn row_line(form: &Form, row: &Row<'_>, is_here: bool, label_width: usize) -> Line<'static> {
     let sign = if is_here { "▸ " } else { "  " };
     let label_style = if is_here { style::ACCENT } else { Style::new() };
-    let label = |text: &str| Span::styled(format!("{sign}{text:<width$} "), label_style);
+    let label = |text: &str| Span::styled(format!("{sign}{} ", padded(text, label_width)), label_style);
     match row {
         Row::Plugin(plugin) => {
             let task = match form.task {

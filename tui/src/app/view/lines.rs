@@ -3,13 +3,14 @@
 use std::ops::{Range, RangeInclusive};
 
 use ratatui::layout::Rect;
+use ratatui::style::Style;
 use ratatui::text::{Line, Span};
 
 use honami_model::track::{Source, Status, TrackId};
 use honami_workbench::review::Parts;
 
 use super::picture::marks_nth;
-use super::{fill, put, style};
+use super::{fill, fitted, put, style, width};
 use crate::app::action::{Action, Context, TABLE};
 use crate::app::clock::rate_words;
 use crate::app::correcting::{Moving, Tool, nudge_px};
@@ -23,33 +24,42 @@ use crate::term::encode::Frame;
 /// Eight levels of a bar.
 const BARS: [&str; 8] = ["▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"];
 
-pub(super) fn title(state: &State, area: Rect, frame: &mut Frame) {
-    let mut facts = vec![match state.tracks.len() {
-        1 => "1 track".to_owned(),
-        n => format!("{n} tracks"),
-    }];
-    facts.extend(state.tracker.clone());
+/// What the title says, each with how soon it is left out where there is no room, the highest first.
+fn facts(state: &State) -> Vec<(u8, String)> {
+    let counted = |n: usize, one: &str| if n == 1 { format!("1 {one}") } else { format!("{n} {one}s") };
+    let mut facts = vec![(0, counted(state.tracks.len(), "track"))];
+    facts.extend(state.tracker.clone().map(|tracker| (5, tracker)));
     let progress = state.review.progress();
     if progress.total() > 0 {
-        facts.push(format!("{} of {} to review", progress.open, progress.total()));
+        facts.push((1, format!("{} of {} to review", progress.open, progress.total())));
     }
-    facts.extend(state.groups.as_ref().map(|groups| match groups.k {
-        1 => "1 group".to_owned(),
-        k => format!("{k} groups"),
-    }));
+    facts.extend(state.groups.as_ref().map(|groups| (4, counted(groups.k as usize, "group"))));
     let lens = Lens::of(state, Layout::of(state).picture);
     let nth = marks_nth(state, &lens, state.shown_frame());
-    facts.extend((state.marks_all && nth > 1).then(|| format!("1 in {nth} marked")));
-    facts.extend(state.read_only.is_some().then(|| "read only".to_owned()));
+    facts.extend((state.marks_all && nth > 1).then(|| (3, format!("1 in {nth} marked"))));
+    facts.extend(state.read_only.is_some().then(|| (0, "read only".to_owned())));
     if state.zoom > 0 {
         let times = lens.magnification();
         let times = if times < 0.95 { format!("{times:.2}x") } else { format!("{times:.0}x") };
-        facts.push(format!("{times}{}", if state.follow { " following" } else { "" }));
+        facts.push((2, format!("{times}{}", if state.follow { " following" } else { "" })));
+    }
+    facts
+}
+
+pub(super) fn title(state: &State, area: Rect, frame: &mut Frame) {
+    let name = fitted(&state.name, width(&state.name).min(usize::from(area.width) / 2));
+    let room = usize::from(area.width).saturating_sub(width(&name) + 2);
+    let mut facts = facts(state);
+    let line =
+        |facts: &[(u8, String)]| facts.iter().map(|(_, fact)| fact.as_str()).collect::<Vec<_>>().join(" · ");
+    while width(&line(&facts)) > room {
+        let last = (0..facts.len()).max_by_key(|&i| facts[i].0).unwrap_or(0);
+        facts.remove(last);
     }
     let left = Line::from(vec![
-        Span::styled(state.name.clone(), style::BOLD),
+        Span::styled(name, style::BOLD),
         Span::raw("  "),
-        Span::styled(facts.join(" · "), style::DIM),
+        Span::styled(line(&facts), style::DIM),
     ]);
     put(frame, area, 0, &left);
     let link = match (state.link.is_silent, state.link.delay_ms, state.link.rate_kbs) {
@@ -59,6 +69,18 @@ pub(super) fn title(state: &State, area: Rect, frame: &mut Frame) {
         (_, None, _) => String::new(),
     };
     put_right(frame, area, &Line::styled(link, style::DIM), left.width());
+}
+
+/// As many of the words, parted so, as fit whole.
+fn whole(words: Vec<String>, part: &str, room: usize) -> String {
+    let mut line = String::new();
+    for word in words {
+        let parted = if line.is_empty() { word } else { format!("{part}{word}") };
+        if width(&line) + width(&parted) <= room {
+            line.push_str(&parted);
+        }
+    }
+    line
 }
 
 /// A line at the right end of a row, where `taken` cells at the left leave room for it.
@@ -84,9 +106,11 @@ pub(super) fn track(state: &State, area: Rect, frame: &mut Frame) {
         Span::styled("● ", style::group_text(group)),
         Span::styled(format!("track {}", row.id), style::BOLD),
     ];
-    spans.extend(row.name.iter().map(|name| Span::raw(format!("  {name}"))));
-    let right = Line::styled(words(state, row), style::DIM);
+    let most = usize::from(area.width) / 3;
+    spans.extend(row.name.iter().map(|name| Span::raw(format!("  {}", fitted(name, width(name).min(most))))));
     let left = Line::from(spans);
+    let room = usize::from(area.width).saturating_sub(left.width() + 2);
+    let right = Line::styled(whole(words(state, row), " · ", room), style::DIM);
     let free = usize::from(area.width).saturating_sub(left.width() + right.width() + 5);
     put(frame, area, 0, &left);
     put_right(frame, area, &right, left.width());
@@ -97,7 +121,7 @@ pub(super) fn track(state: &State, area: Rect, frame: &mut Frame) {
 }
 
 /// What is known of the sample here; and of the track's doubtful segment, where it has one, instead of its numbers.
-fn words(state: &State, row: &TrackRow) -> String {
+fn words(state: &State, row: &TrackRow) -> Vec<String> {
     let sample = row.span.get(state.frame);
     let mut words = vec![match sample {
         None => "not here".to_owned(),
@@ -125,7 +149,7 @@ fn words(state: &State, row: &TrackRow) -> String {
             words.extend(quality.ncc.map(ncc_words));
         }
     }
-    words.join(" · ")
+    words
 }
 
 fn fb_words(fb_px: f32) -> String {
@@ -245,10 +269,27 @@ pub(super) fn hints(state: &State, area: Rect, frame: &mut Frame) {
         let count = state.count.map_or_else(String::new, |n| n.to_string());
         left.push_str(&format!("  {}{}", count, shown(&state.pending)));
     }
-    let left = Line::raw(left);
+    let left = Line::raw(narrowed(left, state.mode.context(), area.width));
     put(frame, area, 0, &left);
     let room = usize::from(area.width).saturating_sub(left.width() + 2);
     put_right(frame, area, &hint_line(state, room), left.width());
+}
+
+/// As many of its parts as have room, where something is open beside the hint that keeps it; of what is being typed
+/// its end.
+fn narrowed(left: String, context: Context, columns: u16) -> String {
+    let kept =
+        if matches!(context, Context::Place | Context::Move | Context::Slide) { "  ⏎ keep" } else { "" };
+    let room = usize::from(columns).saturating_sub(width(kept));
+    if width(&left) <= room {
+        return left;
+    }
+    if context.is_text() {
+        let ends = left.char_indices().map(|(at, _)| &left[at..]);
+        let end = ends.skip(1).find(|end| width(end) < room).unwrap_or_default();
+        return format!("…{end}");
+    }
+    whole(left.split("  ").map(str::to_owned).collect(), "  ", room)
 }
 
 /// How the clip plays, and what it loses: `  ▶ ½x  loop ±8  12 of 25 pictures/s`.
@@ -335,14 +376,13 @@ fn hint_line(state: &State, room: usize) -> Line<'static> {
         "end" | "lost" | "occluded" | "take away" | "average" => 1,
         _ => 2,
     });
-    let width =
-        |(keys, word): &(String, String)| Line::raw(keys.as_str()).width() + 1 + word.chars().count() + 2;
+    let cells = |(keys, word): &(String, String)| width(keys) + 1 + width(word) + 2;
     let help = hints.iter().position(|(_, word)| word == "help").map(|at| hints.remove(at));
-    let reserved = help.as_ref().map_or(0, width);
+    let reserved = help.as_ref().map_or(0, cells);
     let mut used = reserved;
     let mut shown: Vec<(String, String)> = Vec::new();
     for hint in hints {
-        used += width(&hint);
+        used += cells(&hint);
         if used > room + 2 {
             break;
         }
@@ -396,17 +436,26 @@ pub(super) fn notices(state: &State, area: Rect, frame: &mut Frame) {
     }
 }
 
-/// A text in rows, broken between words.
-pub(super) fn wrapped(text: &str, width: usize) -> Vec<String> {
+/// A text in rows, broken between words; within one that is longer than a row.
+pub(super) fn wrapped(text: &str, room: usize) -> Vec<String> {
     let mut rows = vec![String::new()];
-    for word in text.split_whitespace() {
-        let used = rows.last().map_or(0, |row| Line::raw(row.as_str()).width());
-        if used > 0 && used + 1 + Line::raw(word).width() > width {
+    let mut add = |part: &str, gap: &str| {
+        let used = rows.last().map_or(0, |row| width(row));
+        if used > 0 && used + width(gap) + width(part) > room {
             rows.push(String::new());
         }
         if let Some(row) = rows.last_mut() {
-            row.push_str(if row.is_empty() { "" } else { " " });
-            row.push_str(word);
+            row.push_str(if row.is_empty() { "" } else { gap });
+            row.push_str(part);
+        }
+    };
+    for word in text.split_whitespace() {
+        if width(word) <= room {
+            add(word, " ");
+            continue;
+        }
+        for (i, letter) in Span::raw(word).styled_graphemes(Style::new()).enumerate() {
+            add(letter.symbol, if i == 0 { " " } else { "" });
         }
     }
     rows

@@ -3,16 +3,20 @@
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 
-use super::{fill, panel, put, style};
+use super::{fill, padded, panel, put, style};
 use crate::app::keymap::shown;
 use crate::app::menu::Menu;
 use crate::app::state::State;
 use crate::term::encode::Frame;
 
+/// Cells of the panel, at most: what every action does can be read in full.
+const WIDTH: u16 = 140;
 /// Cells of the names.
 const LABEL: usize = 20;
 /// Cells of the keys.
 const KEYS: usize = 14;
+/// Cells of what a row does, least: fewer say nothing.
+const DETAIL: usize = 16;
 
 /// Rows of the panel: the head, and the list.
 fn n_rows(menu: &Menu) -> u16 {
@@ -28,7 +32,7 @@ pub(super) fn row_at(menu: &Menu, area: Rect, row: u16) -> Option<usize> {
 }
 
 pub(super) fn draw(menu: &Menu, area: Rect, frame: &mut Frame) {
-    let inside = panel(frame, area, 100, n_rows(menu));
+    let inside = panel(frame, area, WIDTH, n_rows(menu));
     // What the chosen row does, in full; before anything is chosen by typing, what the list is.
     let about = match menu.chosen().filter(|_| !menu.typed.is_empty() || menu.at > 0) {
         Some(row) => row.detail.clone(),
@@ -42,11 +46,13 @@ pub(super) fn draw(menu: &Menu, area: Rect, frame: &mut Frame) {
     put(frame, inside, 0, &head);
     let n_listed = usize::from(inside.height.saturating_sub(1)).max(1);
     let first = menu.at.saturating_sub(n_listed - 1);
+    let keys_width = if menu.rows().any(|row| !row.keys.is_empty()) { KEYS } else { 0 };
+    let is_detailed = usize::from(inside.width) >= LABEL + keys_width + DETAIL;
     for (y, (i, row)) in (1..inside.height).zip(menu.rows().enumerate().skip(first).take(n_listed)) {
         let line = Line::from(vec![
-            Span::raw(format!("{:<LABEL$} ", row.label)),
-            Span::styled(format!("{:<KEYS$} ", row.keys), style::ACCENT),
-            Span::styled(row.detail.clone(), style::DIM),
+            Span::raw(format!("{} ", padded(&row.label, LABEL))),
+            Span::styled(padded(&row.keys, keys_width + 1), style::ACCENT),
+            Span::styled(if is_detailed { row.detail.as_str() } else { "" }, style::DIM),
         ]);
         put(frame, inside, y, &line);
         if i == menu.at {

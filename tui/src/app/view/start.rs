@@ -3,7 +3,7 @@
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 
-use super::{lines, menu, put, style};
+use super::{lines, menu, padded, put, style};
 use crate::app::start::Start;
 use crate::term::encode::Frame;
 
@@ -90,7 +90,7 @@ fn entries(start: &Start, list: Rect, frame: &mut Frame) {
     let rows = recent.chain(others).enumerate().skip(first(start, list)).take(usize::from(list.height));
     for (y, (at, (name, details))) in (0..).zip(rows) {
         let style = if at < start.recent.len() { style::BOLD } else { style::ACCENT };
-        let mut line = Line::from(Span::styled(format!("{name:<name_width$}"), style));
+        let mut line = Line::from(Span::styled(padded(&name, name_width), style));
         // What does not fit whole is left out.
         for detail in details {
             if line.width() + 1 + Line::raw(detail.trim_end()).width() > room {

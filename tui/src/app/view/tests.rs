@@ -12,6 +12,8 @@ use honami_model::track::TrackId;
 use honami_workbench::overlay::VelocityField;
 use ratatui::style::{Color, Modifier};
 
+mod sizes;
+
 /// The screen as text, then its styles as runs: `row: columns style`. Cells of the picture in half blocks are `▒`
 /// without a style: their colours are tested where they are made.
 fn dump(frame: &Frame) -> String {
@@ -22,8 +24,11 @@ fn dump(frame: &Frame) -> String {
         let mut runs: Vec<(u16, u16, String)> = Vec::new();
         for x in 0..area.width {
             let cell = &frame.cells[(x, y)];
+            // The other half of a wide character.
+            let is_covered = x > 0 && width(frame.cells[(x - 1, y)].symbol()) > 1;
             let softness = frame.softness[frame.cells.index_of(x, y)];
             text.push_str(match softness {
+                _ if is_covered => "",
                 _ if is_fine => cell.symbol(),
                 0 => cell.symbol(),
                 1 => "▒",
@@ -298,6 +303,9 @@ fn no_size_panics() {
                 let mut state = fixture::state();
                 state.size = (columns, rows);
                 fixture::press(&mut state, keys);
+                if keys == "P p" {
+                    plot(&mut state);
+                }
                 let frame = draw(&state, None);
                 assert_eq!(frame.softness.len(), usize::from(columns) * usize::from(rows));
                 let area = Layout::of(&state).picture;

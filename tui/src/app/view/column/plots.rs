@@ -169,6 +169,9 @@ fn dots(
     style_of: impl Fn(u16) -> (Style, Option<char>),
     frame: &mut Frame,
 ) {
+    if area.is_empty() {
+        return;
+    }
     let rows = 4 * usize::from(area.height);
     let row_of = |value: f64| {
         let part = if most > least { (value - least) / (most - least) } else { 0.5 };

@@ -5,6 +5,7 @@ use ratatui::text::{Line, Span};
 use super::{List, Pick, style};
 use crate::app::state::State;
 use crate::app::tracks::TrackRow;
+use crate::app::view::fitted;
 use crate::app::view::lines::sparkline;
 
 /// Cells of a track's doubt over the clip.
@@ -42,7 +43,7 @@ impl List for Tracks<'_> {
     fn row(&self, i: usize) -> Line<'static> {
         let row = self.listed[i];
         let group = self.state.groups.as_ref().and_then(|g| g.of(row.id));
-        let name: String = row.name.as_deref().unwrap_or_default().chars().take(8).collect();
+        let name = fitted(row.name.as_deref().unwrap_or_default(), 8);
         let worst = self.state.review.queue.of_track(row.id).next();
         let worst = worst.map_or_else(String::new, |item| item.worst.to_string());
         Line::from(vec![
@@ -50,7 +51,7 @@ impl List for Tracks<'_> {
                 if self.state.picked.contains(&row.id) { "✓" } else { "●" },
                 style::group_text(group),
             ),
-            Span::raw(format!("{:>5} {name:<8} ", row.id.to_string())),
+            Span::raw(format!("{:>5} {name} ", row.id.to_string())),
             Span::styled(sparkline(self.state, row.id, BARS), style::DIM),
             Span::styled(format!(" {worst:>6}"), style::DIM),
         ])
