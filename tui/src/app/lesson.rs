@@ -13,7 +13,7 @@ struct Step {
     is_done: fn(&State, &Lesson) -> bool,
 }
 
-const STEPS: [Step; 12] = [
+const STEPS: [Step; 16] = [
     Step {
         text: "This shrub has been tracked for you. Press {play} to see it move.",
         is_done: |state, _| state.play.is_some(),
@@ -31,17 +31,34 @@ const STEPS: [Step; 12] = [
         is_done: |state, lesson| state.selected != lesson.selected,
     },
     Step {
-        text: "{worst-frame} goes to where this track is trusted least.",
-        is_done: |_, lesson| lesson.was_done(Action::WorstFrame),
+        text: "{next-item} opens the most doubtful stretch of all tracks, at its worst frame.",
+        is_done: |state, lesson| lesson.was_done(Action::NextItem) && state.opened().is_some(),
+    },
+    Step {
+        text: "Is it right? {accept} accepts it, {reject} rejects its track, {later} puts it off: then the next is open.",
+        is_done: |state, lesson| lesson.has_edited(state, &[Action::Accept, Action::Reject, Action::Later]),
     },
     Step {
         text: "{move-sample} takes hold of the sample: {move:left} {move:down} {move:up} {move:right} move it, \
                {move:accept} keeps it there.",
-        is_done: |state, lesson| lesson.was_done(Action::MoveSample) && state.history.head != lesson.head,
+        is_done: |state, lesson| lesson.has_edited(state, &[Action::MoveSample]),
     },
     Step {
-        text: "The sample is a key-frame now. {undo} takes that back; nothing is ever lost.",
-        is_done: |state, lesson| lesson.was_done(Action::Undo) && state.history.head != lesson.head,
+        text: "The sample is a key-frame now. {retrack-both} tracks again from it, to both sides.",
+        is_done: |state, lesson| lesson.has_edited(state, &[Action::RetrackBoth]) && state.job.is_none(),
+    },
+    Step {
+        text: "Where a leaf is gone, {mark-lost} says that it is lost, from here to the next key-frame.",
+        is_done: |state, lesson| lesson.has_edited(state, &[Action::MarkLost]),
+    },
+    Step {
+        text: "{sketch} draws a track: {sketch:step} puts it down and steps on, {sketch:play-slow} plays under mouse \
+               or arrows; {sketch:accept} keeps.",
+        is_done: |state, lesson| lesson.has_edited(state, &[Action::Sketch]),
+    },
+    Step {
+        text: "{undo} takes the last edit back, and the one before it; nothing is ever lost.",
+        is_done: |state, lesson| lesson.has_edited(state, &[Action::Undo]),
     },
     Step {
         text: "{motion} shows motion: hue is direction, strength is speed.",
@@ -70,19 +87,17 @@ const STEPS: [Step; 12] = [
 pub struct Lesson {
     /// The step; past the last, the tutorial is closed.
     at: usize,
-    /// Actions that were called in this step.
-    done: Vec<Action>,
+    /// Actions that were called in this step, and where the document stood then.
+    done: Vec<(Action, EntryId)>,
     /// The selected track when the step began.
     selected: Option<TrackId>,
-    /// Where the document stood when the step began.
-    head: EntryId,
 }
 
 impl Lesson {
     /// Begins it.
     #[must_use]
     pub fn new(state: &State) -> Self {
-        Self { selected: state.selected, head: state.history.head, ..Self::default() }
+        Self { selected: state.selected, ..Self::default() }
     }
 
     /// The step, counted from 1, and of how many; `None` once it is closed.
@@ -99,8 +114,8 @@ impl Lesson {
     }
 
     /// Notes that an action was called.
-    pub(super) fn note(&mut self, action: Action) {
-        self.done.push(action);
+    pub(super) fn note(&mut self, action: Action, head: EntryId) {
+        self.done.push((action, head));
     }
 
     /// Closes it.
@@ -109,7 +124,13 @@ impl Lesson {
     }
 
     fn was_done(&self, action: Action) -> bool {
-        self.done.contains(&action)
+        self.done.iter().any(|(done, _)| *done == action)
+    }
+
+    /// Whether one of these actions was called, and the document is another one since.
+    fn has_edited(&self, state: &State, actions: &[Action]) -> bool {
+        let mut done = self.done.iter();
+        done.any(|(action, head)| actions.contains(action) && state.history.head != *head)
     }
 }
 

@@ -19,7 +19,7 @@ fn begun() -> State {
 fn carry_out(state: &mut State, effect: &Effect) {
     let (n, head) = (state.history.len() as u32, state.history.head);
     let fact = match effect {
-        Effect::Commit(..) => {
+        Effect::Commit(..) | Effect::Judge(_) | Effect::Correct(..) | Effect::Retrack { .. } => {
             let entry = Entry {
                 id: EntryId(n),
                 parent: Some(head),
@@ -50,13 +50,17 @@ fn at(state: &State) -> usize {
 }
 
 /// For every step keys that are asked for, and before them some that do not do it.
-const WALK: [(&str, &str); 11] = [
+const WALK: [(&str, &str); 15] = [
     (".", "space"),
     ("z", "space"),
     ("j", "3 ."),
     ("w", "j"),
-    ("j", "w"),
+    ("w", "n"),
+    ("w", "Enter"),
     ("m l Esc", "m l Enter"),
+    ("j", "t t"),
+    ("m l Enter", "x"),
+    ("s l . Esc", "s . Enter"),
     ("j", "u"),
     ("v t", "v v"),
     ("c Esc", "c Enter"),
@@ -73,7 +77,7 @@ fn every_step_is_done_by_the_keys_it_asks_for_and_by_no_others() {
         let words = state.lesson.as_ref().unwrap().words(&state.keys);
         let said =
             |keys: &str| words.iter().any(|(word, is_key)| *is_key && word.trim_end_matches(',') == keys);
-        let chords = asked.replace("3 ", "").replace("v v", "v_v");
+        let chords = asked.replace("3 ", "").replace("v v", "v_v").replace("t t", "t_t");
         for keys in chords.split(' ').map(|keys| keys.replace('_', " ").replace("Enter", "⏎")) {
             assert!(said(&keys), "{keys} is not said in {words:?}");
         }

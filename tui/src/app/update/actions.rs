@@ -22,7 +22,8 @@ use crate::app::panel::Panel;
 
 /// Does an action. The count, if one was typed, is still in the state.
 pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {
-    state.lesson.iter_mut().for_each(|lesson| lesson.note(action));
+    let head = state.history.head;
+    state.lesson.iter_mut().for_each(|lesson| lesson.note(action, head));
     match action {
         Action::Left => return steer(state, -1.0, 0.0, 1.0),
         Action::Right => return steer(state, 1.0, 0.0, 1.0),

@@ -152,8 +152,8 @@ fn screens() {
     check("quadrants_80x24", small, "v q", |_| {});
     check("octants_120x40", large, "v q v q v q", |_| {});
     let lesson = |state: &mut State| state.lesson = Some(crate::app::lesson::Lesson::new(state));
-    check("lesson_80x24", small, "space space . j w", lesson);
-    check("lesson_40x12", (40, 12), "space space . j w", lesson);
+    check("lesson_80x24", small, "space space . j n", lesson);
+    check("lesson_40x12", (40, 12), "space space . j n", lesson);
     check("view_80x24", small, "v", |_| {});
     check("prefix_40x12", (40, 12), "g", |_| {});
     check("mono_80x24", small, "m l", |state| state.mono = true);
