@@ -23,6 +23,7 @@ use std::sync::Arc;
 use honami_model::track::{Quality, Sample, Source, Span, Status};
 
 use crate::origin::{Origin, Raster};
+use crate::watch::{Watch, Watched};
 
 pub use error::{Flaw, ForeignError};
 pub use format::Format;
@@ -142,14 +143,20 @@ pub fn recognise(path: &Path) -> Result<Format, ForeignError> {
     Format::of_content(&head).ok_or_else(|| ForeignError::Unknown { path: path.to_owned() })
 }
 
-/// Reads a file.
+/// Reads a file, watched.
 ///
 /// # Errors
-/// [`ForeignError`] says where the file is not what its format wants.
-pub fn read(path: &Path, format: Format, options: &ReadOptions) -> Result<ForeignTracks, ForeignError> {
+/// [`ForeignError`] says where the file is not what its format wants; any of them when the watch has stopped it.
+pub fn read(
+    path: &Path,
+    format: Format,
+    options: &ReadOptions,
+    watch: &Watch,
+) -> Result<ForeignTracks, ForeignError> {
     let file = File::open(path).map_err(|source| ForeignError::file(path, source))?;
+    let file = Watched { file, watch: watch.clone() };
     let tracks = match format {
-        Format::Csv => return own::read_csv(path),
+        Format::Csv => return own::read_csv(path, file),
         Format::Parquet => crate::parquet::parse(file),
         _ => text(BufReader::new(file), format, options),
     };

@@ -27,6 +27,7 @@ pub mod spans;
 pub mod table;
 mod track_table;
 pub mod verdicts;
+mod watch;
 
 pub use atomic::AtomicFile;
 pub use parquet::ParquetWriter;
@@ -35,3 +36,4 @@ pub use spans::spans;
 pub use table::{Reader, Row, TableError, Writer, read};
 pub use track_table::TrackTable;
 pub use verdicts::{EffortRow, VerdictRow};
+pub use watch::Watch;

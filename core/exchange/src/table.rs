@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use crate::atomic::AtomicFile;
+use crate::watch::{Watch, Watched};
 
 /// Why a table could not be read or written.
 #[derive(Debug, thiserror::Error)]
@@ -159,6 +160,11 @@ pub(crate) fn finite<T: FromStr + Copy + Into<f64>>(text: &str) -> Option<T> {
 /// [`TableError`] when the file cannot be opened or a needed column is missing.
 pub fn read<R: Row>(path: &Path) -> Result<Reader<R>, TableError> {
     let file = File::open(path).map_err(|source| TableError::File { path: path.into(), source })?;
+    read_from(path, Watched { file, watch: Watch::default() })
+}
+
+/// [`read`] of a file that is open and watched.
+pub(crate) fn read_from<R: Row>(path: &Path, file: Watched) -> Result<Reader<R>, TableError> {
     let mut csv = csv::ReaderBuilder::new().trim(csv::Trim::Headers).from_reader(file);
     let header = csv.headers().map_err(|source| csv_error(path, source))?.clone();
     let place_of = |name: &str| header.iter().position(|title| title.trim_start_matches('\u{feff}') == name);
@@ -181,7 +187,7 @@ pub fn read<R: Row>(path: &Path) -> Result<Reader<R>, TableError> {
 #[derive(Debug)]
 pub struct Reader<R> {
     path: PathBuf,
-    csv: csv::Reader<File>,
+    csv: csv::Reader<Watched>,
     columns: Vec<(&'static str, Option<usize>)>,
     record: csv::StringRecord,
     ended: bool,

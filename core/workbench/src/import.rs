@@ -3,7 +3,10 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::PathBuf;
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::time::Duration;
 
+use honami_exchange::Watch;
 use honami_exchange::foreign::{self, ForeignTrack, ForeignTracks, Format, ReadOptions};
 use honami_exchange::origin::{Origin, resized};
 use honami_model::document::{Key, RunId};
@@ -13,8 +16,12 @@ use honami_model::track::{Sample, Source, Span, Status, TrackId, TrackSet};
 use honami_store::{Project, RunHead};
 
 use crate::error::WorkbenchError;
+use crate::progress::{Flow, Progress};
 use crate::stamp;
 use crate::track::MAX_NUMBER;
+
+/// How often it is told how far a file is read.
+const TICK: Duration = Duration::from_millis(100);
 
 /// Which file to read, and how.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,16 +70,20 @@ pub struct Imported {
 /// A file's numbers are kept where they are free. Frames beyond the clip are left out.
 ///
 /// # Errors
-/// What is wrong with the file, [`WorkbenchError::PictureSize`] when it was made on other pictures,
+/// What is wrong with the file, [`WorkbenchError::Stopped`], [`WorkbenchError::PictureSize`] when it was made on other pictures,
 /// [`WorkbenchError::NothingToImport`], and what the project met.
-pub fn tracks(project: &mut Project, request: &ImportRequest) -> Result<Imported, WorkbenchError> {
+pub fn tracks(
+    project: &mut Project,
+    request: &ImportRequest,
+    progress: &dyn Progress,
+) -> Result<Imported, WorkbenchError> {
     let format = request.format.map_or_else(|| foreign::recognise(&request.file), Ok)?;
     let clip = &project.clip().clip;
     let (size, n_frames) = ([clip.width, clip.height], clip.n_frames());
     let theirs = request.size.unwrap_or(size);
     let ImportRequest { origin, camera, pixel_size, .. } = *request;
     let options = ReadOptions { size: theirs, origin, camera, pixel_size };
-    let ForeignTracks { tracks, size: said, dropped } = foreign::read(&request.file, format, &options)?;
+    let ForeignTracks { tracks, size: said, dropped } = read(request, format, &options, progress)?;
     if let Some(came) = said.filter(|&said| request.size.is_none() && said != size) {
         return Err(WorkbenchError::PictureSize { path: request.file.clone(), came, wanted: size });
     }
@@ -117,6 +128,39 @@ pub fn tracks(project: &mut Project, request: &ImportRequest) -> Result<Imported
         n_outside: n_outside as u64,
         dropped,
     })
+}
+
+/// Reads the file and tells how far it is, until it is told to stop.
+fn read(
+    request: &ImportRequest,
+    format: Format,
+    options: &ReadOptions,
+    progress: &dyn Progress,
+) -> Result<ForeignTracks, WorkbenchError> {
+    let file = &request.file;
+    let io = |what| move |source| WorkbenchError::Io { what, source, path: file.clone() };
+    let n_kb = std::fs::metadata(file).map_err(io("reading"))?.len().div_ceil(1000);
+    let what = format!("kB of {}", file.file_name().unwrap_or_default().to_string_lossy());
+    let watch = Watch::default();
+    let tell = || {
+        if progress.report((watch.n_bytes() / 1000).min(n_kb), n_kb, &what) == Flow::Stop {
+            watch.stop();
+        }
+    };
+    let (reading, ended) = mpsc::sync_channel::<()>(0);
+    let tracks = std::thread::scope(|scope| {
+        let teller = std::thread::Builder::new().name("progress".to_owned());
+        let telling = move || {
+            while ended.recv_timeout(TICK) == Err(RecvTimeoutError::Timeout) {
+                tell()
+            }
+        };
+        teller.spawn_scoped(scope, telling).map_err(io("starting a thread for"))?;
+        let tracks = foreign::read(file, format, options, &watch);
+        drop(reading);
+        Ok::<_, WorkbenchError>(tracks)
+    })?;
+    if watch.is_stopped() { Err(WorkbenchError::Stopped) } else { Ok(tracks?) }
 }
 
 /// A number for every track: its own, if it is free and nobody's before it, else a new one.

@@ -13,7 +13,7 @@ const N_MAX: usize = 2000;
 
 /// Where a row of the list, or what was typed, leads.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Way {
+pub enum Lead {
     /// Into a folder.
     Folder(PathBuf),
     /// To a project or a clip.
@@ -22,7 +22,7 @@ pub enum Way {
     Typed(PathBuf),
 }
 
-/// What a way has led to.
+/// What a lead has come to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Found {
     /// A folder, to choose from.
@@ -37,18 +37,18 @@ pub struct Listing {
     /// The folder.
     pub folder: PathBuf,
     /// Names as shown, what each is, and where it leads.
-    pub rows: Vec<(String, String, Way)>,
+    pub rows: Vec<(String, String, Lead)>,
 }
 
-/// Follows a way.
+/// Follows a lead.
 ///
 /// # Errors
 /// A line that says why it leads nowhere.
-pub fn follow(way: &Way) -> Result<Found, String> {
-    match way {
-        Way::Folder(folder) => list(folder).map(Found::Folder),
-        Way::File(path) => Ok(Found::File(path.clone())),
-        Way::Typed(path) => {
+pub fn follow(lead: &Lead) -> Result<Found, String> {
+    match lead {
+        Lead::Folder(folder) => list(folder).map(Found::Folder),
+        Lead::File(path) => Ok(Found::File(path.clone())),
+        Lead::Typed(path) => {
             let path = match (path.strip_prefix("~"), std::env::var_os("HOME")) {
                 (Ok(rest), Some(home)) => PathBuf::from(home).join(rest),
                 _ => path.clone(),
@@ -78,11 +78,11 @@ pub fn list(folder: &Path) -> Result<Listing, String> {
         }
         let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
         if path.is_dir() {
-            rows.push((2, format!("{name}/"), "folder".to_owned(), Way::Folder(path)));
+            rows.push((2, format!("{name}/"), "folder".to_owned(), Lead::Folder(path)));
         } else if ending == "honami" {
-            rows.push((0, name, "project".to_owned(), Way::File(path)));
+            rows.push((0, name, "project".to_owned(), Lead::File(path)));
         } else if CLIPS.contains(&ending.as_str()) {
-            rows.push((1, name, "clip".to_owned(), Way::File(path)));
+            rows.push((1, name, "clip".to_owned(), Lead::File(path)));
         } else if IMAGES.contains(&ending.as_str()) {
             n_images += 1;
         }
@@ -92,13 +92,13 @@ pub fn list(folder: &Path) -> Result<Listing, String> {
             1,
             "./".to_owned(),
             format!("its {n_images} pictures as a clip"),
-            Way::File(folder.clone()),
+            Lead::File(folder.clone()),
         ));
     }
     rows.sort_by(|a, b| (a.0, &a.1).cmp(&(b.0, &b.1)));
-    let mut rows: Vec<_> = rows.into_iter().map(|(_, name, what, way)| (name, what, way)).collect();
+    let mut rows: Vec<_> = rows.into_iter().map(|(_, name, what, lead)| (name, what, lead)).collect();
     if let Some(above) = folder.parent() {
-        rows.push(("../".to_owned(), "the folder above".to_owned(), Way::Folder(above.to_owned())));
+        rows.push(("../".to_owned(), "the folder above".to_owned(), Lead::Folder(above.to_owned())));
     }
     Ok(Listing { folder, rows })
 }

@@ -6,7 +6,7 @@ use honami_model::clip::FrameTimes;
 use honami_model::track::TrackId;
 
 use super::action::{Action, TABLE};
-use super::files::{Listing, Way};
+use super::files::{Lead, Listing};
 use super::form::Plugin;
 use super::fuzzy;
 use super::keymap::KeyMap;
@@ -29,7 +29,7 @@ pub enum Choice {
     /// Opens the form of the plugin with this place in the list.
     Plugin(usize),
     /// Opens a file, or lists another folder.
-    File(Way),
+    File(Lead),
 }
 
 /// A row of a menu.
@@ -145,11 +145,11 @@ impl Menu {
     /// The projects and clips of a folder.
     #[must_use]
     pub fn of_files(listing: Listing) -> Self {
-        let rows = listing.rows.into_iter().map(|(label, detail, way)| Row {
+        let rows = listing.rows.into_iter().map(|(label, detail, lead)| Row {
             label,
             detail,
             keys: String::new(),
-            choice: Choice::File(way),
+            choice: Choice::File(lead),
         });
         let menu = Self::new("a project or a clip, or its path", rows.collect(), Mode::Review);
         Self { folder: Some(listing.folder), ..menu }
@@ -165,7 +165,7 @@ impl Menu {
             return row;
         }
         let path = if typed.starts_with('~') { Path::new(typed).to_owned() } else { folder.join(typed) };
-        Some(Choice::File(Way::Typed(path)))
+        Some(Choice::File(Lead::Typed(path)))
     }
 
     /// Whether what is done in it stays out of the log: in the palette and the help, of which there is what was chosen,

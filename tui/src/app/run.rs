@@ -259,7 +259,7 @@ impl App {
                     self.next = Some(Next::Lesson);
                     return Ok(true);
                 }
-                Effect::Follow(way) => match files::follow(&way) {
+                Effect::Follow(lead) => match files::follow(&lead) {
                     Ok(Found::File(path)) => {
                         self.next = Some(Next::File(path));
                         return Ok(true);

@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::action::{Action, Context};
 use super::config::Config;
 use super::door::{Gives, Offers};
-use super::files::{self, Way};
+use super::files::{self, Lead};
 use super::keymap::{Found, KeyMap};
 use super::menu::{Choice, Menu};
 use super::opening::Plan;
@@ -59,8 +59,8 @@ pub struct Start {
 pub enum Wish {
     /// Open this project.
     Open(PathBuf),
-    /// Follow a way among files.
-    Follow(Way),
+    /// Follow a lead among files.
+    Follow(Lead),
     /// Give the offer with this place in the list.
     Offer(usize),
     /// Paint the screen anew.
@@ -197,7 +197,7 @@ impl Start {
     fn accept(&mut self) -> Option<Wish> {
         if let Some(menu) = &self.menu {
             return match menu.choice()? {
-                Choice::File(way) => Some(Wish::Follow(way)),
+                Choice::File(lead) => Some(Wish::Follow(lead)),
                 _ => None,
             };
         }
@@ -216,7 +216,7 @@ impl Start {
 
     fn browse(&mut self, is_new: bool) -> Wish {
         self.is_new = is_new;
-        Wish::Follow(Way::Folder(PathBuf::from(".")))
+        Wish::Follow(Lead::Folder(PathBuf::from(".")))
     }
 
     /// Shows it until something is chosen, or somebody leaves.
@@ -278,7 +278,7 @@ impl Start {
     fn grant(&mut self, wish: Wish, offers: &Offers) -> Option<Plan> {
         match wish {
             Wish::Open(path) => return Some(Plan::of(&path, &offers.options)),
-            Wish::Follow(way) => match files::follow(&way) {
+            Wish::Follow(lead) => match files::follow(&lead) {
                 Ok(files::Found::File(path)) => return Some(self.plan(&path, offers)),
                 Ok(files::Found::Folder(listing)) => self.menu = Some(Menu::of_files(listing)),
                 Err(line) => self.complaint = Some(line),

@@ -27,7 +27,7 @@ use honami_workbench::retrack;
 use honami_workbench::track::TrackRequest;
 
 use super::action::{Action, Context};
-use super::files::Way;
+use super::files::Lead;
 use super::keymap::Found;
 use super::lesson;
 use super::menu::{Choice, Menu};
@@ -104,8 +104,8 @@ pub enum Effect {
     Cluster(ClusterRequest),
     /// Stop the running job; it keeps what it has.
     StopJob,
-    /// Follow a way among files: to another project or clip, or to what there is in a folder.
-    Follow(Way),
+    /// Follow a lead among files: to another project or clip, or to what there is in a folder.
+    Follow(Lead),
     /// Leave for the tutorial.
     Teach,
     /// Save this log beside the project.
@@ -272,7 +272,7 @@ fn choose(state: &mut State) -> Vec<Effect> {
             actions::open_plugin(state, at);
             Vec::new()
         }
-        Some(Choice::File(way)) => vec![Effect::Follow(way)],
+        Some(Choice::File(lead)) => vec![Effect::Follow(lead)],
         None => Vec::new(),
     }
 }

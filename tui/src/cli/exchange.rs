@@ -11,6 +11,7 @@ use honami_workbench::store::{Access, Project};
 use serde_json::json;
 
 use super::args::{Export, ExportWhat, Import, Size};
+use super::report::Bar;
 use super::{Answer, look, there, want};
 
 /// Reads somebody else's tracks into a project.
@@ -29,7 +30,7 @@ pub(super) fn import(args: &Import) -> anyhow::Result<Answer> {
         pixel_size: args.pixel_size,
         keys: !args.no_keys,
     };
-    let done = import::tracks(&mut project, &request)?;
+    let done = import::tracks(&mut project, &request, &Bar::new())?;
     let (file, format) = (args.file.display(), done.format.word());
     let mut text = format!("{file} ({format}): {} tracks, {} samples", done.n_tracks, done.n_samples);
     if done.n_keys > 0 {

@@ -6,12 +6,13 @@ use std::path::Path;
 use super::draft::{self, Draft, Room};
 use super::{Flaw, ForeignError, ForeignTracks};
 use crate::rows::TrackRow;
+use crate::watch::Watched;
 
 /// Reads a table of tracks as CSV.
-pub(crate) fn read_csv(path: &Path) -> Result<ForeignTracks, ForeignError> {
+pub(crate) fn read_csv(path: &Path, file: Watched) -> Result<ForeignTracks, ForeignError> {
     let mut table = Table::default();
     let flawed = |flaw| ForeignError::Flaw { path: path.to_owned(), flaw };
-    for row in crate::table::read::<TrackRow>(path)? {
+    for row in crate::table::read_from::<TrackRow>(path, file)? {
         table.put(&row?).map_err(flawed)?;
     }
     table.done().map_err(flawed)

@@ -54,7 +54,7 @@ fn read_back(format: Format, bytes: &[u8]) -> ForeignTracks {
     if !bytes.is_empty() {
         assert_eq!(recognise(&path).unwrap(), format, "{}", String::from_utf8_lossy(bytes));
     }
-    read(&path, format, &ReadOptions::of(SIZE)).unwrap()
+    read(&path, format, &ReadOptions::of(SIZE), &Watch::default()).unwrap()
 }
 
 fn sample() -> impl Strategy<Value = Sample> {

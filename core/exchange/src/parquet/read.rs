@@ -1,5 +1,7 @@
 //! Reading: a batch of every column at a time, whatever the size of a group.
 
+use std::sync::Once;
+
 use parquet::basic::{ConvertedType, LogicalType, Type};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::DataType;
@@ -33,8 +35,30 @@ struct Column {
 /// Reads a table of tracks.
 pub(crate) fn parse<R: ChunkReader + 'static>(reader: R) -> Result<ForeignTracks, Flaw> {
     // The library panics on some damaged files: nothing of it outlives the call, and a file is not to end a program.
-    let read = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| groups(reader)));
+    let read = quietly(|| std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| groups(reader))));
     read.unwrap_or_else(|_| Err(Flaw::wrong("file", "a Parquet table of tracks", "a damaged one")))
+}
+
+thread_local! {
+    /// Whether a panic of this thread is caught and told in other words.
+    static IS_CAUGHT: std::cell::Cell<bool> = const { std::cell::Cell::new(false) };
+}
+
+/// Works without a report of panics: `work` catches them.
+fn quietly<T>(work: impl FnOnce() -> T) -> T {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        let report = std::panic::take_hook();
+        std::panic::set_hook(Box::new(move |panic| {
+            if !IS_CAUGHT.get() {
+                report(panic);
+            }
+        }));
+    });
+    IS_CAUGHT.set(true);
+    let done = work();
+    IS_CAUGHT.set(false);
+    done
 }
 
 fn groups<R: ChunkReader + 'static>(reader: R) -> Result<ForeignTracks, Flaw> {

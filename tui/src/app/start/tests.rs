@@ -21,8 +21,9 @@ pub(in crate::app) fn start() -> Start {
 
 /// A listing as the disk would give it.
 pub(in crate::app) fn listing() -> Listing {
-    let row =
-        |name: &str, what: &str| (name.to_owned(), what.to_owned(), Way::File(Path::new("/data").join(name)));
+    let row = |name: &str, what: &str| {
+        (name.to_owned(), what.to_owned(), Lead::File(Path::new("/data").join(name)))
+    };
     Listing {
         folder: PathBuf::from("/data"),
         rows: vec![row("malva.honami", "project"), row("sway.mp4", "clip")],
@@ -34,7 +35,7 @@ fn press(start: &mut Start, keys: &str) -> Option<Wish> {
     let mut last = None;
     for key in keys.split_whitespace() {
         last = start.on_key(key.parse().unwrap());
-        if let Some(Wish::Follow(Way::Folder(_))) = last {
+        if let Some(Wish::Follow(Lead::Folder(_))) = last {
             start.menu = Some(Menu::of_files(listing()));
         }
     }
@@ -44,21 +45,21 @@ fn press(start: &mut Start, keys: &str) -> Option<Wish> {
 #[test]
 fn keys_choose_what_is_opened() {
     let open = |path: &str| Some(Wish::Open(PathBuf::from(path)));
-    let follow = |way: Way| Some(Wish::Follow(way));
-    let typed = |path: &str| follow(Way::Typed(PathBuf::from(path)));
+    let follow = |lead: Lead| Some(Wish::Follow(lead));
+    let typed = |path: &str| follow(Lead::Typed(PathBuf::from(path)));
     for (keys, wish) in [
         ("Enter", open("/data/2026/malva.honami")),
         ("j Enter", open("/data/2026/ficus-03.honami")),
         ("j k k Enter", open("/data/2026/malva.honami")),
-        ("j j Enter", follow(Way::Folder(PathBuf::from(".")))),
-        ("g c", follow(Way::Folder(PathBuf::from(".")))),
-        ("g c Down Enter", follow(Way::File(PathBuf::from("/data/sway.mp4")))),
-        ("g c w a y Enter", follow(Way::File(PathBuf::from("/data/sway.mp4")))),
+        ("j j Enter", follow(Lead::Folder(PathBuf::from(".")))),
+        ("g c", follow(Lead::Folder(PathBuf::from(".")))),
+        ("g c Down Enter", follow(Lead::File(PathBuf::from("/data/sway.mp4")))),
+        ("g c w a y Enter", follow(Lead::File(PathBuf::from("/data/sway.mp4")))),
         ("g c a / b Enter", typed("/data/a/b")),
         ("g c / a Enter", typed("/a")),
         ("g c ~ / a Enter", typed("~/a")),
         ("g c x y z Enter", typed("/data/xyz")),
-        ("g c x Backspace Enter", follow(Way::File(PathBuf::from("/data/malva.honami")))),
+        ("g c x Backspace Enter", follow(Lead::File(PathBuf::from("/data/malva.honami")))),
         ("j j j j Enter", Some(Wish::Offer(0))),
         ("j j j j j j j Enter", Some(Wish::Offer(1))),
         ("q", Some(Wish::Leave)),
@@ -78,7 +79,7 @@ fn keys_choose_what_is_opened() {
 fn nothing_to_choose_from_is_no_fault() {
     let mut start = start();
     start.recent.clear();
-    assert_eq!(press(&mut start, "k Enter"), Some(Wish::Follow(Way::Folder(PathBuf::from(".")))));
+    assert_eq!(press(&mut start, "k Enter"), Some(Wish::Follow(Lead::Folder(PathBuf::from(".")))));
     start.menu = Some(Menu::of_files(Listing::default()));
     assert_eq!(press(&mut start, "Down Up Enter"), None);
 }
@@ -112,8 +113,8 @@ fn a_click_opens_the_row_under_the_mouse() {
     }
     let mut start = start();
     start.menu = Some(Menu::of_files(listing()));
-    let way = Way::File(PathBuf::from("/data/malva.honami"));
+    let lead = Lead::File(PathBuf::from("/data/malva.honami"));
     // The list lies at the bottom: its head, and two rows.
-    assert_eq!(click(&mut start, 19), Some(Wish::Follow(way)));
+    assert_eq!(click(&mut start, 19), Some(Wish::Follow(lead)));
     assert_eq!(click(&mut start, 18), None);
 }

@@ -14,7 +14,7 @@ use honami_workbench::track::{Area, PointSource, TrackRequest};
 
 use super::time::Pace;
 use crate::app::correcting::nudge_px;
-use crate::app::files::Way;
+use crate::app::files::Lead;
 use crate::app::form::{Features, Form, Task};
 use crate::app::lesson::Lesson;
 use crate::app::menu::Choice;
@@ -69,7 +69,7 @@ pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {
         Action::GoKey => pick::key_frame(state),
         Action::GoPlugin => pick::plugin(state),
         Action::Tutorial => return vec![Effect::Teach],
-        Action::GoFile => return vec![Effect::Follow(Way::Folder(PathBuf::from(".")))],
+        Action::GoFile => return vec![Effect::Follow(Lead::Folder(PathBuf::from(".")))],
         Action::Sort => time::sort(state),
         Action::DeleteTrack => return edit::delete(state),
         Action::MoreGroups => return more(state, count(state)),
