@@ -5,6 +5,7 @@
 //! the plugins; `run` turns the wheel; `door` leads from one project to the next, by way of the start screen.
 
 pub mod action;
+pub mod before;
 mod behind;
 pub mod clock;
 pub mod command_log;

@@ -164,7 +164,7 @@ table! {
     Sketch "sketch" ["s"] [Review ""] "draw the selected track by mouse or arrows while the clip plays, or frame by frame"
     WalkForward "walk" [")"] [Move ""] "walk one sample on along the path, while the picture stays"
     WalkBack "walk-back" ["("] [Move ""] "walk one sample back along the path, while the picture stays"
-    Pin "pin" ["*"] [Move "end here"] "make the sample walked to, or looked at, a key-frame as it is: the correction ends there"
+    Pin "pin" ["*"] [Review "" Move "end here"] "make the sample here, or walked to while moving, a key-frame as it is; a correction ends there"
     AddFeature "add-feature" ["a"] [Review "add"] "add a feature by hand"
     Range "range" ["r"] [Review "end"] "begin a range of frames here, or end it here; what marks and deletes works on it"
     MarkLost "mark-lost" ["x"] [Review "lost"] "the feature is lost: in the range, else from here to the next key-frame"

@@ -1,6 +1,7 @@
 //! One screen from the first byte to the last: the start screen, projects one after the other, and the end.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use anyhow::Context as _;
 use honami_workbench::session::SessionOptions;
@@ -14,6 +15,9 @@ use super::seat::Seat;
 use super::start::{Start, Wanted};
 use crate::term::screen::{End, Screen};
 use crate::term::signals;
+
+/// So long a job may take to stop when the session is ended from outside.
+const LAST_WAIT: Duration = Duration::from_millis(800);
 
 /// What can be had besides files.
 pub struct Offers {
@@ -61,7 +65,9 @@ pub fn run(first: Option<Plan>, offers: &Offers) -> anyhow::Result<Option<End>> 
     let closed = screen.close();
     signals::end_as_usual()?;
     if let Some((world, seat)) = last {
-        world.close(seat)?;
+        // Nobody waits for a job whose terminal is gone, and what ends a session may soon end it by force.
+        let is_wished = !matches!(outcome, Ok(Some(_)));
+        world.close(seat, (!is_wished).then_some(LAST_WAIT))?;
     }
     let end = outcome?;
     closed?;
@@ -95,7 +101,7 @@ fn go_about(
         });
         let log_file = log_file.transpose()?;
         let opening = Opening::start(plan, screen.waker()).context("no thread for opening")?;
-        let (ready, typed) = match opening.watch(screen, std::mem::take(&mut typed)) {
+        let (ready, typed) = match opening.watch(screen, &config.keys, std::mem::take(&mut typed)) {
             Ok(Opened::Ready(ready, typed)) => (ready, typed),
             Ok(Opened::Left(end)) => return Ok(end),
             Err(error) if is_first => return Err(error),
@@ -115,7 +121,7 @@ fn go_about(
         if let Ok(Turned::Next(wanted)) = turned {
             // Its last picture is no part of what comes.
             screen.drop_still();
-            complaint = world.close(seat).err().map(|error| error.to_string());
+            complaint = world.close(seat, None).err().map(|error| error.to_string());
             next = complaint.is_none().then(|| match wanted {
                 Next::File(path) => Plan::of(&path, &offers.options),
                 Next::Lesson => (offers.lesson)(),

@@ -166,7 +166,7 @@ impl World {
             | Effect::Suspend
             | Effect::Leave => Ok(Vec::new()),
         };
-        done.unwrap_or_else(|error| vec![failed(&error)])
+        done.unwrap_or_else(|error| vec![failed(&error), Fact::Refused])
     }
 
     fn commit(&mut self, transaction: Transaction, hint: Hint) -> Facts {
@@ -185,7 +185,14 @@ impl World {
 
     fn judge(&mut self, found: Judge) -> Facts {
         let project = &self.session.project;
-        let Judge { track, frames, verdict, reasons, effort } = found;
+        let Judge { track, frames, verdict, reasons, mut effort } = found;
+        // A segment that is judged again has taken what it took before, too.
+        let judged = project.document().track(track).and_then(|track| track.judgements.get(&frames.start));
+        if let Some(Judgement { effort: before, .. }) = judged {
+            effort.keystrokes += before.keystrokes;
+            effort.key_frames += before.key_frames;
+            effort.seconds += before.seconds;
+        }
         let seal = project.shown(track)?.map(|span| span.seal(frames.clone()));
         let reviewer = project.holder().map_or_else(String::new, |holder| holder.user.clone());
         let time = honami_workbench::store::now();
@@ -220,11 +227,15 @@ impl World {
         n: u32,
         go: fn(&mut Project) -> Result<Option<Entry>, StoreError>,
     ) -> Facts {
-        let mut labels = Vec::new();
+        let (mut labels, mut failure) = (Vec::new(), None);
         for _ in 0..n {
-            match go(&mut self.session.project)? {
-                Some(entry) => labels.push(entry.label),
-                None => break,
+            match go(&mut self.session.project) {
+                Ok(Some(entry)) => labels.push(entry.label),
+                Ok(None) => break,
+                Err(error) => {
+                    failure = Some(error);
+                    break;
+                }
             }
         }
         let line = match &labels[..] {
@@ -232,7 +243,12 @@ impl World {
             [label] => format!("{word}: {label}"),
             [.., last] => format!("{word}: {} edits, the last of them: {last}", labels.len()),
         };
-        self.shown_and(said(line))
+        // What was done before something failed is shown all the same.
+        self.shown_and(match failure {
+            None => said(line),
+            Some(error) if labels.is_empty() => failed(&error.into()),
+            Some(error) => said_wrong(format!("{line}; the next: {error}")),
+        })
     }
 
     /// Goes to an entry of the undo tree, and says how far that was.
@@ -359,16 +375,22 @@ impl World {
     }
 
     /// Stops what runs and keeps what it has found, and where the user is; says so on standard error, for it may
-    /// take a while.
-    pub(super) fn close(mut self, seat: Seat) -> Result<(), WorkbenchError> {
+    /// take a while. What takes longer than `patience` is left: the project finds it interrupted.
+    pub(super) fn close(mut self, seat: Seat, patience: Option<Duration>) -> Result<(), WorkbenchError> {
+        let mut finished = Ok(Vec::new());
         if let Some((running, job)) = &self.running {
             running.stop();
             let kept = if job.keeps_frames { ", keeping its frames" } else { "" };
             // Nobody may be there to read it.
             writeln!(std::io::stderr(), "stopping {}{kept} …", job.plugin).unwrap_or_default();
-            self.finish()?;
+            if patience.is_none_or(|patience| running.ends_within(patience)) {
+                finished = self.finish();
+            }
         }
-        self.keep(seat)
+        // Where the user is is kept also where the result could not be.
+        let kept = self.keep(seat);
+        finished?;
+        kept
     }
 
     fn shown_and(&mut self, fact: Fact) -> Facts {

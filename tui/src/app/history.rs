@@ -59,6 +59,15 @@ impl Tree {
         self.entries.get(at).zip(self.lanes.get(at))
     }
 
+    /// The entries that are undone on the way from one to an earlier one of its branch; none where it is on another.
+    #[must_use]
+    pub fn undone(&self, from: EntryId, to: EntryId) -> Vec<EntryId> {
+        let parent = |id: &EntryId| self.entries.get(id.0 as usize).and_then(|entry| entry.parent);
+        let way: Vec<EntryId> =
+            std::iter::successors(Some(from), parent).take_while(|id| *id != to).collect();
+        if way.last().is_some_and(|last| parent(last) == Some(to)) { way } else { Vec::new() }
+    }
+
     /// The row of the entry the document stands at.
     #[must_use]
     pub fn head_row(&self) -> usize {

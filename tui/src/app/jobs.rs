@@ -1,6 +1,7 @@
 //! Work behind the screen: one job at a time, on a thread of its own, with progress and a stop.
 
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
@@ -42,6 +43,8 @@ pub(super) struct Step {
 pub(super) struct Running {
     shared: Arc<Shared>,
     thread: JoinHandle<Done>,
+    /// Says nothing: it is closed when the thread ends.
+    alive: Receiver<()>,
 }
 
 struct Shared {
@@ -65,6 +68,17 @@ impl Progress for Shared {
 
 impl Running {
     pub(super) fn start(work: Work, waker: Waker) -> std::io::Result<Self> {
+        Self::spawn(waker, move |progress| match work {
+            Work::Track(job) => Done::Track(job.run(progress)),
+            Work::Retrack(job) => Done::Retrack(Box::new(job.run(progress))),
+            Work::Cluster(job) => Done::Cluster(Box::new(job.run(progress))),
+        })
+    }
+
+    fn spawn(
+        waker: Waker,
+        work: impl FnOnce(&dyn Progress) -> Done + Send + 'static,
+    ) -> std::io::Result<Self> {
         let shared = Arc::new(Shared {
             step: Mutex::default(),
             stop: AtomicBool::new(false),
@@ -72,16 +86,13 @@ impl Running {
             waker,
         });
         let progress = Arc::clone(&shared);
+        let (end, alive) = sync_channel(1);
         let thread = std::thread::Builder::new().name("job".to_owned()).spawn(move || {
             // Woken also when the job panics: the thread has ended, however.
-            let _end = progress.waker.at_end(&progress.ended);
-            match work {
-                Work::Track(job) => Done::Track(job.run(&*progress)),
-                Work::Retrack(job) => Done::Retrack(Box::new(job.run(&*progress))),
-                Work::Cluster(job) => Done::Cluster(Box::new(job.run(&*progress))),
-            }
+            let _end = (progress.waker.at_end(&progress.ended), end);
+            work(&*progress)
         })?;
-        Ok(Self { shared, thread })
+        Ok(Self { shared, thread, alive })
     }
 
     pub(super) fn stop(&self) {
@@ -96,8 +107,16 @@ impl Running {
         self.shared.ended.load(Ordering::Acquire)
     }
 
+    /// Waits for the end, but no longer than this; whether it came.
+    pub(super) fn ends_within(&self, patience: Duration) -> bool {
+        self.alive.recv_timeout(patience) == Err(RecvTimeoutError::Disconnected)
+    }
+
     /// Waits for the end; `None` when the job panicked.
     pub(super) fn join(self) -> Option<Done> {
         self.thread.join().ok()
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -185,21 +185,25 @@ impl Opening {
     ///
     /// # Errors
     /// When it cannot be opened.
-    pub(super) fn watch(self, screen: &mut Screen, mut kept: Vec<Event>) -> anyhow::Result<Opened> {
-        let keys = KeyMap::default();
+    pub(super) fn watch(
+        self,
+        screen: &mut Screen,
+        keys: &KeyMap,
+        mut kept: Vec<Event>,
+    ) -> anyhow::Result<Opened> {
         // What the screen shows, once it does.
         let mut shown = None;
         while !self.ended.load(Ordering::Acquire) {
             let what = self.step.lock().unwrap_or_else(PoisonError::into_inner).clone();
             let wanted = (what, screen.size());
             if screen.has_slot() && shown.as_ref() != Some(&wanted) {
-                let frame = view::opening(&self.name, &wanted.0, &keys, wanted.1);
+                let frame = view::opening(&self.name, &wanted.0, keys, wanted.1);
                 if screen.paint(&frame, false)? {
                     shown = Some(wanted.clone());
                 }
             }
             let happened = screen.wait(None, shown.as_ref() != Some(&wanted))?;
-            if happened.end.is_some() || happened.events.iter().any(|event| leaves(&keys, event)) {
+            if happened.end.is_some() || happened.events.iter().any(|event| leaves(keys, event)) {
                 return Ok(Opened::Left(happened.end));
             }
             kept.extend(happened.events.into_iter().filter(|event| !matches!(event, Event::Reply(_))));

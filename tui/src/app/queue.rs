@@ -1,10 +1,12 @@
 //! The item of the queue that is being looked at, and what looking at it takes.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
 
+use honami_model::history::EntryId;
 use honami_model::judgement::{Effort, Verdict};
-use honami_model::track::{Source, Span, Status};
+use honami_model::track::{Sample, Source, Span, Status, TrackId};
 use honami_workbench::review::Item;
 
 use super::state::State;
@@ -42,6 +44,11 @@ impl Opened {
         self.last = now;
     }
 
+    /// A key was pressed while another track was looked at: that is none of its time.
+    pub fn waited(&mut self, now: Duration) {
+        self.last = now;
+    }
+
     /// What it has taken so far.
     #[must_use]
     pub fn effort(&self, row: &TrackRow) -> Effort {
@@ -53,21 +60,83 @@ impl Opened {
         Effort { keystrokes: self.keystrokes, key_frames, seconds: self.active.as_secs_f32() }
     }
 
-    /// What accepting it says: what the samples say of themselves, or whether they were corrected.
+    /// What accepting it says: what the samples say of themselves, or how they were corrected.
     #[must_use]
     pub fn verdict(&self, row: &TrackRow) -> Verdict {
+        const GONE: [Status; 2] = [Status::Lost, Status::Outside];
         let all = |wanted: &[Status]| {
             let is_so = |frame| row.span.get(frame).is_none_or(|sample| wanted.contains(&sample.status));
             self.item.frames.clone().all(is_so)
         };
-        let frames = || self.item.frames.clone();
+        let is =
+            |sample: Option<&Sample>, wanted: &[Status]| sample.is_some_and(|s| wanted.contains(&s.status));
+        let pairs = || self.item.frames.clone().map(|frame| (self.span.get(frame), row.span.get(frame)));
+        let has_become = |wanted: &[Status]| pairs().any(|(then, now)| is(now, wanted) && !is(then, wanted));
+        let is_moved = |(then, now): (Option<&Sample>, Option<&Sample>)| {
+            then.map(|s| [s.x, s.y]) != now.map(|s| [s.x, s.y])
+        };
         match () {
             () if all(&[Status::Occluded]) => Verdict::Occluded,
-            () if all(&[Status::Lost, Status::Outside]) => Verdict::Lost,
-            () if row.span.seal(frames()) != self.span.seal(frames()) => Verdict::Fixed,
+            () if all(&GONE) => Verdict::Lost,
+            // Right up to some frame, and marked as lost from there to the end of the segment.
+            () if has_become(&GONE) && pairs().next_back().is_some_and(|(_, now)| is(now, &GONE)) => {
+                Verdict::Lost
+            }
+            () if has_become(&[Status::Occluded]) && !pairs().any(is_moved) => Verdict::Occluded,
+            () if pairs().any(|(then, now)| then != now) => Verdict::Fixed,
             () if self.effort(row).key_frames > 0 => Verdict::Fixed,
             () => Verdict::Accepted,
         }
+    }
+}
+
+/// Items that were opened before the present one.
+#[derive(Clone, Debug, Default)]
+pub struct Looked {
+    /// Those that were left without a verdict, by track and first frame: what they took is not forgotten.
+    left: BTreeMap<(TrackId, u32), Opened>,
+    /// The one whose verdict is on its way into the project.
+    judging: Option<Opened>,
+    /// Those that were judged, by the edits that keep the verdicts.
+    judged: BTreeMap<EntryId, Opened>,
+}
+
+impl Looked {
+    /// An item is left without a verdict.
+    pub fn leave(&mut self, opened: Opened) {
+        self.left.insert((opened.item.track, opened.item.frames.start), opened);
+    }
+
+    /// An item is opened: where it was left before, what it took then counts.
+    #[must_use]
+    pub fn open(&mut self, new: Opened) -> Opened {
+        match self.left.remove(&(new.item.track, new.item.frames.start)) {
+            Some(left) => Opened { item: new.item, last: new.last, ..left },
+            None => new,
+        }
+    }
+
+    /// A verdict on an item is to be kept.
+    pub fn judge(&mut self, opened: Opened) {
+        self.judging = Some(opened);
+    }
+
+    /// The verdict is kept by this edit.
+    pub fn is_kept(&mut self, by: EntryId) {
+        if let Some(opened) = self.judging.take() {
+            self.judged.insert(by, opened);
+        }
+    }
+
+    /// The verdict is not kept.
+    pub fn is_refused(&mut self) {
+        self.judging = None;
+    }
+
+    /// The item whose verdict an edit keeps.
+    #[must_use]
+    pub fn judged_by(&self, entry: EntryId) -> Option<&Opened> {
+        self.judged.get(&entry)
     }
 }
 

@@ -73,7 +73,7 @@ pub fn replay(session: Session, log: &str, tell: &mut dyn FnMut(usize, &Notice))
         );
         done.difference = Some((1, line));
     }
-    player.world.close(Seat::of(&player.state))?;
+    player.world.close(Seat::of(&player.state), None)?;
     Ok(done)
 }
 

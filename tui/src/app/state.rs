@@ -8,6 +8,7 @@ use honami_model::track::TrackId;
 use honami_workbench::review::Review;
 
 use super::action::Context;
+use super::before::Before;
 use super::clock::Play;
 use super::command_log::CommandLog;
 use super::correcting::{Moving, Tool};
@@ -20,7 +21,7 @@ use super::menu::Menu;
 use super::motion::Motion;
 use super::panel::Panel;
 use super::plotted::Plotted;
-use super::queue::Opened;
+use super::queue::{Looked, Opened};
 use super::ranging::Ranging;
 use super::sketching::Sketching;
 use super::tracks::{Groups, TrackRow};
@@ -63,6 +64,10 @@ pub struct State {
     pub review: Review,
     /// The item of the queue that is being looked at.
     pub opened: Option<Opened>,
+    /// Items that were opened before it.
+    pub looked: Looked,
+    /// Where to go back to when the project refuses what was asked of it last.
+    pub before: Option<Box<Before>>,
     /// The shown clustering.
     pub groups: Option<Groups>,
     /// The tracker whose run is on top, with its version.
@@ -255,6 +260,8 @@ impl State {
             by_doubt: false,
             review: Review::default(),
             opened: None,
+            looked: Looked::default(),
+            before: None,
             groups: None,
             tracker: None,
             plugins: Vec::new(),

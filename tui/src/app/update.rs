@@ -124,14 +124,13 @@ pub enum Effect {
 pub fn update(state: &mut State, msg: Msg) -> Vec<Effect> {
     let effects = match msg {
         Msg::Key(key) => {
-            let now = state.now;
-            state.opened.iter_mut().for_each(|opened| opened.pressed(now));
+            pressed(state);
             on_key(state, key)
         }
         Msg::Mouse(mouse) => {
-            let now = state.now;
-            let is_press = matches!(mouse.kind, MouseKind::Press(_));
-            state.opened.iter_mut().filter(|_| is_press).for_each(|opened| opened.pressed(now));
+            if matches!(mouse.kind, MouseKind::Press(_)) {
+                pressed(state);
+            }
             logged::mouse(state, mouse);
             mouse::on_mouse(state, mouse)
         }
@@ -156,6 +155,14 @@ pub fn update(state: &mut State, msg: Msg) -> Vec<Effect> {
     };
     lesson::follow(state);
     effects
+}
+
+/// A key counts for the open item, as long as its track is the selected one.
+fn pressed(state: &mut State) {
+    let (now, is_its) = (state.now, state.opened().is_some());
+    if let Some(opened) = &mut state.opened {
+        if is_its { opened.pressed(now) } else { opened.waited(now) }
+    }
 }
 
 /// Largest number before a command.
@@ -285,7 +292,11 @@ fn open_menu(state: &mut State, title: &'static str) {
 }
 
 #[cfg(test)]
+mod bindings_tests;
+#[cfg(test)]
 mod keys_tests;
+#[cfg(test)]
+mod queue_tests;
 #[cfg(test)]
 mod sketch_tests;
 #[cfg(test)]

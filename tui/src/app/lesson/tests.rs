@@ -1,5 +1,7 @@
 //! The tutorial, walked through by the keys it asks for.
 
+use std::sync::Arc;
+
 use honami_model::history::Entry;
 
 use super::*;
@@ -30,6 +32,7 @@ fn carry_out(state: &mut State, effect: &Effect) {
             };
             Fact::History(vec![entry], EntryId(n))
         }
+        Effect::Study(track) => Fact::Layers(fixture::layers(state, *track).map(Arc::new)),
         Effect::Undo(_) => Fact::History(Vec::new(), EntryId(0)),
         Effect::Cluster(_) => Fact::Groups(fixture::state().groups),
         _ => return,

@@ -4,12 +4,15 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use honami_model::document::Document;
+use honami_model::judgement::{Effort, Verdict};
 use honami_workbench::store::{Access, Project};
 use tempfile::TempDir;
 
 use super::*;
 use crate::app::command_log::CommandLog;
 use crate::app::fixture;
+use crate::app::state::Mode;
+use crate::app::update::Judge;
 
 const N_FRAMES: usize = 12;
 
@@ -46,15 +49,8 @@ impl Bench {
         let mut world = World::new(self.session("p.honami"), waker);
         let mut state = world.state().unwrap();
         state.log = CommandLog::new(Head::of(&state, world.origin()));
-        for (n, word) in words.split_whitespace().enumerate() {
-            update(&mut state, Msg::Clock(Duration::from_millis(200 * n as u64)));
-            for effect in update(&mut state, fixture::msg(word)) {
-                for fact in world.carry_out(effect, state.now) {
-                    update(&mut state, Msg::Fact(fact));
-                }
-            }
-        }
-        world.close(Seat::of(&state)).unwrap();
+        press(&mut state, &mut world, words);
+        world.close(Seat::of(&state), None).unwrap();
         state.log.text()
     }
 
@@ -63,6 +59,18 @@ impl Bench {
         let mut said = Vec::new();
         let done = replay(self.session("copy.honami"), log, &mut |_, notice| said.push(notice.text.clone()));
         (done, said)
+    }
+}
+
+/// Does what the words say, five a second, and what comes of it.
+fn press(state: &mut State, world: &mut World, words: &str) {
+    for (n, word) in words.split_whitespace().enumerate() {
+        update(state, Msg::Clock(Duration::from_millis(200 * n as u64)));
+        for effect in update(state, fixture::msg(word)) {
+            for fact in world.carry_out(effect, state.now) {
+                update(state, Msg::Fact(fact));
+            }
+        }
     }
 }
 
@@ -78,13 +86,17 @@ fn a_session_done_again_makes_the_same_document() {
     for keys in [
         "a Enter 5 . a 1 0 h J Enter m 3 l H Enter u Ctrl-r",
         "a Enter 4 . Enter m l Enter 8 g f m 2 k Enter X 2 u Ctrl-r",
-        "a Enter m l Enter m Esc a Enter d u U j j Enter Esc m k Enter",
+        "a Enter m l Enter m Esc a Enter d d u U j j Enter Esc m k Enter",
         ": a d d Enter Enter g f 7 Enter m H Enter [ [ X X : u n d o Enter",
         "a Enter z z m 3 l Enter a Enter / 0 Enter f . . m J Enter v q P L P l",
         "a Enter space . m l Enter ; Esc b m l Enter Enter Enter g e space m Enter",
         "a Enter s . 2 l . k . . Backspace Enter u Ctrl-r 5 g f s 2 5 ; l l Esc Enter",
         "a Enter z s press:30,8 ; late:90 drag:31,8 late:80 drag:32,9 late:90 drag:33,9 release:33,9 Enter T l Enter u u",
         "a Enter s press:40,9 release:40,9 5 0 ; j j l Esc Esc s . Backspace Enter Esc m l Enter",
+        "a Enter e n b u d Enter 8 . m 3 l Enter 4 , r 2 . x r . Esc o e n space Enter d k",
+        "a Enter 8 . m 3 l Enter 4 , e s e d y j y e a e d 2 . r 1 . d r X Y",
+        "a Enter 8 . m l Enter g s a 9 l Enter e j Enter u 8 . m k Enter 4 , e x Enter e j Enter u u",
+        "a Enter 8 . m 3 l Enter 4 , | m 2 k Tab Enter T l Enter [ ] * P t z Ctrl-Left b Esc S O",
         "a Enter g l a m l Enter ? Esc g k Enter m l Enter 9 9 g f d d u",
     ] {
         let bench = Bench::new();
@@ -172,4 +184,56 @@ fn a_log_of_another_clip_is_refused() {
     let sha256 = Project::open(&bench.path("p.honami"), Access::Read).unwrap().clip().sha256.clone();
     let (done, said) = bench.replay(&log.replace(&sha256, "0123"));
     assert!(done.unwrap_err().to_string().starts_with("the log is of another clip") && said.is_empty());
+}
+
+/// Its file is taken away under the program, and given back.
+#[test]
+fn what_cannot_be_written_is_open_again_and_kept_once_it_can() {
+    let bench = Bench::new();
+    let (waker, _woken) = signals::pair().unwrap();
+    let mut world = World::new(bench.session("p.honami"), waker);
+    let mut state = world.state().unwrap();
+    let failed = |state: &State| state.notice.as_ref().is_some_and(|notice| notice.is_error);
+    press(&mut state, &mut world, "a Enter 8 . m 3 l Enter");
+    assert!(!failed(&state), "{:?}", state.notice);
+    std::fs::rename(bench.path("p.honami"), bench.path("away")).unwrap();
+    for (keys, asks, is_back) in [
+        ("4 , m 2 k", "Enter", &(|mode: &Mode| matches!(mode, Mode::Move(_))) as &dyn Fn(&Mode) -> bool),
+        ("a", "Enter", &|mode| matches!(mode, Mode::Place(_))),
+        ("e n b u d", "Enter", &|mode| matches!(mode, Mode::Name(name) if name == "bud")),
+    ] {
+        press(&mut state, &mut world, keys);
+        press(&mut state, &mut world, asks);
+        assert!(failed(&state) && is_back(&state.mode), "{keys}: {:?} {:?}", state.notice, state.mode);
+        press(&mut state, &mut world, "Esc");
+    }
+    press(&mut state, &mut world, "2 u");
+    assert!(failed(&state) && state.tracks.len() == 1, "{:?}", state.notice);
+    press(&mut state, &mut world, "m 2 k Enter");
+    std::fs::rename(bench.path("away"), bench.path("p.honami")).unwrap();
+    press(&mut state, &mut world, "Enter");
+    assert!(!failed(&state) && matches!(state.mode, Mode::Review), "{:?}", state.notice);
+    world.close(Seat::of(&state), None).unwrap();
+    assert_eq!(made(&bench.path("p.honami")).1.len(), 4);
+}
+
+#[test]
+fn what_a_segment_takes_adds_up_over_its_verdicts() {
+    let bench = Bench::new();
+    let (waker, _woken) = signals::pair().unwrap();
+    let mut world = World::new(bench.session("p.honami"), waker);
+    let mut state = world.state().unwrap();
+    press(&mut state, &mut world, "a Enter 8 . m 3 l Enter");
+    let track = state.selected.unwrap();
+    let effort = Effort { keystrokes: 3, key_frames: 1, seconds: 2.0 };
+    for verdict in [Verdict::Later, Verdict::Fixed] {
+        let reasons = Vec::new();
+        let judge = Judge { track, frames: 0..9, verdict, reasons, effort };
+        world.carry_out(Effect::Judge(judge), Duration::ZERO);
+    }
+    world.close(Seat::of(&state), None).unwrap();
+    let (document, _) = made(&bench.path("p.honami"));
+    let judgement = &document.track(track).unwrap().judgements[&0];
+    assert_eq!(judgement.verdict, Verdict::Fixed);
+    assert_eq!(judgement.effort, Effort { keystrokes: 6, key_frames: 2, seconds: 4.0 });
 }

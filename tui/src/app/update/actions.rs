@@ -13,6 +13,7 @@ use honami_workbench::retrack;
 use honami_workbench::track::{Area, PointSource, TrackRequest};
 
 use super::time::Pace;
+use crate::app::before::Before;
 use crate::app::correcting::nudge_px;
 use crate::app::files::Lead;
 use crate::app::form::{Features, Form, Task};
@@ -24,6 +25,7 @@ use crate::app::panel::Panel;
 pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {
     let head = state.history.head;
     state.lesson.iter_mut().for_each(|lesson| lesson.note(action, head));
+    state.before = Before::doing(action, state).map(Box::new);
     match action {
         Action::Left => return steer(state, -1.0, 0.0, 1.0),
         Action::Right => return steer(state, 1.0, 0.0, 1.0),
@@ -163,6 +165,7 @@ fn correct(state: &mut State, action: Action) -> Vec<Effect> {
         Action::CorrectTime => return moving::begin_slide(state),
         Action::WalkForward => moving::walk(state, count(state)),
         Action::WalkBack => moving::walk(state, -count(state)),
+        Action::Pin if matches!(state.mode, Mode::Review) => return edit::confirm(state),
         Action::Pin => moving::pin(state),
         Action::Range => ranges::begin_or_end(state),
         Action::MarkLost => return ranges::lost(state),

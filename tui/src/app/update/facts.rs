@@ -7,7 +7,7 @@ use honami_model::correct::Layers;
 use honami_model::history::{Entry, EntryId};
 use honami_workbench::review::Told;
 
-use super::{Mode, State, logged, motion, moving, sketch, tell};
+use super::{Mode, State, logged, motion, moving, queue, sketch, tell};
 use crate::app::dense::FieldOf;
 use crate::app::files::Listing;
 use crate::app::menu::Menu;
@@ -59,28 +59,13 @@ pub enum Fact {
     History(Vec<Entry>, EntryId),
     /// These files there are to choose from.
     Files(Listing),
+    /// What was asked for has failed: nothing has changed.
+    Refused,
 }
 
 pub(super) fn on_fact(state: &mut State, fact: Fact) {
     match fact {
-        Fact::Tracks(rows) => {
-            state.tracks = rows;
-            state.plotted.revision += 1;
-            let (tracks, picked) = (&state.tracks, &mut state.picked);
-            picked.retain(|track| tracks.binary_search_by_key(track, |row| row.id).is_ok());
-            if state.selected.is_none_or(|track| state.row(track).is_none()) {
-                state.selected = state.tracks.first().map(|row| row.id);
-            }
-            // The sample being moved is gone: there is nothing to keep.
-            let track = match &state.mode {
-                Mode::Move(moving) => Some(moving.track),
-                Mode::Sketch(sketching) => Some(sketching.track),
-                _ => None,
-            };
-            if track.is_some_and(|track| state.row(track).is_none()) {
-                state.mode = Mode::Review;
-            }
-        }
+        Fact::Tracks(rows) => on_tracks(state, rows),
         Fact::Layers(layers) => {
             sketch::on_layers(state, layers.as_ref());
             moving::on_layers(state, layers);
@@ -127,7 +112,35 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
             state.notice = Some(Notice { text, is_error: true });
         }
         Fact::Ready(n) => state.n_ready = n,
-        Fact::History(new, head) => state.history.grow(new, head),
+        Fact::History(new, head) => {
+            let (from, has_grown) = (state.history.head, !new.is_empty());
+            state.history.grow(new, head);
+            queue::on_history(state, from, has_grown);
+        }
+        Fact::Refused => {
+            if let Some(before) = state.before.take() {
+                before.put_back(state);
+            }
+        }
         Fact::Files(listing) => state.mode = Mode::Menu(Box::new(Menu::of_files(listing))),
+    }
+}
+
+fn on_tracks(state: &mut State, rows: Vec<TrackRow>) {
+    state.tracks = rows;
+    state.plotted.revision += 1;
+    let (tracks, picked) = (&state.tracks, &mut state.picked);
+    picked.retain(|track| tracks.binary_search_by_key(track, |row| row.id).is_ok());
+    if state.selected.is_none_or(|track| state.row(track).is_none()) {
+        state.selected = state.tracks.first().map(|row| row.id);
+    }
+    // The sample being moved is gone: there is nothing to keep.
+    let track = match &state.mode {
+        Mode::Move(moving) => Some(moving.track),
+        Mode::Sketch(sketching) => Some(sketching.track),
+        _ => None,
+    };
+    if track.is_some_and(|track| state.row(track).is_none()) {
+        state.mode = Mode::Review;
     }
 }

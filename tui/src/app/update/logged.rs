@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use honami_model::track::TrackId;
 
-use super::{Action, Effect, Mode, Msg, State, actions, on_text, time, update};
+use super::{Action, Context, Effect, Mode, Msg, State, actions, on_text, time, update};
 use crate::app::action::TABLE;
 use crate::app::command_log::{Here, Line, Touch, What};
 use crate::app::layout::{Layout, Lens};
@@ -33,7 +33,8 @@ pub(super) fn action(state: &mut State, action: Action) {
 
 /// Text has come. Digits of a count have no line of their own: it is in that of its action.
 pub(super) fn text(state: &mut State, text: &str) {
-    let is_kept = matches!(state.mode, Mode::Menu(_) | Mode::Prompt(_) | Mode::Form(_) | Mode::Label(_));
+    let context = state.mode.context();
+    let is_kept = context.is_text() || context == Context::Form;
     if is_kept && !is_unlogged(state) {
         push(state, What::Text(text.to_owned()));
     }

@@ -45,7 +45,10 @@ pub(super) fn on_mouse(state: &mut State, mouse: Mouse) -> Vec<Effect> {
             }
         }
         MouseKind::Press(0) if layout.column.contains(here) => {
-            pick(state, column::pick_at(state, layout.column, mouse.row));
+            // Elsewhere the click would take away what is open.
+            if matches!(state.mode, Mode::Review | Mode::History { .. }) {
+                pick(state, column::pick_at(state, layout.column, mouse.row));
+            }
         }
         MouseKind::Press(0) if matches!(state.mode, Mode::Sketch(_)) => sketch::press(state, &lens, cell),
         MouseKind::Drag(0) if matches!(state.mode, Mode::Sketch(_)) => sketch::drag(state, &lens, cell),
@@ -83,13 +86,14 @@ fn pick(state: &mut State, picked: Option<Pick>) {
     }
 }
 
-/// Selects the track nearest to a point.
+/// Selects the track nearest to a point of the frame that is shown.
 fn nearest(state: &mut State, lens: &Lens, point: [f32; 2]) {
     let far = |at: [f32; 2]| (at[0] - point[0]).hypot(at[1] - point[1]);
+    let frame = state.shown_frame();
     let found = state
         .tracks
         .iter()
-        .filter_map(|row| Some((row.id, far(row.at(state.frame)?))))
+        .filter_map(|row| Some((row.id, far(row.at(frame)?))))
         .filter(|(_, far)| *far <= REACH_CELLS * lens.cell_px())
         .min_by(|a, b| a.1.total_cmp(&b.1));
     if let Some((track, _)) = found {

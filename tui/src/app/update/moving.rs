@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use honami_model::correct::Layers;
-use honami_model::edit::Transaction;
 
 use super::{Effect, Mode, State, UNDO, complain, edit, say};
 use crate::app::correcting::{Model, Moving, Tool, nudge_px};
@@ -129,17 +128,18 @@ pub(super) fn keep(state: &mut State) -> Vec<Effect> {
         Tool::Place { .. } => (moving, "t t tracks again round it, u undoes"),
         Tool::Slide(_) => (moving, UNDO),
     };
-    let transaction = match (&moving.ghost, moving.tool) {
-        (Some(Ok(ghost)), _) => ghost.transaction.clone(),
-        (Some(Err(why)), _) => {
+    let transaction = match &moving.ghost {
+        Some(Ok(ghost)) => ghost.transaction.clone(),
+        Some(Err(why)) => {
             let line = why.clone();
             complain(state, line);
             return Vec::new();
         }
-        (None, Tool::Place { to, .. }) => {
-            Transaction::set_key(moving.track, moving.frame, to, Some(moving.from))
+        None => {
+            let line = format!("track {} could not be read: Esc, and then again", moving.track);
+            complain(state, line);
+            return Vec::new();
         }
-        (None, Tool::Slide(_)) => return Vec::new(),
     };
     let (track, frame) = (moving.track, moving.frame);
     state.mode = Mode::Review;

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use honami_model::history::EntryId;
 use honami_model::judgement::{Effort, Verdict};
 use honami_model::track::TrackId;
 use honami_workbench::review::{Item, Rank};
@@ -70,8 +71,11 @@ pub(super) fn open_rank(state: &mut State, rank: Rank) {
 
 fn open(state: &mut State, item: Item) {
     let Some(row) = state.row(item.track) else { return };
-    let opened = Opened::new(item.clone(), row, state.now);
-    state.opened = Some(opened);
+    let new = Opened::new(item.clone(), row, state.now);
+    if let Some(left) = state.opened.take() {
+        state.looked.leave(left);
+    }
+    state.opened = Some(state.looked.open(new));
     time::stop(state);
     time::select(state, item.track);
     time::go(state, item.worst);
@@ -99,7 +103,9 @@ pub(super) fn judge(state: &mut State, verdict: Option<Verdict>) -> Vec<Effect> 
         complain(state, "no item is open: n opens the most doubtful");
         return Vec::new();
     };
-    let rank = state.opened.take().map(|opened| opened.item.rank());
+    let judged = state.opened.take();
+    let rank = judged.as_ref().map(|opened| opened.item.rank());
+    judged.into_iter().for_each(|opened| state.looked.judge(opened));
     // It has left, also before the world has noticed.
     let rest = state.review.queue.of_track(found.track).filter(|item| !overlap(&item.frames, &found.frames));
     let rest: Vec<Item> = rest.cloned().collect();
@@ -114,6 +120,25 @@ pub(super) fn judge(state: &mut State, verdict: Option<Verdict>) -> Vec<Effect> 
 
 fn overlap(a: &Range<u32>, b: &Range<u32>) -> bool {
     a.start < b.end && b.start < a.end
+}
+
+/// The document stands elsewhere: a new edit may keep a verdict; where verdicts were undone, the item of the first of
+/// them is looked at again.
+pub(super) fn on_history(state: &mut State, from: EntryId, has_grown: bool) {
+    if has_grown {
+        return state.looked.is_kept(state.history.head);
+    }
+    let undone = state.history.undone(from, state.history.head);
+    let judged = undone.iter().rev().find_map(|entry| state.looked.judged_by(*entry)).cloned();
+    if let Some(mut opened) = judged.filter(|opened| state.row(opened.item.track).is_some()) {
+        time::stop(state);
+        time::select(state, opened.item.track);
+        time::go(state, opened.item.worst);
+        opened.waited(state.now);
+        if let Some(left) = state.opened.replace(opened) {
+            state.looked.leave(left);
+        }
+    }
 }
 
 /// Goes to the worst frame of the open item; again, to those of the track's other items.

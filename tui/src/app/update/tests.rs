@@ -549,65 +549,6 @@ fn a_correction_is_seen_before_it_is_kept() {
     }
 }
 
-/// Every binding of every place does something or says why not, and none panics; with Esc the way back is short.
-#[test]
-fn every_binding_answers() {
-    let reach = [
-        (Context::Review, ""),
-        (Context::Place, "a"),
-        (Context::Move, "m l"),
-        (Context::Slide, "T"),
-        (Context::Sketch, "s"),
-        (Context::Form, "t r"),
-        (Context::Menu, ":"),
-        (Context::Prompt, "g f"),
-        (Context::Dial, "v d"),
-        (Context::Label, "g l"),
-        (Context::History, "U j"),
-    ];
-    for binding in crate::app::keymap::KeyMap::default().bindings() {
-        // The start screen has tests of its own.
-        let Some((_, way)) = reach.iter().find(|(context, _)| *context == binding.context) else {
-            assert_eq!(binding.context, Context::Start);
-            continue;
-        };
-        for from in ["frame=20", "frame=20 empty", "frame=20 job playing", "locked", "bare zoom=2"] {
-            let mut state = start(from);
-            press(&mut state, way);
-            for key in &binding.keys {
-                update(&mut state, Msg::Key(*key));
-            }
-            assert!(state.pending.is_empty(), "{binding:?} from {from}");
-            press(&mut state, "Esc Esc Esc Esc");
-            assert!(matches!(state.mode, Mode::Review), "{binding:?} from {from}: no way back");
-        }
-        // Where nothing is in its way it changes something, asks for something, or says why not.
-        let mut state = start("frame=20 zoom=2");
-        press(&mut state, way);
-        press(&mut state, prepared(binding.context, binding.action));
-        let before = format!("{state:?}");
-        let keys = binding.keys.iter();
-        let effects: Vec<Effect> = keys.flat_map(|key| fixture::send(&mut state, Msg::Key(*key))).collect();
-        let answered = !effects.is_empty() || format!("{state:?}") != before;
-        assert!(answered, "{binding:?} is silent");
-    }
-}
-
-/// Keys that give an action something to do.
-fn prepared(context: Context, action: Action) -> &'static str {
-    match (context, action) {
-        (Context::Form, Action::Up | Action::FineLeft | Action::FineRight) => "j j",
-        (Context::Menu, Action::Up) => "j Down",
-        (Context::Dial, Action::Up) => "j",
-        (Context::Menu, Action::Erase) => "x",
-        (Context::Prompt, Action::Erase) => "1",
-        (Context::Review, Action::Back) => "space",
-        (Context::Move, Action::Pin) => ")",
-        (Context::Sketch, Action::Erase) => ".",
-        _ => "",
-    }
-}
-
 #[test]
 fn finding_by_letters_and_in_lists() {
     for (keys, expect) in [

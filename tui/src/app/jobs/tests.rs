@@ -1,0 +1,30 @@
+//! Jobs that do not end when they are told to.
+
+use std::sync::mpsc::sync_channel;
+
+use super::*;
+use crate::term::signals;
+
+#[test]
+fn one_that_does_not_stop_is_not_waited_for_without_end() {
+    let (waker, _woken) = signals::pair().unwrap();
+    let (gate, shut) = sync_channel::<()>(1);
+    let running = Running::spawn(waker, move |_| {
+        assert!(shut.recv().is_err(), "nobody sends");
+        Done::Track(Err(WorkbenchError::Stopped))
+    });
+    let running = running.unwrap();
+    running.stop();
+    assert!(!running.ends_within(Duration::from_millis(1)), "it hears nobody");
+    drop(gate);
+    assert!(running.ends_within(Duration::from_secs(60)));
+    assert!(matches!(running.join(), Some(Done::Track(Err(WorkbenchError::Stopped)))));
+}
+
+#[test]
+fn one_that_panics_has_ended() {
+    let (waker, _woken) = signals::pair().unwrap();
+    let running = Running::spawn(waker, |_| panic!("a fault of the job's own")).unwrap();
+    assert!(running.ends_within(Duration::from_secs(60)));
+    assert!(running.join().is_none());
+}
