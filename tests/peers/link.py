@@ -30,7 +30,7 @@ def enter(namespace_fd):
         raise OSError(ctypes.get_errno(), "cannot enter the network namespace")
 
 
-def open_end(namespace, device, here, there):
+def open_end(namespace, device, here, there, congestion):
     """Descriptor of a TUN device inside a namespace, with its addresses set."""
     home = os.open("/proc/self/ns/net", os.O_RDONLY)
     other = os.open(f"/run/netns/{namespace}", os.O_RDONLY)
@@ -42,6 +42,9 @@ def open_end(namespace, device, here, there):
         subprocess.run([*ip, "lo", "up"], check=True)
         subprocess.run(["ip", "addr", "add", here, "peer", there, "dev", device], check=True)
         subprocess.run([*ip, device, "mtu", str(MTU), "up"], check=True)
+        if congestion:
+            route = ["ip", "route", "replace", there, "dev", device, "congctl", congestion]
+            subprocess.run(route, check=True)
     finally:
         enter(home)
         os.close(home)
@@ -110,6 +113,7 @@ def main():
     args.add_argument("--mbit", type=float, required=True, help="rate each way, Mbit/s")
     args.add_argument("--delay-ms", type=float, required=True, help="one-way delay")
     args.add_argument("--queue", type=int, default=64 * 1024, help="bytes that may wait each way")
+    args.add_argument("--congestion", help="TCP's congestion control, as Linux calls it")
     args.add_argument("--loss", type=float, default=0.0, help="part of the packets that is lost, 0 to 1")
     args = args.parse_args()
 
@@ -118,7 +122,7 @@ def main():
 
     signal.signal(signal.SIGTERM, stop)
     ends = [
-        open_end(namespace, args.device, here, there)
+        open_end(namespace, args.device, here, there, args.congestion)
         for namespace, here, there in zip(args.namespaces, args.addresses, reversed(args.addresses))
     ]
     up, down = Way(ends[0], ends[1], args, 1), Way(ends[1], ends[0], args, 2)

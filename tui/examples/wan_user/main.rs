@@ -32,6 +32,8 @@ use wanted::Wanted;
 const PATIENCE: Duration = Duration::from_secs(30);
 /// So long without a byte is quiet.
 const QUIET: Duration = Duration::from_millis(700);
+/// The program keeps where its user is some seconds after they have gone there; then it idles.
+const SETTLE: Duration = Duration::from_secs(6);
 /// Isolated keys: how many, and how far apart.
 const ISOLATED: (u32, Duration) = (8, Duration::from_millis(500));
 /// A key held at 25 per second, and the storm at 30.
@@ -289,6 +291,7 @@ impl User {
     }
 
     fn idle(&mut self, time: Duration) -> anyhow::Result<Value> {
+        self.listen(Instant::now() + SETTLE)?;
         let before = (self.terminal.n_received, self.process.as_ref().map(Process::usage));
         let until = Instant::now() + time;
         while Instant::now() < until {

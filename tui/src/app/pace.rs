@@ -2,7 +2,7 @@
 //!
 //! A picture that follows another within a moment is likely to be followed by a third: bytes spent on refining it would
 //! stand in that one's way. So a new picture is painted for as many bytes as a frame may have, with colours near the
-//! wanted, and refined once no other has come for longer than they came apart; a single picture at once.
+//! wanted, and refined once no other has come for longer than they came apart; a single picture soon.
 
 use std::time::Duration;
 
@@ -10,6 +10,11 @@ use super::layout::Lens;
 
 /// Pictures further apart than this are single ones.
 const APART: Duration = Duration::from_millis(150);
+/// A single picture may be the first of many: a held key repeats after so long. TCP begins anew after a pause, with
+/// room for little more than two pictures: a refinement would take the second one's.
+const REPEAT: Duration = Duration::from_millis(45);
+/// Another picture is expected for this much longer than the last two came apart.
+const LONGER: f64 = 1.25;
 
 /// Remembers which pictures were painted, and when.
 #[derive(Debug, Default)]
@@ -29,17 +34,16 @@ impl Pace {
 
     /// A picture has been painted.
     pub(super) fn painted(&mut self, now: Duration, (frame, lens): (u32, Lens)) {
-        match self.painted {
+        let apart = match self.painted {
             Some((known, seen, _)) if (known, seen) == (frame, lens) => return,
-            Some((_, _, since)) if now.saturating_sub(since) < APART => {
-                self.busy_until = now + (now - since).mul_f64(1.5);
-            }
-            _ => {}
-        }
+            Some((_, _, since)) if now.saturating_sub(since) < APART => (now - since).mul_f64(LONGER),
+            _ => REPEAT,
+        };
+        self.busy_until = now + apart;
         self.painted = Some((frame, lens, now));
     }
 
-    /// When the picture on screen is refined; `None` when it may be at once.
+    /// When the picture on screen is refined; `None` when it may be now.
     pub(super) fn rest(&self, now: Duration) -> Option<Duration> {
         Some(self.busy_until).filter(|until| *until > now)
     }
@@ -52,18 +56,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn single_pictures_are_refined_at_once_and_streams_when_they_end() {
+    fn single_pictures_are_refined_soon_and_streams_when_they_end() {
         let area = Rect::new(0, 0, 1, 1);
         let lens = Lens { x: 0.0, y: 0.0, width: 1.0, height: 1.0, area, grid: (1, 2) };
         let at = Duration::from_millis;
         // When each picture comes, and until when it is left as it is.
-        for (pictures, rest) in [
-            (&[0][..], None),
-            (&[0, 500], None),
-            (&[0, 40], Some(100)),
-            (&[0, 40, 80, 120], Some(180)),
-            (&[0, 40, 500], None),
-        ] {
+        for (pictures, rest) in
+            [(&[0][..], 45), (&[0, 500], 545), (&[0, 40], 90), (&[0, 40, 80, 120], 170), (&[0, 40, 500], 545)]
+        {
             let mut pace = Pace::default();
             for (frame, &ms) in (0..).zip(pictures) {
                 assert!(pace.is_moving(at(ms), Some((frame, lens))), "a new picture moves");
@@ -71,10 +71,10 @@ mod tests {
                 pace.painted(at(ms + 20), (frame, lens));
             }
             let last = pictures[pictures.len() - 1];
-            assert_eq!(pace.rest(at(last)), rest.map(at), "{pictures:?}");
+            assert_eq!(pace.rest(at(last)), Some(at(rest)), "{pictures:?}");
             let shown = Some((pictures.len() as u32 - 1, lens));
-            assert_eq!(pace.is_moving(at(last), shown), rest.is_some());
-            assert!(!pace.is_moving(at(last + 150), shown));
+            assert!(pace.is_moving(at(rest - 1), shown));
+            assert!(!pace.is_moving(at(rest), shown));
         }
     }
 }

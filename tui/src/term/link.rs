@@ -13,11 +13,16 @@ const INTERVAL: Duration = Duration::from_millis(40);
 /// No two frames are closer than this.
 const MIN_INTERVAL: Duration = Duration::from_millis(16);
 /// Part of the goodput that frames may use; the rest drains queues.
-const USE: f64 = 0.8;
+const USE: f64 = 0.87;
 /// Bytes of a frame, least and most.
 const BUDGET: (usize, usize) = (1 << 10, 32 << 10);
 /// Bytes of a frame while nothing is known of the link.
 const FIRST_BUDGET: usize = 8 << 10;
+/// What TCP lets go at once after a pause: ten segments, as Linux begins (RFC 6928), less what ssh adds. Of frames
+/// that follow each other within the delay, the second one's rest would wait for the first one's acknowledgement.
+const FIRST_BURST: usize = 12_600;
+/// A pause after which TCP begins anew, at the earliest: its least time-out.
+const PAUSE: Duration = Duration::from_millis(200);
 /// Frames on their way, least and most.
 const WINDOW: (usize, usize) = (2, 8);
 /// Frames smaller than this say nothing about the goodput.
@@ -28,6 +33,8 @@ const SAMPLES: usize = 16;
 const DELAY_AGE: Duration = Duration::from_secs(60);
 /// A terminal that has not answered for this long is silent, or the link is down.
 const PATIENCE: Duration = Duration::from_secs(2);
+/// After a silence, answers still to come may be to queries given up; no sooner than this are they taken at their word.
+const CALM: Duration = Duration::from_secs(1);
 /// What a silent terminal gets, bytes per second.
 const SILENT_RATE: f64 = 64.0 * 1024.0;
 
@@ -50,14 +57,22 @@ pub struct Link {
     delay: Option<(Duration, Duration)>,
     /// Bytes and service seconds of the latest large frames.
     served: VecDeque<(usize, f64)>,
-    /// Since when the terminal owes an answer that it may never give.
+    /// When sending began after the last pause.
+    resumed: Option<Duration>,
+    /// Whether the terminal owes an answer that it may never give.
     silent: bool,
+    /// Whether an answer may be to a query that was given up: then it says nothing of the link.
+    doubtful: bool,
 }
 
 impl Link {
     /// A frame has been handed to the terminal.
     pub fn sent(&mut self, now: Duration, n_bytes: usize) {
         self.n_sent += 1;
+        if self.has_paused(now, PAUSE) {
+            self.resumed = Some(now);
+        }
+        self.doubtful &= self.silent || !self.has_paused(now, CALM);
         self.flights.push_back(Flight { sent: now, n_bytes });
         self.last_sent = Some(now);
         if self.silent {
@@ -69,18 +84,23 @@ impl Link {
     /// The terminal has answered a frame's query.
     pub fn answered(&mut self, now: Duration) {
         self.silent = false;
-        let Some(flight) = self.flights.pop_front() else { return };
+        let flight = self.flights.pop_front();
+        if flight.is_none() && !self.doubtful {
+            return;
+        }
+        let before = self.last_answer.replace(now);
+        let Some(flight) = flight.filter(|_| !self.doubtful) else { return };
         let trip = now.saturating_sub(flight.sent);
         if self.delay.is_none_or(|(least, _)| trip <= least) {
             self.delay = Some((trip, now));
-        } else if self.delay_is_old(now) && self.last_answer.is_none_or(|last| last <= flight.sent) {
+        } else if self.delay_is_old(now) && before.is_none_or(|last| last <= flight.sent) {
             // It met an empty queue: what is left of its trip without its own bytes is the delay.
             let own = self.goodput().map_or(0.0, |rate| flight.n_bytes as f64 / rate);
             self.delay = Some((trip.saturating_sub(Duration::from_secs_f64(own)), now));
         }
         if flight.n_bytes >= SAMPLE_MIN {
             let arrived = flight.sent + self.delay.map_or(Duration::ZERO, |(least, _)| least);
-            let begun = self.last_answer.map_or(arrived, |last| last.max(arrived));
+            let begun = before.map_or(arrived, |last| last.max(arrived));
             // No terminal takes more than 100 MB/s: a shorter service is a clock's grain.
             let seconds = now.saturating_sub(begun).as_secs_f64().max(flight.n_bytes as f64 / 1e8);
             self.served.push_back((flight.n_bytes, seconds));
@@ -88,7 +108,6 @@ impl Link {
                 self.served.pop_front();
             }
         }
-        self.last_answer = Some(now);
     }
 
     /// Number of frames that were handed to the terminal so far.
@@ -128,7 +147,23 @@ impl Link {
         !self.silent && !self.flights.is_empty()
     }
 
-    /// Bytes that the next frame may have.
+    /// Whether nothing has been on its way, and nothing has come, for so long.
+    fn has_paused(&self, now: Duration, pause: Duration) -> bool {
+        let last = self.last_answer.max(self.last_sent);
+        self.flights.is_empty() && last.is_none_or(|last| now.saturating_sub(last) >= pause)
+    }
+
+    /// Bytes that a frame sent now may have.
+    #[must_use]
+    pub fn budget_at(&self, now: Duration) -> usize {
+        let resumed =
+            self.resumed.zip(self.delay()).is_some_and(|(at, delay)| now.saturating_sub(at) < delay);
+        let is_far = self.delay().is_some_and(|delay| delay > MIN_INTERVAL);
+        let is_first = self.has_paused(now, PAUSE) || resumed;
+        if is_far && is_first { self.budget().min(FIRST_BURST / 2) } else { self.budget() }
+    }
+
+    /// Bytes that a frame may have once the link is busy.
     #[must_use]
     pub fn budget(&self) -> usize {
         if self.silent {
@@ -140,12 +175,12 @@ impl Link {
         }
     }
 
-    /// Frames that may be on their way at once: as many as fill the delay.
+    /// Frames that may be on their way at once: as many as fill the delay, and the one being served.
     #[must_use]
     pub fn window(&self) -> usize {
         match (self.goodput(), self.delay()) {
             (Some(rate), Some(delay)) => {
-                let frames = rate * delay.as_secs_f64() / self.budget() as f64;
+                let frames = 1.0 + rate * delay.as_secs_f64() / self.budget() as f64;
                 (frames.ceil() as usize).clamp(WINDOW.0, WINDOW.1)
             }
             _ => WINDOW.0,
@@ -162,7 +197,14 @@ impl Link {
         }
         // A delay grown old is measured on an empty queue: wait until all answers are in.
         let window = if self.delay_is_old(now) { 1 } else { self.window() };
-        (self.flights.len() < window).then_some(last + MIN_INTERVAL)
+        (self.flights.len() < window).then(|| last + self.service().max(MIN_INTERVAL))
+    }
+
+    /// How long the link is taken up by the frame sent last. One that follows sooner would only wait in a queue, where
+    /// nothing can overtake it: the next key's picture least of all.
+    fn service(&self) -> Duration {
+        let n_bytes = self.flights.back().map_or(0, |flight| flight.n_bytes);
+        self.goodput().map_or(Duration::ZERO, |rate| Duration::from_secs_f64(n_bytes as f64 / rate))
     }
 
     fn delay_is_old(&self, now: Duration) -> bool {
@@ -184,7 +226,7 @@ impl Link {
     pub fn check(&mut self, now: Duration) {
         if self.deadline().is_some_and(|deadline| now >= deadline) {
             self.flights.clear();
-            self.silent = true;
+            (self.silent, self.doubtful) = (true, true);
         }
     }
 }

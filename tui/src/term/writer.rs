@@ -220,7 +220,7 @@ impl Writer {
         }
         let begin = self.bytes.len();
         self.bytes.append(&mut self.farewell);
-        let budget = self.link.budget().saturating_sub(frills);
+        let budget = self.link.budget_at(now).saturating_sub(frills);
         let n_wrong = self.encoder.encode(frame, budget, moving, &mut self.bytes);
         if self.bytes.len() == begin {
             self.bytes.clear();

@@ -18,6 +18,8 @@ pub(super) struct Case {
 pub(super) struct Shape {
     pub(super) mbit: f64,
     pub(super) rtt_ms: f64,
+    /// How both ends' TCP decides how much may be on its way, as Linux calls it.
+    pub(super) congestion: &'static str,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,11 +51,11 @@ pub(super) enum Clip {
     Leaves,
 }
 
-const SLOW: Shape = Shape { mbit: 2.0, rtt_ms: 80.0 };
-const SLOWER: Shape = Shape { mbit: 1.0, rtt_ms: 150.0 };
-const FAIR: Shape = Shape { mbit: 20.0, rtt_ms: 40.0 };
+const SLOW: Shape = Shape { mbit: 2.0, rtt_ms: 80.0, congestion: "cubic" };
+const SLOWER: Shape = Shape { mbit: 1.0, rtt_ms: 150.0, congestion: "cubic" };
+const FAIR: Shape = Shape { mbit: 20.0, rtt_ms: 40.0, congestion: "cubic" };
 /// As fast as the emulator carries.
-const UNSHAPED: Shape = Shape { mbit: 10_000.0, rtt_ms: 0.0 };
+const UNSHAPED: Shape = Shape { mbit: 10_000.0, rtt_ms: 0.0, congestion: "cubic" };
 const SMALL: (u16, u16) = (80, 24);
 const LARGE: (u16, u16) = (120, 36);
 
@@ -72,6 +74,8 @@ pub(super) const ALL: &[Case] = &[
     Case { name: "2mbit_80ms_80x24_leaves", clip: Clip::Leaves, ..MAIN },
     Case { name: "2mbit_80ms_120x36", size: LARGE, ..MAIN },
     Case { name: "2mbit_80ms_120x36_leaves", size: LARGE, clip: Clip::Leaves, ..MAIN },
+    // Every ten seconds it lets next to nothing through for 200 ms, to measure the delay anew.
+    Case { name: "2mbit_80ms_80x24_bbr", link: Shape { congestion: "bbr", ..SLOW }, ..MAIN },
     Case { name: "2mbit_80ms_80x24_compressed", through: Through::Compressed, ..MAIN },
     Case { name: "2mbit_80ms_80x24_tmux", through: Through::Tmux, ..MAIN },
     Case { name: "2mbit_80ms_80x24_mosh", through: Through::Mosh, ..MAIN },

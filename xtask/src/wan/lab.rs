@@ -94,6 +94,7 @@ impl Lab {
             .args(["--namespaces", client, server, "--addresses", CLIENT, SERVER])
             .arg(format!("--mbit={}", shape.mbit))
             .arg(format!("--delay-ms={}", shape.rtt_ms / 2.0))
+            .arg(format!("--congestion={}", shape.congestion))
             // A fast link has room for a window of TCP.
             .arg(format!("--queue={}", if shape.mbit > 100.0 { 16 << 20 } else { 64 << 10 }))
             .stdin(Stdio::null())
