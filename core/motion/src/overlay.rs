@@ -1,7 +1,9 @@
-//! Motion as colour over the picture: where it goes is the hue, how fast is brightness and opacity.
+//! Motion as colour over the picture: where it goes is the hue, how fast is the opacity.
 //!
 //! Thesis 3.2 with the misprint of its colours mended (errata E8): in HSL a lightness of 1 is white whatever the
-//! hue, so the single cone that the text draws is HSV: `H = θ`, `S = 1`, `V = min(c ρ, 1)`, opacity `V` too.
+//! hue, so the single cone that the text draws is HSV: `H = θ`, `S = 1`, `V = min(c ρ, 1)`. `V` is laid over the
+//! picture as opacity: half of the speed is half of the colour. Were the colour itself darker too, slow motion would
+//! be a shadow on the picture; on black the two are the same.
 //! Directions are those of the image, y down: 0 is right, a quarter turn is down.
 
 mod dense;
@@ -73,10 +75,7 @@ impl Mapping {
         let value = (self.gain_s_px * u.hypot(v)).min(1.0);
         let direction_rad = v.atan2(u);
         let is_shown = value > 0.0 && self.dial.shows(direction_rad);
-        is_shown.then(|| Tint {
-            rgb: hue(direction_rad).map(|c| (255.0 * c * value).round() as u8),
-            alpha: value,
-        })
+        is_shown.then(|| Tint { rgb: hue(direction_rad).map(|c| (255.0 * c).round() as u8), alpha: value })
     }
 }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use honami_model::track::TrackId;
 
-use super::layout::{Layout, Lens};
+use super::layout::Lens;
 use super::state::State;
 
 /// Letters of labels, those under the fingers first.
@@ -17,7 +17,7 @@ pub(super) type Label = (String, TrackId, [f32; 2]);
 /// others two, and no label begins another.
 #[must_use]
 pub(super) fn labels(state: &State) -> Vec<Label> {
-    let lens = Lens::of(state, Layout::of(state).picture);
+    let lens = Lens::shown(state);
     let (x, y) = (lens.x + lens.width / 2.0, lens.y + lens.height / 2.0);
     let far = |at: [f32; 2]| (f64::from(at[0]) - x).hypot(f64::from(at[1]) - y);
     let seen = state.tracks.iter().filter_map(|row| Some((row.id, row.at(state.frame)?)));

@@ -88,7 +88,13 @@ fn scale(whole: f64, zoom: u8) -> f64 {
 }
 
 impl Lens {
-    /// The lens of a state: all of the picture, or a part as large as the zoom says.
+    /// The lens of the picture on screen.
+    #[must_use]
+    pub fn shown(state: &State) -> Self {
+        Self::of(state, Layout::of(state).picture)
+    }
+
+    /// The lens of a state in an area: all of the picture, or a part as large as the zoom says.
     #[must_use]
     pub fn of(state: &State, area: Rect) -> Self {
         let (clip_width, clip_height) = (f64::from(state.clip.width), f64::from(state.clip.height));

@@ -12,7 +12,7 @@ use super::config::Config;
 use super::effects::World;
 use super::files::{self, Found};
 use super::late::Late;
-use super::layout::{Layout, Lens};
+use super::layout::Lens;
 use super::pace::Pace;
 use super::panel::Panel;
 use super::pictures::Pictures;
@@ -331,7 +331,7 @@ impl App {
             update(&mut self.state, Msg::Fact(Fact::Dropped(dropped)));
             self.frame = None;
         }
-        let lens = Lens::of(&self.state, Layout::of(&self.state).picture);
+        let lens = Lens::shown(&self.state);
         match self.pictures.look(self.state.shown_frame(), lens) {
             Ok(true) => self.frame = None,
             Ok(false) => {}

@@ -1,5 +1,6 @@
 //! Draws a state: pure, from the state and the picture at hand to a frame of cells.
 
+mod braille;
 pub mod column;
 mod form;
 mod labels;
@@ -16,7 +17,7 @@ use ratatui::layout::{Alignment, Rect};
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
 
-use super::layout::Layout;
+use super::layout::{Layout, Lens};
 use super::state::{Mode, State};
 use crate::term::encode::Frame;
 pub use opening::opening;
@@ -28,9 +29,10 @@ pub fn draw(state: &State, shot: Option<&Shot>) -> Frame {
     let (columns, rows) = state.size;
     let mut frame = Frame::new(columns, rows);
     let layout = Layout::of(state);
-    picture::draw(state, &layout, shot, &mut frame);
+    let nth = picture::marks_nth(state, &Lens::of(state, layout.picture), state.shown_frame());
+    picture::draw(state, &layout, shot, nth, &mut frame);
     picture::motion::legend(state, layout.picture, &mut frame);
-    lines::title(state, layout.title, &mut frame);
+    lines::title(state, layout.title, nth, &mut frame);
     column::draw(state, layout.column, &mut frame);
     lines::track(state, layout.track, &mut frame);
     lines::time(state, layout.time, &mut frame);

@@ -17,15 +17,29 @@ fn colours_by_hand() {
         ([0.0, 100.0], [128, 255, 0], 1.0),
         ([-100.0, 0.0], [0, 255, 255], 1.0),
         ([0.0, -100.0], [128, 0, 255], 1.0),
-        ([50.0, 0.0], [128, 0, 0], 0.5),
-        ([-20.0, 0.0], [0, 51, 51], 0.2),
-        ([-30.0, 40.0], [0, 128, 15], 0.5),
+        ([50.0, 0.0], [255, 0, 0], 0.5),
+        ([-20.0, 0.0], [0, 255, 255], 0.2),
+        ([-30.0, 40.0], [0, 255, 30], 0.5),
     ] {
         let tint = mapping(0.01).tint(velocity).unwrap();
         assert_eq!((tint.rgb, tint.alpha), (rgb, alpha), "{velocity:?}");
     }
     for velocity in [[0.0, 0.0], [f64::NAN, 1.0]] {
         assert_eq!(mapping(0.01).tint(velocity), None, "{velocity:?}");
+    }
+}
+
+/// On black the tint is the cone of the thesis: HSV with `V = min(c ρ, 1)`. On white nothing becomes darker than the
+/// colour itself: slow motion is no shadow.
+#[test]
+fn over_black_it_is_the_cone_and_over_white_no_shadow() {
+    for (velocity, on_black, on_white) in [
+        ([50.0, 0.0], [128, 0, 0], [255, 128, 128]),
+        ([-20.0, 0.0], [0, 51, 51], [204, 255, 255]),
+        ([0.0, 100.0], [128, 255, 0], [128, 255, 0]),
+    ] {
+        let tint = mapping(0.01).tint(velocity).unwrap();
+        assert_eq!((over([0; 3], tint), over([255; 3], tint)), (on_black, on_white), "{velocity:?}");
     }
 }
 

@@ -356,9 +356,8 @@ fn open_form(state: &mut State, task: Task) {
         Task::Track => "tracker-klt",
         Task::Cluster => "clusterer-movement",
     };
-    if let Some(holder) = &state.read_only {
-        let line = format!("read only: {holder} holds this project");
-        return complain(state, line);
+    if !edit::is_writable(state) {
+        return;
     }
     if task == Task::Cluster && state.tracks.len() < 2 {
         return complain(state, "two tracks or more can be grouped; t r follows features first");

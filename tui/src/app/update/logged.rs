@@ -7,7 +7,7 @@ use honami_model::track::TrackId;
 use super::{Action, Context, Effect, Mode, Msg, State, actions, on_text, time, update};
 use crate::app::action::TABLE;
 use crate::app::command_log::{Here, Line, Touch, What};
-use crate::app::layout::{Layout, Lens};
+use crate::app::layout::Lens;
 use crate::app::state::Notice;
 use crate::term::input::{Mouse, MouseKind};
 
@@ -50,7 +50,7 @@ pub(super) fn mouse(state: &mut State, mouse: Mouse) {
         _ => false,
     };
     if !is_silent && !is_unlogged(state) {
-        let at = lens(state).point_of(mouse.column, mouse.row);
+        let at = Lens::shown(state).point_of(mouse.column, mouse.row);
         push(state, What::Mouse(Touch { kind: mouse.kind, cell: (mouse.column, mouse.row), at }));
     }
 }
@@ -74,10 +74,6 @@ pub(super) fn said(state: &mut State, notice: &Notice) {
 
 fn is_unlogged(state: &State) -> bool {
     matches!(&state.mode, Mode::Menu(menu) if menu.is_unlogged())
-}
-
-fn lens(state: &State) -> Lens {
-    Lens::of(state, Layout::of(state).picture)
 }
 
 fn push(state: &mut State, what: What) {
@@ -173,7 +169,7 @@ fn stand(state: &mut State, here: &Here) -> Result<(), String> {
 fn point(state: &mut State, touch: &Touch) -> Result<Vec<Effect>, String> {
     let mut cell = touch.cell;
     if let Some([x, y]) = touch.at {
-        let lens = lens(state);
+        let lens = Lens::shown(state);
         let (across, down) = lens
             .place_of([x, y], (1, 1))
             .ok_or_else(|| format!("the point {x:.1}, {y:.1} is not seen now"))?;

@@ -8,10 +8,6 @@ use crate::app::panel::Panel;
 /// One pan moves the view by this part of it.
 const PAN: f64 = 0.25;
 
-fn lens(state: &State) -> Lens {
-    Lens::of(state, Layout::of(state).picture)
-}
-
 /// Looks so many steps closer, at the cursor or the selected track, or from farther away.
 pub(super) fn zoom(state: &mut State, by: i64) {
     let focus = match state.mode {
@@ -27,9 +23,9 @@ pub(super) fn zoom(state: &mut State, by: i64) {
 
 /// Looks closer or from farther away; the image point under a cell of the screen stays there.
 pub(super) fn zoom_at(state: &mut State, by: i64, point: [f32; 2]) {
-    let before = lens(state);
+    let before = Lens::shown(state);
     step(state, by);
-    let ratio = lens(state).cell_px() / before.cell_px();
+    let ratio = Lens::shown(state).cell_px() / before.cell_px();
     let middle = before.middle();
     state.centre = [0, 1].map(|axis| point[axis] + (middle[axis] - point[axis]) * ratio);
     settle(state);
@@ -47,13 +43,13 @@ fn step(state: &mut State, by: i64) {
 
 /// Moves the view by quarters of it; following ends.
 pub(super) fn pan(state: &mut State, dx: f64, dy: f64) {
-    let (lens, n) = (lens(state), count(state) as f64 * PAN);
+    let (lens, n) = (Lens::shown(state), count(state) as f64 * PAN);
     shift(state, [n * dx * lens.width, n * dy * lens.height]);
 }
 
 /// Moves the view with the mouse, by cells.
 pub(super) fn drag(state: &mut State, (columns, rows): (i32, i32)) {
-    let lens = lens(state);
+    let lens = Lens::shown(state);
     let cell =
         [lens.width / f64::from(lens.area.width.max(1)), lens.height / f64::from(lens.area.height.max(1))];
     shift(state, [-f64::from(columns) * cell[0], -f64::from(rows) * cell[1]]);
@@ -64,14 +60,14 @@ fn shift(state: &mut State, by: [f64; 2]) {
         return say(state, "all of the picture is seen: z looks closer");
     }
     state.follow = false;
-    let middle = lens(state).middle();
+    let middle = Lens::shown(state).middle();
     state.centre = [0, 1].map(|axis| middle[axis] + by[axis] as f32);
     settle(state);
 }
 
 /// The middle is where it is seen to be: at the edges of the picture the next move back is felt at once.
 fn settle(state: &mut State) {
-    state.centre = lens(state).middle();
+    state.centre = Lens::shown(state).middle();
 }
 
 /// Brings the selected track to the middle, once.

@@ -9,13 +9,12 @@ use ratatui::text::{Line, Span};
 use honami_model::track::{Source, Status, TrackId};
 use honami_workbench::review::Parts;
 
-use super::picture::marks_nth;
 use super::{fill, fitted, put, style, width};
 use crate::app::action::{Action, Context, TABLE};
 use crate::app::clock::rate_words;
 use crate::app::correcting::{Moving, Tool, nudge_px};
 use crate::app::keymap::shown;
-use crate::app::layout::{Layout, Lens, bar, column_of, frame_at};
+use crate::app::layout::{Lens, bar, column_of, frame_at};
 use crate::app::sketching::Sketching;
 use crate::app::state::{Job, Mode, State};
 use crate::app::tracks::TrackRow;
@@ -25,7 +24,7 @@ use crate::term::encode::Frame;
 const BARS: [&str; 8] = ["▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"];
 
 /// What the title says, each with how soon it is left out where there is no room, the highest first.
-fn facts(state: &State) -> Vec<(u8, String)> {
+fn facts(state: &State, nth: usize) -> Vec<(u8, String)> {
     let counted = |n: usize, one: &str| if n == 1 { format!("1 {one}") } else { format!("{n} {one}s") };
     let mut facts = vec![(0, counted(state.tracks.len(), "track"))];
     facts.extend(state.tracker.clone().map(|tracker| (5, tracker)));
@@ -34,8 +33,7 @@ fn facts(state: &State) -> Vec<(u8, String)> {
         facts.push((1, format!("{} of {} to review", progress.open, progress.total())));
     }
     facts.extend(state.groups.as_ref().map(|groups| (4, counted(groups.k as usize, "group"))));
-    let lens = Lens::of(state, Layout::of(state).picture);
-    let nth = marks_nth(state, &lens, state.shown_frame());
+    let lens = Lens::shown(state);
     facts.extend((state.marks_all && nth > 1).then(|| (3, format!("1 in {nth} marked"))));
     facts.extend(state.read_only.is_some().then(|| (0, "read only".to_owned())));
     if state.zoom > 0 {
@@ -46,10 +44,11 @@ fn facts(state: &State) -> Vec<(u8, String)> {
     facts
 }
 
-pub(super) fn title(state: &State, area: Rect, frame: &mut Frame) {
+/// The title; in the picture every `nth` track is marked.
+pub(super) fn title(state: &State, area: Rect, nth: usize, frame: &mut Frame) {
     let name = fitted(&state.name, width(&state.name).min(usize::from(area.width) / 2));
     let room = usize::from(area.width).saturating_sub(width(&name) + 2);
-    let mut facts = facts(state);
+    let mut facts = facts(state, nth);
     let line =
         |facts: &[(u8, String)]| facts.iter().map(|(_, fact)| fact.as_str()).collect::<Vec<_>>().join(" · ");
     while width(&line(&facts)) > room {
@@ -211,7 +210,8 @@ pub(super) fn time(state: &State, area: Rect, frame: &mut Frame) {
         });
         let is_looped =
             looped.as_ref().is_some_and(|l| l.contains(frames.start()) || frames.contains(l.start()));
-        let outlier = outliers.iter().any(|f| frames.contains(f));
+        let next = outliers.partition_point(|f| f < frames.start());
+        let outlier = outliers.get(next).is_some_and(|f| f <= frames.end());
         let (glyph, style) = match () {
             () if affected.as_ref().is_some_and(|a| overlap(a, &frames)) => ("━", style::ACCENT),
             () if range.as_ref().is_some_and(|r| overlap(r, &frames)) => ("▄", style::ACCENT),

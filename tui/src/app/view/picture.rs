@@ -14,6 +14,7 @@ use ratatui::text::Line;
 
 use honami_model::track::Status;
 
+use super::braille::{DOTS, braille};
 use super::{put, style};
 use crate::app::layout::{Layout, Lens};
 use crate::app::state::{Mode, State};
@@ -87,10 +88,9 @@ const CROSS: [(i64, i64); 4] = [(-2, 0), (2, 0), (0, -2), (0, 2)];
 /// Its outer pixels.
 const CROSS_ENDS: [(i64, i64); 4] = [(-3, 0), (3, 0), (0, -3), (0, 3)];
 
-/// First of the braille patterns, which has no dots.
-const BRAILLE: u32 = 0x2800;
-/// Bits of the dots of a braille pattern, four rows of two.
-const DOTS: [[u8; 2]; 4] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
+/// Pixels of what is hidden: hollow. And of what is lost: crossed out.
+const HOLLOW: [(i64, i64); 4] = [(-1, 0), (1, 0), (0, -1), (0, 1)];
+const CROSSED: [(i64, i64); 5] = [(0, 0), (-1, -1), (1, -1), (-1, 1), (1, 1)];
 
 /// Pixels to be drawn on.
 struct Canvas<'a> {
@@ -119,7 +119,8 @@ pub(super) fn marks_nth(state: &State, lens: &Lens, frame: u32) -> usize {
     n_marks.div_ceil(room.max(1)).next_power_of_two()
 }
 
-pub(super) fn draw(state: &State, layout: &Layout, shot: Option<&Shot>, frame: &mut Frame) {
+/// Draws a shot, where there is one that fits, with every so many-th track marked.
+pub(super) fn draw(state: &State, layout: &Layout, shot: Option<&Shot>, nth: usize, frame: &mut Frame) {
     let here = Lens::of(state, layout.picture);
     let fits = |shot: &&Shot| shot.lens.area == here.area;
     let Some(shot) = shot.filter(fits) else {
@@ -127,18 +128,18 @@ pub(super) fn draw(state: &State, layout: &Layout, shot: Option<&Shot>, frame: &
         put(frame, layout.picture, layout.picture.height / 2, &Line::styled(line, style::DIM).centered());
         return;
     };
-    Canvas::of(state, shot).paint(frame);
+    Canvas::of(state, shot, nth).paint(frame);
 }
 
 /// The pixels of a shot with what lies on them.
 #[must_use]
 pub fn compose(state: &State, shot: &Shot) -> Vec<[u8; 3]> {
-    Canvas::of(state, shot).pixels
+    Canvas::of(state, shot, marks_nth(state, &shot.lens, shot.frame)).pixels
 }
 
 impl<'a> Canvas<'a> {
-    /// A shot with everything drawn on it.
-    fn of(state: &State, shot: &'a Shot) -> Self {
+    /// A shot with everything drawn on it, every so many-th track marked.
+    fn of(state: &State, shot: &'a Shot, nth: usize) -> Self {
         let lens = &shot.lens;
         let mut scene = DefaultHasher::new();
         [lens.x, lens.y, lens.width, lens.height].map(f64::to_bits).hash(&mut scene);
@@ -152,32 +153,34 @@ impl<'a> Canvas<'a> {
         };
         // Marks belong to the frame that is shown, which may be a moment behind.
         canvas.motion(state, shot.frame);
-        canvas.tracks(state, shot.frame);
+        canvas.tracks(state, shot.frame, nth);
         canvas.cursor(state, shot.frame);
         canvas
     }
 
-    fn tracks(&mut self, state: &State, frame: u32) {
+    fn tracks(&mut self, state: &State, frame: u32, nth: usize) {
         let selected = state.selected_row();
         if let Some(row) = selected {
             self.path(row, frame);
         }
-        let nth = marks_nth(state, self.lens, frame);
         let is_marked = |i: usize, row: &TrackRow| {
             let is_meant = state.selected == Some(row.id) || state.picked.contains(&row.id);
             is_meant || (state.marks_all && i.is_multiple_of(nth))
         };
         for (_, row) in state.tracks.iter().enumerate().filter(|(i, row)| is_marked(*i, row)) {
             let Some(sample) = row.span.get(frame) else { continue };
-            let colour = match sample.status {
+            let at = [sample.x, sample.y];
+            match sample.status {
                 Status::Tracked | Status::Newborn => {
-                    style::group(state.groups.as_ref().and_then(|g| g.of(row.id)))
+                    let colour = style::group(state.groups.as_ref().and_then(|g| g.of(row.id)));
+                    self.mark(at, &[], colour, 'o');
+                    self.tint(at, colour);
                 }
                 Status::Outside | Status::Rejected => continue,
-                Status::Lost | Status::Occluded => UNSEEN,
-            };
-            self.mark([sample.x, sample.y], &[], colour, 'o');
-            self.tint([sample.x, sample.y], colour);
+                // Shapes of several pixels by the hundred would hide the picture.
+                Status::Lost => self.mark(at, if nth > 1 { &CROSSED[..1] } else { &CROSSED }, UNSEEN, 'x'),
+                Status::Occluded => self.mark(at, if nth > 1 { &[(0, 0)] } else { &HOLLOW }, UNSEEN, '?'),
+            }
             if state.picked.contains(&row.id) {
                 self.mark([sample.x, sample.y], &RING, PICKED, '#');
             }
@@ -304,10 +307,7 @@ impl<'a> Canvas<'a> {
 impl Letters {
     fn paint(&self, area: Rect, frame: &mut Frame) {
         let columns = usize::from(area.width);
-        let dots = self
-            .dots
-            .iter()
-            .filter_map(|(cell, dots)| Some((*cell, char::from_u32(BRAILLE + u32::from(*dots))?)));
+        let dots = self.dots.iter().map(|(cell, dots)| (*cell, braille(*dots)));
         for (cell, letter) in dots.chain(self.letters.iter().copied()) {
             let i = frame.cells.index_of(area.x + (cell % columns) as u16, area.y + (cell / columns) as u16);
             frame.cells.content[i].reset();

@@ -10,14 +10,11 @@ use super::style;
 use crate::app::layout::{column_of, frame_at};
 use crate::app::plotted::{Plotted, Subject};
 use crate::app::state::State;
+use crate::app::view::braille::{DOTS, braille};
 use crate::app::view::lines::wrapped;
 use crate::app::view::put;
 use crate::term::encode::Frame;
 
-/// First of the braille patterns, which has no dots.
-const BRAILLE: u32 = 0x2800;
-/// Bits of the dots of a braille pattern, four rows of two.
-const DOTS: [[u8; 2]; 4] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
 /// Frequencies are shown up to this many times that of the peak, if that is less than all.
 const BEYOND_PEAK: f64 = 5.0;
 
@@ -105,17 +102,20 @@ fn curve(
 /// Amplitude over frequency, its axis in Hz, and the strongest sway with its uncertainty.
 fn spectrum(sway: &Sway, area: Rect, frame: &mut Frame) {
     let spectrum = &sway.spectrum;
-    let plus_minus = spectrum.resolution_hz / 2.0;
-    let said = match &sway.peak {
-        Some(peak) => format!("{:.2} Hz ± {plus_minus:.2}  {:.1} px", peak.hz, peak.amplitude_px),
-        None => "no sway stands out".to_owned(),
-    };
-    let head = Line::from(vec![Span::styled("sway  ", style::DIM), Span::styled(said, style::BOLD)]);
-    put(frame, area, 0, &head);
     let top = sway
         .peak
         .as_ref()
         .map_or(spectrum.nyquist_hz, |peak| (BEYOND_PEAK * peak.hz).min(spectrum.nyquist_hz));
+    let (unit, per_hz) = unit(top);
+    let said = match &sway.peak {
+        Some(peak) => {
+            let [at, plus_minus] = [peak.hz, spectrum.resolution_hz / 2.0].map(|hz| hz * per_hz);
+            format!("{at:.2} {unit} ± {plus_minus:.2}  {:.1} px", peak.amplitude_px)
+        }
+        None => "no sway stands out".to_owned(),
+    };
+    let head = Line::from(vec![Span::styled("sway  ", style::DIM), Span::styled(said, style::BOLD)]);
+    put(frame, area, 0, &head);
     let plot = Rect { y: area.y + 1, height: area.height.saturating_sub(2), ..area };
     if plot.height == 0 || plot.width < 8 {
         return;
@@ -134,25 +134,41 @@ fn spectrum(sway: &Sway, area: Rect, frame: &mut Frame) {
     let peak = sway.peak.as_ref().map(|peak| column_of_hz(peak.hz));
     let style_of = |x: u16| (if peak == Some(x) { style::ACCENT } else { Style::new() }, None);
     dots(plot, &values, (0.0, most), style_of, frame);
-    // Ticks at round frequencies, each number beginning at its place.
-    let step = tick(top / f64::from(plot.width / 7));
-    let digits = if step < 1.0 { 1 } else { 0 };
     let axis = plot.bottom();
-    for k in 0_u32.. {
-        let hz = f64::from(k) * step;
+    let unit_at = plot.right() - unit.len() as u16;
+    for (hz, label) in ticks(top, u32::from(plot.width / 7)) {
         let x = column_of_hz(hz);
-        let label = format!("{hz:.digits$}");
-        if hz > top || x + label.len() as u16 + 3 > plot.right() {
+        if x + label.len() as u16 + 1 > unit_at {
             break;
         }
         frame.cells.set_string(x, axis, label, style::DIM);
     }
-    frame.cells.set_string(plot.right() - 2, axis, "Hz", style::DIM);
+    frame.cells.set_string(unit_at, axis, unit, style::DIM);
 }
 
-/// The smallest of 1, 2, 5 times a power of ten, from a tenth on, that is not below.
+/// The unit of an axis up to so many hertz, and how many of it are one hertz: a clip with a picture a minute sways by
+/// the hour.
+fn unit(top_hz: f64) -> (&'static str, f64) {
+    match top_hz {
+        hz if hz >= 0.1 => ("Hz", 1.0),
+        hz if hz >= 1e-3 => ("mHz", 1e3),
+        _ => ("/h", 3600.0),
+    }
+}
+
+/// Round frequencies up to `top_hz`, about so many, Hz, each with its number in the unit of the axis.
+fn ticks(top_hz: f64, n: u32) -> Vec<(f64, String)> {
+    let (_, per_hz) = unit(top_hz);
+    let top = top_hz * per_hz;
+    let step = tick(top / f64::from(n.max(1)));
+    let digits = (-step.log10().floor()).max(0.0) as usize;
+    let values = (0_u32..).map(|k| f64::from(k) * step).take_while(|value| *value <= top).take(1000);
+    values.map(|value| (value / per_hz, format!("{value:.digits$}"))).collect()
+}
+
+/// The smallest of 1, 2, 5 times a power of ten that is not below.
 fn tick(least: f64) -> f64 {
-    let decade = 10.0_f64.powf(least.max(0.1).log10().floor());
+    let decade = 10.0_f64.powf(least.max(f64::MIN_POSITIVE).log10().floor());
     [1.0, 2.0, 5.0, 10.0].map(|k| k * decade).into_iter().find(|step| *step >= least).unwrap_or(10.0 * decade)
 }
 
@@ -202,9 +218,12 @@ fn dots(
         let glyph = match (bits, alone) {
             (0, Some(mark)) => mark,
             (0, None) => ' ',
-            (bits, _) => char::from_u32(BRAILLE + u32::from(bits)).unwrap_or(' '),
+            (bits, _) => braille(bits),
         };
         let at = frame.cells.index_of(x, y);
         frame.cells.content[at].set_char(glyph).set_style(style);
     }
 }
+
+#[cfg(test)]
+mod tests;
