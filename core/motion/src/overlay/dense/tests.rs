@@ -52,10 +52,10 @@ fn each_pixel_takes_the_colour_of_its_own_place() {
     let mapping = Mapping { gain_s_px: 0.1, dial: Dial::ALL };
     let mut pixels = [[100; 3]; 16];
     paint_field(&mut pixels, 8, &field, &mapping, |[x, y]| [2.0 * x + 0.5, 2.0 * y + 3.0]);
-    assert_eq!((pixels[0], pixels[7]), ([255, 0, 0], [50, 114, 114]), "the second has half the strength");
+    assert_eq!((pixels[0], pixels[7]), ([255, 0, 0], [50, 178, 178]), "the second has half the strength");
     assert_eq!(pixels[8..12], pixels[..4], "within half a step below");
     let left = Mapping { dial: Dial { centre_rad: std::f64::consts::PI, half_width_rad: 0.5 }, ..mapping };
     let mut pixels = [[100; 3]; 8];
     paint_field(&mut pixels, 8, &field, &left, |[x, y]| [2.0 * x + 0.5, 2.0 * y + 4.0]);
-    assert_eq!((pixels[0], pixels[7]), ([100; 3], [50, 114, 114]), "the dial leaves one of them out");
+    assert_eq!((pixels[0], pixels[7]), ([100; 3], [50, 178, 178]), "the dial leaves one of them out");
 }
