@@ -7,7 +7,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use honami_tests::{Bench, Row, by_track, program};
 use honami_workbench::WorkbenchError;
 use honami_workbench::progress::{Flow, Progress};
-use honami_workbench::retrack::{RetrackRequest, Way, prepare};
+use honami_workbench::retrack::{RetrackRequest, Way, finish, prepare};
+use honami_workbench::script;
 use honami_workbench::session::{Session, SessionOptions};
 
 /// Frames of the clip.
@@ -273,4 +274,32 @@ fn a_stopped_re_tracking_leaves_nothing_behind() {
     drop(session);
     assert_eq!(bench.samples("p.honami"), before);
     assert_eq!((bench.log("p.honami", "run").len(), bench.log("p.honami", "log").len()), (1, n_entries));
+}
+
+#[test]
+fn a_re_tracking_of_what_has_changed_meanwhile_is_not_laid() {
+    let bench = bench();
+    assert_eq!(bench.edit("p.honami", "confirm 3 12").code, Some(0));
+    let options =
+        SessionOptions { plugin_paths: vec![program().parent().unwrap().to_owned()], read_only: false };
+    let mut session = Session::open(&bench.path("p.honami"), &options).unwrap();
+    let (track, _) = session.project.document().tracks().find(|(track, _)| track.0 == 3).unwrap();
+    let request = RetrackRequest { track, way: Way::Both, frames: 0..=N_FRAMES - 1, key: None, with: None };
+    let changed = "track 3 was changed while it was re-tracked: nothing was laid, re-track it again";
+    for (meanwhile, refused) in [
+        ("key 3 12 50 50", Some(changed)),
+        ("key 3 17 50 50", Some(changed)),
+        ("clear 3 12", Some(changed)),
+        ("mark occluded 3 4 6", None),
+        ("delete 3", Some("there is no track 3")),
+    ] {
+        let done = prepare(&session, &request).unwrap().run(&()).unwrap();
+        script::step(&mut session, &script::words(meanwhile)).unwrap();
+        let before = session.project.revision();
+        let laid = finish(&mut session, done).map_err(|why| why.to_string());
+        assert_eq!(laid.as_ref().err().map(String::as_str), refused, "{meanwhile}");
+        assert_eq!(session.project.revision() == before, refused.is_some(), "{meanwhile}");
+    }
+    drop(session);
+    assert_eq!(bench.log("p.honami", "run").len(), 3, "what was not laid leaves no runs behind");
 }

@@ -199,6 +199,12 @@ pub enum WorkbenchError {
         /// The track.
         track: TrackId,
     },
+    /// Passes would not meet the key-frames that there are now.
+    #[error("track {track} was changed while it was re-tracked: nothing was laid, re-track it again")]
+    Changed {
+        /// The track.
+        track: TrackId,
+    },
     /// No plugin tracks.
     #[error("there is no tracker to track with; see honami plugin list")]
     NoTracker,

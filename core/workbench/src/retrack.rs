@@ -191,13 +191,22 @@ impl Retracked {
 
 /// Keeps the passes as runs and lays them over the track: one edit, which undo takes back.
 ///
-/// What a person has made of the track in the meantime is not changed.
+/// What a person has marked or drawn in the meantime is not changed.
 ///
 /// # Errors
-/// What the project met.
+/// [`WorkbenchError::Changed`] when the key-frames are others than those the passes began at, whose path would not meet
+/// them; what the document refuses; what the project met. Nothing is kept then.
 pub fn finish(session: &mut Session, done: Retracked) -> Result<RetrackOutcome, WorkbenchError> {
     let Retracked { request, tracked, heads, warnings, .. } = done;
     let project = &mut session.project;
+    let times = project.clip().clip.times.clone();
+    let ground = Ground::of(project, request.track)?;
+    let stretches = plan::stretches(&lay::anchors(&ground, request.key, &times), &request.frames, request.way);
+    if !stretches.iter().eq(tracked.iter().map(|one| &one.stretch)) {
+        return Err(WorkbenchError::Changed { track: request.track });
+    }
+    // What cannot be laid must not leave runs behind.
+    lay::correction(&ground, &request, &tracked, Runs::default(), &times)?;
     let [ahead, back] = heads;
     let spans = |pass: fn(&Tracked) -> &Option<Found>| -> Vec<(TrackId, Span)> {
         let found = tracked.iter().filter_map(|one| pass(one).as_ref());
@@ -210,9 +219,7 @@ pub fn finish(session: &mut Session, done: Retracked) -> Result<RetrackOutcome, 
     let runs = project.keep_runs(&ahead.into_iter().chain(back).collect::<Vec<_>>())?;
     let mut numbers = runs.iter().copied();
     let numbers = Runs { forward: if has_ahead { numbers.next() } else { None }, backward: numbers.next() };
-    let times = project.clip().clip.times.clone();
-    let correction =
-        lay::correction(&Ground::of(project, request.track)?, &request, &tracked, numbers, &times)?;
+    let correction = lay::correction(&ground, &request, &tracked, numbers, &times)?;
     let line = correction.transaction.label.clone();
     let entry = project.commit(correction.transaction)?;
     Ok(RetrackOutcome { runs, entry, line, warnings })
