@@ -171,10 +171,9 @@ impl<'a> Shown<'a> {
         Ok(Correction { transaction, track, span, affected, largest_px })
     }
 
-    /// Where the track is shown, pixels.
-    fn position(&self, frame: u32) -> Result<[f64; 2], Refused> {
-        let sample = self.span.get(frame).ok_or(Refused::NoSample { track: self.id, frame })?;
-        Ok(position(sample))
+    /// The sample where the feature is seen, or predicted while it is hidden.
+    fn placed(&self, frame: u32) -> Option<&Sample> {
+        self.span.get(frame).filter(|sample| is_placed(sample.status))
     }
 
     /// Seconds; 0 beyond the clip, where no sample is.
@@ -188,7 +187,7 @@ impl<'a> Shown<'a> {
 
     /// The sample that a correction may carry along: of a run, or laid over it by hand, not lost; no key-frame.
     fn carried(&self, frame: u32) -> Option<&Sample> {
-        let sample = self.span.get(frame).filter(|sample| is_placed(sample.status))?;
+        let sample = self.placed(frame)?;
         let is_live = sample.source == Source::Interpolated && !self.track.over.contains_key(&frame);
         (sample.source != Source::Key && !is_live).then_some(sample)
     }
@@ -220,10 +219,11 @@ impl<'a> Shown<'a> {
     }
 
     /// Lays what is shown outside a range wherever these edits would change it: key-frames that come and go
-    /// bend the curve through their neighbours.
+    /// bend the curve through their neighbours. Where a lost feature was last seen is nothing to hold.
     fn held(&self, edits: &[Edit], inside: Range<u32>) -> Result<Vec<Edit>, Refused> {
         let after = self.correct(edits.to_vec(), "")?;
-        let changes = |at: u32| !inside.contains(&at) && after.span.get(at) != self.span.get(at);
+        let known = |span: &Span, at: u32| span.get(at).filter(|s| s.status != Status::Lost).copied();
+        let changes = |at: u32| !inside.contains(&at) && known(&after.span, at) != known(&self.span, at);
         let keep = |frames: Range<u32>| {
             self.relay(frames, |at| changes(at).then(|| self.laid(at, *self.span.get(at)?)))
         };

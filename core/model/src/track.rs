@@ -63,7 +63,7 @@ pub enum Source {
     Sketch = 1,
     /// Found by a tracker.
     Tracked = 2,
-    /// Computed between two key-frames.
+    /// Computed: between two key-frames, or as the mean of several tracks.
     Interpolated = 3,
     /// Read from somebody else's file.
     Imported = 4,

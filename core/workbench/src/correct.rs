@@ -71,41 +71,42 @@ pub enum Step {
 /// # Errors
 /// What the correction is refused for, and what the project met.
 pub fn prepare(project: &mut Project, step: &Step) -> Result<(Transaction, Option<TrackId>), WorkbenchError> {
-    let new = match step {
-        Step::Split { .. } | Step::Duplicate(_) | Step::Average(_) => {
-            Some(TrackId(project.reserve_tracks(1)?.start))
-        }
-        Step::Mark { .. }
-        | Step::DeleteRange { .. }
-        | Step::Sketch { .. }
-        | Step::Swap { .. }
-        | Step::Join { .. } => None,
-    };
     let ids = step.tracks();
     let grounds = ids.iter().map(|&id| Ground::of(project, id)).collect::<Result<Vec<Ground>, _>>()?;
-    let times = &project.clip().clip.times;
-    let shown: Vec<Shown<'_>> = grounds.iter().map(|ground| ground.shown(times)).collect();
-    let edit = match (step, &shown[..], new) {
-        (Step::Mark { frames, status, .. }, ..) => {
+    let times = project.clip().clip.times.clone();
+    let shown: Vec<Shown<'_>> = grounds.iter().map(|ground| ground.shown(&times)).collect();
+    let edit = |new: TrackId| match (step, &shown[..]) {
+        (Step::Mark { frames, status, .. }, _) => {
             tracks::many(&shown, |shown| mark(shown, frames.clone(), *status))
         }
-        (Step::DeleteRange { frames, .. }, ..) => {
+        (Step::DeleteRange { frames, .. }, _) => {
             tracks::many(&shown, |shown| delete_range(shown, frames.clone()))
         }
-        (Step::Sketch { strokes, .. }, [shown], _) => {
+        (Step::Sketch { strokes, .. }, [shown]) => {
             sketch(shown, strokes).map(|correction| correction.transaction)
         }
-        (Step::Split { frame, .. }, [shown], Some(new)) => tracks::split(shown, *frame, new),
-        (Step::Swap { frames, .. }, [a, b], _) => tracks::swap(a, b, frames.clone()),
-        (Step::Join { .. }, [a, b], _) => tracks::join(a, b),
-        (Step::Duplicate(_), [shown], Some(new)) => tracks::duplicate(shown, new),
-        (Step::Average(_), _, Some(new)) => tracks::average(&shown, new),
+        (Step::Split { frame, .. }, [shown]) => tracks::split(shown, *frame, new),
+        (Step::Swap { frames, .. }, [a, b]) => tracks::swap(a, b, frames.clone()),
+        (Step::Join { .. }, [a, b]) => tracks::join(a, b),
+        (Step::Duplicate(_), [shown]) => tracks::duplicate(shown, new),
+        (Step::Average(_), _) => tracks::average(&shown, new),
         _ => Err(Refused::NothingSeen),
     };
-    Ok((edit?, new))
+    // Numbers are never used twice: a step that is refused must not use one up, so that it is tried with any first.
+    let tried = edit(TrackId(u32::MAX))?;
+    if !step.makes_one() {
+        return Ok((tried, None));
+    }
+    let new = TrackId(project.reserve_tracks(1)?.start);
+    Ok((edit(new)?, Some(new)))
 }
 
 impl Step {
+    /// Whether a new track comes of it.
+    fn makes_one(&self) -> bool {
+        matches!(self, Self::Split { .. } | Self::Duplicate(_) | Self::Average(_))
+    }
+
     /// The tracks it works on, the one that stays first.
     fn tracks(&self) -> Vec<TrackId> {
         match self {

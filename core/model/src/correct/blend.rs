@@ -85,7 +85,7 @@ pub struct Blended {
 /// what was found backwards from the second.
 ///
 /// Each weighs by a sigmoid that falls along its way; the two sum to one, and are stretched so that each is
-/// exactly one at its own key-frame and zero at the other (after the reverse-sigmoid correction of LK-RSTC).
+/// exactly one at its own key-frame and zero at the other (the "reverse sigmoid tracking correction" of LK-RSTC, in DUSTrack).
 /// Where one of them is lost the other counts alone, and the sigmoids run over the frames that both have
 /// seen; where both are, a curve bridges them. Status and quality are those of the heavier one.
 #[must_use]

@@ -2,16 +2,17 @@
 
 use std::ops::Range;
 
+use super::mark::word;
 use super::said;
 use crate::edit::EditError;
-use crate::track::TrackId;
+use crate::track::{Status, TrackId};
 
 /// Why a correction cannot be done, and what to do instead.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Refused {
     /// There is nothing to move.
-    #[error("track {track} has no sample at frame {frame}; go to a frame where it is shown")]
+    #[error("track {track} is not seen at frame {frame}; go to a frame where it is")]
     NoSample {
         /// The track.
         track: TrackId,
@@ -27,12 +28,24 @@ pub enum Refused {
         frames: Range<u32>,
     },
     /// Nothing would change.
-    #[error("track {track}: {} are so already", said(frames))]
+    #[error("track {track}: {} already {}", are(frames), word(*status))]
     Unchanged {
         /// The track.
         track: TrackId,
         /// The frames asked for.
         frames: Range<u32>,
+        /// What they are.
+        status: Status,
+    },
+    /// The sample cannot be right where the feature is not seen.
+    #[error("track {track} is {} at frame {frame}: place it, or leave it so", word(*status))]
+    Unseen {
+        /// The track.
+        track: TrackId,
+        /// The frame.
+        frame: u32,
+        /// What it is.
+        status: Status,
     },
     /// A shift in time needs samples beside the one that slides.
     #[error("track {track}: frame {frame} has no samples beside it to slide along")]
@@ -57,9 +70,14 @@ pub enum Refused {
     #[error("the stroke covers no frame; draw while the clip plays, for longer than its delay")]
     NoStroke,
     /// There is nothing to average, or to fill a track with.
-    #[error("the tracks to work on are seen in no frame that counts; pick others")]
+    #[error("none of these tracks is seen where it would help; pick others")]
     NothingSeen,
     /// The document refuses the edits.
     #[error(transparent)]
     Edit(#[from] EditError),
+}
+
+/// `frames 3-7 are`, `frame 3 is`.
+fn are(frames: &Range<u32>) -> String {
+    format!("{} {}", said(frames), if frames.len() == 1 { "is" } else { "are" })
 }

@@ -8,7 +8,8 @@ use super::{Correction, Refused, Shown};
 use crate::over::{Laid, Over};
 use crate::track::{Quality, Sample, Source, Status};
 
-/// How late a hand follows what the eye sees, seconds (Diener 2009, 3.4.2, after its reference ES00).
+/// How late a hand follows what the eye sees, seconds (Diener 2009, 3.4.2, after K. C. Engel and J. F. Soechting,
+/// Manual tracking in two dimensions, J. Neurophysiol. 83, 2000).
 pub const HUMAN_DELAY_S: f64 = 0.115;
 
 /// Clip times closer than this are one, seconds.

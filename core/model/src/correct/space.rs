@@ -1,6 +1,6 @@
 //! Correction in space: what a person moves at one frame is carried along the curve (Diener 2009, 3.5.1).
 
-use super::{Correction, Refused, Shown, moved, position};
+use super::{Correction, Refused, Shown, is_placed, key_only, moved, position};
 use crate::curve::basis;
 
 /// Moves one sample, and those beside it with it, less and less up to the bounds of the correction.
@@ -13,10 +13,16 @@ use crate::curve::basis;
 /// makes that sample right by definition. Without one after, the displacement is held to the end of the
 /// track: a tracker that has drifted off stays off, and nothing says that it finds back.
 ///
+/// A lost sample was displaced by nobody, so that it is placed [alone](key_only).
+///
 /// # Errors
 /// [`Refused::NoSample`] where the track is not shown; what the document refuses.
 pub fn space(shown: &Shown<'_>, frame: u32, to: [f32; 2]) -> Result<Correction, Refused> {
-    let from = shown.position(frame)?;
+    let sample = shown.span.get(frame).ok_or(Refused::NoSample { track: shown.id, frame })?;
+    if !is_placed(sample.status) {
+        return key_only(shown, frame, to);
+    }
+    let from = position(sample);
     let delta = [f64::from(to[0]) - from[0], f64::from(to[1]) - from[1]];
     let (before, after) = shown.keys_around(frame);
     let start = before.unwrap_or(shown.span.first_frame).min(frame);

@@ -9,6 +9,7 @@ use super::*;
 use crate::document::Origin;
 use crate::track::TrackSet;
 
+mod beside;
 mod oracles;
 mod ranges;
 mod slid;
@@ -239,10 +240,10 @@ fn refusals_say_what_to_do() {
     for (refused, want) in [
         (
             space(&short.shown(), 12, [1.0, 1.0]).err(),
-            "track 42 has no sample at frame 12; go to a frame where it is shown",
+            "track 42 is not seen at frame 12; go to a frame where it is",
         ),
         (mark(&short.shown(), 12..20, Status::Lost).err(), "track 42 has no samples in frames 12-19"),
-        (mark(&short.shown(), 2..4, Status::Tracked).err(), "track 42: frames 2-3 are so already"),
+        (mark(&short.shown(), 2..4, Status::Tracked).err(), "track 42: frames 2-3 are already seen"),
         (delete_range(&short.shown(), 0..20).err(), "that is all of track 42: delete the track instead"),
         (
             blend(&shown, &none, &none, RunId(1), (5, 9)).err(),
@@ -256,10 +257,7 @@ fn refusals_say_what_to_do() {
         ),
         (key_only(&shown, 3, [f32::NAN, 0.0]).err(), "track 42: the position at frame 3 is not finite"),
         (split(&shown, 0, TrackId(99)).err(), "track 42 has no samples in frame 0"),
-        (
-            average(&[], TrackId(99)).err(),
-            "the tracks to work on are seen in no frame that counts; pick others",
-        ),
+        (average(&[], TrackId(99)).err(), "none of these tracks is seen where it would help; pick others"),
     ] {
         assert_eq!(refused.map(|why| why.to_string()).as_deref(), Some(want));
     }

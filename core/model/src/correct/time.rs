@@ -20,19 +20,25 @@ pub struct Slid {
 /// Gives a frame the position that the curve has `shift_s` later (earlier where negative); it becomes a
 /// key-frame.
 ///
-/// The shift falls linearly to zero at the key-frames on both sides, at the track's ends where there are
-/// none: frame k takes the position at `t_k + shift w_k`, on the Hermite curve through the shown samples.
+/// The shift falls linearly to zero at the key-frames on both sides, where the feature is lost if that is
+/// nearer, at the track's ends where there are none: frame k takes the position at `t_k + shift w_k`, on the Hermite curve through the shown samples.
 /// The time map keeps a pace of 1/20 at least, so that samples cannot change their order; a larger shift is
 /// cut to that. What is shown beyond the bounds stays as it is, interpolated samples too.
 ///
 /// # Errors
-/// [`Refused::NoSample`] where the track is not shown, [`Refused::NoRoom`] where it has no other sample.
+/// [`Refused::NoSample`] where the feature is lost or not shown, [`Refused::NoRoom`] where it is so on both
+/// sides.
 pub fn time(shown: &Shown<'_>, frame: u32, shift_s: f64) -> Result<Slid, Refused> {
-    shown.position(frame)?;
+    if shown.placed(frame).is_none() {
+        return Err(Refused::NoSample { track: shown.id, frame });
+    }
     let frames = shown.span.frames();
     let (before, after) = shown.keys_around(frame);
-    let start = before.filter(|before| frames.contains(before)).unwrap_or(frames.start);
-    let last = after.filter(|after| frames.contains(after)).unwrap_or(frames.end - 1);
+    let is_placed = |at: &u32| shown.placed(*at).is_some();
+    let back = before.unwrap_or(0).max(frames.start)..frame;
+    let start = back.rev().take_while(is_placed).last().unwrap_or(frame);
+    let ahead = frame + 1..after.map_or(frames.end, |after| frames.end.min(after + 1));
+    let last = ahead.take_while(is_placed).last().unwrap_or(frame);
     if start == last {
         return Err(Refused::NoRoom { track: shown.id, frame });
     }
@@ -56,8 +62,7 @@ pub fn time(shown: &Shown<'_>, frame: u32, shift_s: f64) -> Result<Slid, Refused
     };
     let mut edits = Vec::new();
     edits.extend(shown.relay(start..last + 1, |at| {
-        let sample = shown.span.get(at).filter(|sample| super::is_placed(sample.status))?;
-        let sample = moved(sample, along(source_s(shown.time(at))));
+        let sample = moved(shown.placed(at)?, along(source_s(shown.time(at))));
         (at != frame).then(|| shown.laid(at, sample))
     }));
     let [x, y] = along(source_s(t_s));

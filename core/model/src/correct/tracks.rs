@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 use super::mark::within;
-use super::{Correction, Refused, Shown, is_placed, keys_in, said};
+use super::{Correction, Refused, Shown, keys_in, said};
 use crate::edit::{Edit, Transaction};
 use crate::over::{Laid, Over};
 use crate::track::{Quality, Sample, Source, Status, TrackId, TrackSet};
@@ -55,14 +55,19 @@ pub fn swap(a: &Shown<'_>, b: &Shown<'_>, frames: Range<u32>) -> Result<Transact
 
 /// Fills a track, where it is not seen, with what another one has there; the other one is deleted.
 ///
-/// Where the first is merely interpolated, what the second has seen counts more.
+/// Where the first is merely interpolated, what the second has seen counts more; what it was interpolated
+/// itself does not.
 ///
 /// # Errors
 /// [`Refused::NothingSeen`] when the second has nothing that the first lacks.
 pub fn join(a: &Shown<'_>, b: &Shown<'_>) -> Result<Transaction, Refused> {
     let fills = |frame: u32| {
         let is_known = a.carried(frame).is_some() || a.track.keys.contains_key(&frame);
-        b.span.get(frame).filter(|sample| !is_known && is_placed(sample.status))
+        let is_better = |sample: &&Sample| {
+            let is_found = sample.status.is_seen() && sample.source != Source::Interpolated;
+            is_found || a.placed(frame).is_none()
+        };
+        b.placed(frame).filter(|_| !is_known).filter(is_better)
     };
     let filled: Vec<u32> = b.span.frames().filter(|&frame| fills(frame).is_some()).collect();
     let (Some(&first), Some(&last)) = (filled.first(), filled.last()) else {
@@ -76,6 +81,7 @@ pub fn join(a: &Shown<'_>, b: &Shown<'_>) -> Result<Transaction, Refused> {
         let key = *b.track.keys.get(frame)?;
         Some(Edit::SetKey { track: a.id, frame: *frame, key })
     }));
+    edits.extend(a.held(&edits, first..last + 1)?);
     edits.push(Edit::DeleteTracks { tracks: b.id.into() });
     let label = format!("track {} joined with track {}: {} filled", a.id, b.id, said(&(first..last + 1)));
     Ok(Transaction::new(label, edits))
@@ -101,7 +107,7 @@ pub fn average(tracks: &[Shown<'_>], new: TrackId) -> Result<Transaction, Refuse
         let (n, x, y) = seen.fold((0.0_f64, 0.0, 0.0), |(n, x, y), sample| {
             (n + 1.0, x + f64::from(sample.x), y + f64::from(sample.y))
         });
-        let (status, source, quality) = (Status::Tracked, Source::Tracked, Quality::default());
+        let (status, source, quality) = (Status::Tracked, Source::Interpolated, Quality::default());
         let sample = Sample { x: (x / n) as f32, y: (y / n) as f32, status, source, quality };
         (n > 0.0).then_some(Over::Sample(Laid { sample, run: None }))
     };

@@ -1,9 +1,10 @@
 //! Transactions with their line: what happened, in the user's words, with numbers.
 
 use super::{Edit, Transaction};
+use crate::correct::Refused;
 use crate::document::{ClusteringId, Key, RunId, ShownClustering};
 use crate::judgement::Judgement;
-use crate::track::{TrackId, TrackSet};
+use crate::track::{Sample, Status, TrackId, TrackSet};
 
 impl Transaction {
     /// One edit under a line.
@@ -35,14 +36,21 @@ impl Transaction {
         )
     }
 
-    /// A person finds the sample shown there right.
-    #[must_use]
-    pub fn confirm_key(track: TrackId, frame: u32, at: [f32; 2]) -> Self {
-        let key = Key::confirmed(at[0], at[1]);
-        Self::new(
+    /// A person finds the sample shown there right; a hidden feature stays hidden.
+    ///
+    /// # Errors
+    /// [`Refused::Unseen`] where the feature is lost, outside or rejected: no place was found there.
+    pub fn confirm_key(track: TrackId, frame: u32, shown: &Sample) -> Result<Self, Refused> {
+        let status = match shown.status {
+            Status::Tracked | Status::Newborn => Status::Tracked,
+            Status::Occluded => Status::Occluded,
+            status => return Err(Refused::Unseen { track, frame, status }),
+        };
+        let key = Key { status, ..Key::confirmed(shown.x, shown.y) };
+        Ok(Self::new(
             format!("track {track}: key-frame at {frame} (confirmed)"),
             vec![Edit::SetKey { track, frame, key }],
-        )
+        ))
     }
 
     /// A key-frame is given back to the runs.

@@ -194,12 +194,17 @@ fn hiding_a_run_keeps_hand_work_on_its_tracks() {
 
 #[test]
 fn lines_say_what_happened() {
+    let (status, source, quality) = (Status::Tracked, Source::Tracked, Quality::default());
+    let seen = Sample { x: 5.0, y: 4.0, status, source, quality };
     let cases = [
         (
             Transaction::set_key(TrackId(42), 187, [5.0, 4.0], Some([0.0, 0.0])),
             "track 42: key-frame at 187 (moved 6.4 px)",
         ),
-        (Transaction::confirm_key(TrackId(42), 187, [5.0, 4.0]), "track 42: key-frame at 187 (confirmed)"),
+        (
+            Transaction::confirm_key(TrackId(42), 187, &seen).unwrap(),
+            "track 42: key-frame at 187 (confirmed)",
+        ),
         (Transaction::add_track(TrackId(9), 3, 1.25, 2.0), "track 9: placed at frame 3 (1.2, 2.0)"),
         (Transaction::clear_key(TrackId(9), 3), "track 9: key-frame at 3 cleared"),
         (Transaction::delete_tracks(set(4..5)), "track 4 deleted"),

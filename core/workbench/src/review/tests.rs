@@ -110,6 +110,13 @@ fn the_track_that_goes_astray_is_found_and_leaves_when_judged_until_it_changes()
 
     let key = Edit::SetKey { track: astray, frame: 15, key: Key::set(3.0, 4.0) };
     session.project.commit(Transaction::new("moved", vec![key])).unwrap();
+    let stands = || {
+        let path = folder.path().join("v.csv");
+        tables::verdicts(&session.project, &path).unwrap();
+        let rows = honami_exchange::read::<honami_exchange::VerdictRow>(&path).unwrap();
+        rows.map(|row| row.unwrap().stands).collect::<Vec<_>>()
+    };
+    assert_eq!(stands(), [Some(false)], "what was judged is no longer there");
     let again = review(&session.project, Arc::clone(&session.media), &()).unwrap();
     assert!(again.queue.of_track(astray).count() > 0 && again.progress().judged.done() == 0);
 }
@@ -159,4 +166,33 @@ fn stopped_it_says_so() {
     let (_folder, session, _) = project();
     let stopped = review(&session.project, Arc::clone(&session.media), &StopAfter(AtomicU64::new(5)));
     assert!(matches!(stopped, Err(WorkbenchError::Stopped)), "{stopped:?}");
+}
+
+/// Fails as a fault of the program would.
+struct Faulty;
+
+impl Progress for Faulty {
+    fn report(&self, _: u64, _: u64, _: &str) -> Flow {
+        panic!("a fault, for the test's sake")
+    }
+}
+
+#[test]
+fn a_fault_is_said_and_not_taken_for_a_stop() {
+    let (_folder, session, _) = project();
+    let mut reviewer = Reviewer::new(Arc::clone(&session.media), 2);
+    reviewer.tell(Changes::since(&mut Known::default(), &session.project).unwrap());
+    assert!(reviewer.is_pending());
+    assert!(matches!(reviewer.look(&Faulty), Err(WorkbenchError::Fault)));
+}
+
+#[test]
+fn a_refused_step_uses_no_number_up() {
+    use crate::correct::{Step, prepare};
+    let (_folder, mut session, track) = project();
+    let project = &mut session.project;
+    let refused = prepare(project, &Step::Split { track, frame: 0 });
+    assert!(refused.is_err());
+    let (_, new) = prepare(project, &Step::Split { track, frame: 9 }).unwrap();
+    assert_eq!(new, Some(TrackId(track.0 + 1)));
 }

@@ -139,7 +139,7 @@ fn confirm(session: &mut Session, given: &Arguments<'_>) -> Outcome {
     let (track, frame) = (given.track(0)?, given.whole(1, "frame")?);
     let span = session.project.shown(track)?;
     let sample = span.and_then(|span| span.get(frame).copied()).ok_or(Refused::NoSample { track, frame })?;
-    Ok(Act::Commit(Transaction::confirm_key(track, frame, [sample.x, sample.y])))
+    Ok(Act::Commit(Transaction::confirm_key(track, frame, &sample)?))
 }
 
 fn clear(_: &mut Session, given: &Arguments<'_>) -> Outcome {

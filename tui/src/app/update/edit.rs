@@ -66,10 +66,13 @@ pub(super) fn confirm(state: &mut State) -> Vec<Effect> {
             say(state, format!("track {id}: frame {} is a key-frame already", state.frame));
             Vec::new()
         }
-        Some(sample) => {
-            let edit = Transaction::confirm_key(id, state.frame, [sample.x, sample.y]);
-            vec![Effect::Commit(edit, UNDO)]
-        }
+        Some(sample) => match Transaction::confirm_key(id, state.frame, sample) {
+            Ok(edit) => vec![Effect::Commit(edit, UNDO)],
+            Err(why) => {
+                complain(state, format!("{why} (m places it)"));
+                Vec::new()
+            }
+        },
         None => {
             complain(state, format!("track {id} has no sample at {}; m places one", state.frame));
             Vec::new()
