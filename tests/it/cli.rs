@@ -48,7 +48,7 @@ fn the_whole_job_on_every_kind_of_clip() {
         assert!(n_tracks > 20 && track["stopped"] == false, "{clip}: {track}");
 
         let review = bench.json("review p.honami");
-        assert_keys(&review, "open total verdicts queue effort");
+        assert_keys(&review, "open total verdicts stale queue effort");
         let items = review["queue"].as_array().unwrap();
         assert_eq!(review["open"], items.len());
         items.iter().for_each(|item| {

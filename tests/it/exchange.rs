@@ -120,7 +120,7 @@ fn what_does_not_fit_the_clip_is_counted() {
         "its own number is free"
     );
     let text = bench.text("import p.honami t.txt");
-    for words in ["1 tracks have new numbers", "2 samples left out", "1 samples lie outside the picture"] {
+    for words in ["1 track has a new number", "2 samples left out", "1 sample lies outside the picture"] {
         assert!(text.contains(words), "{words} is not in:\n{text}");
     }
     fs::write(bench.path("late.txt"), "11,5,1,1,1,1,1\n").unwrap();

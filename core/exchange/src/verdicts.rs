@@ -7,10 +7,11 @@ use crate::table::{Fields, Line, Row, TableError, finite, whole};
 
 const COUNT: &str = "a whole number of 0 or more";
 const SECONDS: &str = "a finite number";
+const UNSEALED: &str = "unsealed";
 
-/// A judgement: `track,first_frame,end_frame,verdict,reasons,reviewer,time,keystrokes,key_frames,seconds`.
+/// A judgement: `track,first_frame,end_frame,verdict,stands,reasons,reviewer,time,keystrokes,key_frames,seconds`.
 ///
-/// `end_frame` is one past the last, `reasons` are codes with spaces between them, `time` is RFC 3339. The seal of the
+/// `end_frame` is one past the last; `stands` is `yes` or `no`, or `unsealed`; `reasons` are codes with spaces between them, `time` is RFC 3339. The seal of the
 /// samples is the project's own and not written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VerdictRow {
@@ -20,6 +21,8 @@ pub struct VerdictRow {
     pub first_frame: u32,
     /// What was found of it.
     pub judgement: Judgement,
+    /// Whether the samples are still those that were judged; `None`: nobody knows, they were not sealed.
+    pub stands: Option<bool>,
 }
 
 impl Row for VerdictRow {
@@ -28,6 +31,7 @@ impl Row for VerdictRow {
         "first_frame",
         "end_frame",
         "verdict",
+        "stands",
         "reasons",
         "reviewer",
         "time",
@@ -52,6 +56,7 @@ impl Row for VerdictRow {
                 effort: effort(fields)?,
                 seal: None,
             },
+            stands: fields.optional("stands", "yes, no or unsealed", stands)?.flatten(),
         })
     }
 
@@ -61,10 +66,19 @@ impl Row for VerdictRow {
         line.put(self.first_frame);
         line.put(end_frame);
         line.put(verdict.word());
+        line.put(self.stands.map_or(UNSEALED, |stands| if stands { "yes" } else { "no" }));
         line.text(&reasons.join(" "));
         line.text(reviewer);
         line.put(time);
         put_effort(effort, line);
+    }
+}
+
+fn stands(text: &str) -> Option<Option<bool>> {
+    match text {
+        "yes" => Some(Some(true)),
+        "no" => Some(Some(false)),
+        _ => (text == UNSEALED).then_some(None),
     }
 }
 
@@ -136,6 +150,7 @@ mod tests {
                     effort,
                     seal: None,
                 },
+                stands: [Some(true), Some(false), None][track as usize % 3],
             })
             .collect();
         let mut table = Writer::create(&path).unwrap();

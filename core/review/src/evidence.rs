@@ -76,8 +76,11 @@ impl Evidence {
         let rows = std::thread::scope(|scope| {
             let workers: Vec<_> =
                 subjects.chunks(share).map(|subjects| scope.spawn(move || measure(subjects))).collect();
-            // A worker that panics has met a fault of this crate: its tracks are missing, the rest is right.
-            workers.into_iter().flat_map(|worker| worker.join().unwrap_or_default()).collect::<Vec<_>>()
+            // A worker that panics has met a fault of this crate: tracks must not be missing without a word.
+            let join = |worker: std::thread::ScopedJoinHandle<'_, Vec<Row>>| {
+                worker.join().unwrap_or_else(|fault| std::panic::resume_unwind(fault))
+            };
+            workers.into_iter().flat_map(join).collect::<Vec<_>>()
         });
         Self { rows: rows.into_iter().map(|row| (row.subject.track, row)).collect() }
     }

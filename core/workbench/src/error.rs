@@ -211,6 +211,9 @@ pub enum WorkbenchError {
     /// A correction cannot be done.
     #[error(transparent)]
     Refused(#[from] honami_model::correct::Refused),
+    /// A thread of the program has panicked.
+    #[error("a fault of the program's own; the session's log has its report")]
+    Fault,
     /// The caller stopped a job that keeps nothing.
     #[error("stopped")]
     Stopped,

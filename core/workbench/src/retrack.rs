@@ -201,7 +201,8 @@ pub fn finish(session: &mut Session, done: Retracked) -> Result<RetrackOutcome, 
     let project = &mut session.project;
     let times = project.clip().clip.times.clone();
     let ground = Ground::of(project, request.track)?;
-    let stretches = plan::stretches(&lay::anchors(&ground, request.key, &times), &request.frames, request.way);
+    let stretches =
+        plan::stretches(&lay::anchors(&ground, request.key, &times), &request.frames, request.way);
     if !stretches.iter().eq(tracked.iter().map(|one| &one.stretch)) {
         return Err(WorkbenchError::Changed { track: request.track });
     }

@@ -61,20 +61,23 @@ impl Changes {
         let (mut moved, mut changes) = (Vec::new(), Self::default());
         for (track, span) in project.shown_all()? {
             let judgements = document.track(track).map(|track| track.judgements.clone()).unwrap_or_default();
-            let old = known.tracks.remove(&track);
-            if all_anew || old.as_ref().is_none_or(|(old, _)| !Arc::ptr_eq(old, &span)) {
+            let old = known.tracks.get(&track);
+            if all_anew || old.is_none_or(|(old, _)| !Arc::ptr_eq(old, &span)) {
                 moved.push((track, Arc::clone(&span)));
             }
-            if old.is_none_or(|(_, old)| old != judgements) {
+            if old.is_none_or(|(_, old)| *old != judgements) {
                 changes.judgements.push((track, judgements.clone()));
             }
             new.tracks.insert(track, (span, judgements));
         }
-        changes.gone = std::mem::replace(known, new).tracks.into_keys().collect();
+        let is_gone = |track: &TrackId| !new.tracks.contains_key(track);
+        changes.gone = known.tracks.keys().copied().filter(is_gone).collect();
         let mut rivals = rivals(project, &moved.iter().map(|(track, _)| *track).collect())?;
         let subject =
             |(track, span)| Subject { track, span, rivals: rivals.remove(&track).unwrap_or_default() };
         changes.subjects = moved.into_iter().map(subject).collect();
+        // Last: what could not be read has not been told.
+        *known = new;
         Ok(changes)
     }
 
@@ -199,7 +202,7 @@ impl Reviewer {
     /// has changed of the review; nothing when it was stopped, and then these tracks stay to be looked at.
     ///
     /// # Errors
-    /// What the clip met.
+    /// [`WorkbenchError::Fault`], and what the clip met.
     pub fn look(&mut self, progress: &dyn Progress) -> Result<Vec<Told>, WorkbenchError> {
         let n = self.pending.len().min(BATCH * self.max_threads);
         let tracks = self.pending[..n].to_vec();
@@ -210,7 +213,10 @@ impl Reviewer {
         let looked = std::thread::scope(|scope| {
             let work = |correlator| scope.spawn(move || correlate(media, correlator, progress));
             let workers: Vec<_> = correlators.into_iter().map(work).collect();
-            let ends = workers.into_iter().map(|worker| worker.join().unwrap_or(Ok(None)));
+            // All are waited for, also when the first has failed: the scope panics for those that are not.
+            let join = |worker: std::thread::ScopedJoinHandle<'_, _>| worker.join();
+            let ends: Vec<_> = workers.into_iter().map(join).collect();
+            let ends = ends.into_iter().map(|end| end.unwrap_or(Err(WorkbenchError::Fault)));
             ends.collect::<Result<Option<Vec<Correlator>>, WorkbenchError>>()
         })?;
         let Some(looked) = looked else { return Ok(Vec::new()) };

@@ -42,9 +42,12 @@ impl Reviewing {
         let desk = Arc::new(Desk { papers, arrived, called, waker });
         let at = Arc::clone(&desk);
         // It ends when the desk is closed; nobody waits for it.
-        std::thread::Builder::new()
-            .name("review".to_owned())
-            .spawn(move || at.work(Reviewer::new(media, THREADS)))?;
+        std::thread::Builder::new().name("review".to_owned()).spawn(move || {
+            let work = std::panic::AssertUnwindSafe(|| at.work(Reviewer::new(media, THREADS)));
+            if std::panic::catch_unwind(work).is_err() {
+                at.fail(WorkbenchError::Fault);
+            }
+        })?;
         Ok(Self { known: Known::default(), desk })
     }
 
@@ -84,10 +87,7 @@ impl Desk {
             let told = if changes.is_empty() {
                 match reviewer.look(self) {
                     Ok(told) => told,
-                    Err(error) => {
-                        self.papers().failed = Some(error);
-                        return self.waker.wake();
-                    }
+                    Err(error) => return self.fail(error),
                 }
             } else {
                 changes.into_iter().flat_map(|changes| reviewer.tell(changes)).collect()
@@ -97,6 +97,12 @@ impl Desk {
                 self.waker.wake();
             }
         }
+    }
+
+    /// Nothing more will be found.
+    fn fail(&self, error: WorkbenchError) {
+        self.papers().failed = Some(error);
+        self.waker.wake();
     }
 
     /// Waits for changes, unless there are pictures to look at; `None` when the desk is closed.

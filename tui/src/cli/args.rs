@@ -279,7 +279,7 @@ pub(super) enum ExportWhat {
     Tracks,
     /// The group of every track, numbered as on the screen: track,group,name.
     Groups,
-    /// What reviewers have found: track,first_frame,end_frame,verdict,reasons,reviewer,time,keystrokes,key_frames,seconds.
+    /// What reviewers have found: track,first_frame,end_frame,verdict,stands,reasons,reviewer,time,keystrokes,key_frames,seconds.
     Verdicts,
     /// What the review of every track has taken: track,segments,keystrokes,key_frames,seconds.
     Effort,

@@ -38,11 +38,21 @@ pub(super) fn import(args: &Import) -> anyhow::Result<Answer> {
     }
     text += &format!("; run {}", done.run);
     let notes = [
-        (done.n_renumbered as u64, "tracks have new numbers: theirs are in use here, or were"),
-        (done.n_beyond, "samples left out: the clip has no such frames"),
-        (done.n_outside, "samples lie outside the picture: is the --origin or the --size another?"),
+        (
+            done.n_renumbered as u64,
+            ["track has a new number", "tracks have new numbers"],
+            ": its own is in use here, or once was",
+        ),
+        (done.n_beyond, ["sample", "samples"], " left out: the clip has no such frames"),
+        (
+            done.n_outside,
+            ["sample lies", "samples lie"],
+            " outside the picture: is the --origin or the --size another?",
+        ),
     ];
-    let notes = notes.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("\nnote: {n} {what}"));
+    let notes = notes.iter().filter(|(n, ..)| *n > 0);
+    let notes =
+        notes.map(|(n, [one, many], why)| format!("\nnote: {n} {}{why}", if *n == 1 { one } else { many }));
     let dropped = done.dropped.iter().map(|what| format!("\nnot read: {what}"));
     text.extend(notes.chain(dropped));
     let json = json!({

@@ -34,6 +34,11 @@ fn text(session: &Session, review: &Review) -> String {
     let found: Vec<String> =
         found.map(|verdict| format!("{} {}", progress.judged.of(verdict), verdict.word())).collect();
     lines.extend((!found.is_empty()).then(|| found.join(", ")));
+    lines.extend(match stale(session, review) {
+        0 => None,
+        1 => Some("1 judgement counts no more: the samples have changed since".to_owned()),
+        n => Some(format!("{n} judgements count no more: the samples have changed since")),
+    });
     let taken = effort(session.project.document());
     if !taken.is_empty() {
         let per_track = |sum: f64| sum / taken.len() as f64;
@@ -51,6 +56,13 @@ fn text(session: &Session, review: &Review) -> String {
     let more = review.queue.len().saturating_sub(LISTED);
     lines.extend((more > 0).then(|| format!("… and {more} more (--json lists them)")));
     lines.join("\n")
+}
+
+/// Judgements of samples that have changed since.
+fn stale(session: &Session, review: &Review) -> usize {
+    let given: usize = session.project.document().tracks().map(|(_, track)| track.judgements.len()).sum();
+    let judged = &review.progress().judged;
+    given.saturating_sub(Verdict::ALL.into_iter().map(|verdict| judged.of(verdict)).sum())
 }
 
 fn row(item: &Item) -> String {
@@ -80,7 +92,7 @@ fn machine(session: &Session, review: &Review) -> Value {
     let verdicts = Verdict::ALL.map(|v| (v.word().to_owned(), progress.judged.of(v).into()));
     json!({
         "open": progress.open, "total": progress.total(),
-        "verdicts": serde_json::Map::from_iter(verdicts),
+        "verdicts": serde_json::Map::from_iter(verdicts), "stale": stale(session, review),
         "queue": review.queue.iter().map(item).collect::<Vec<_>>(), "effort": taken,
     })
 }

@@ -8,22 +8,22 @@ use honami_store::Project;
 use super::effort;
 use crate::error::WorkbenchError;
 
-/// Writes every judgement: who found what, when, and what it took. Returns their number.
+/// Writes every judgement: who found what, when, what it took, and whether the samples are still those that were
+/// judged. Returns their number.
 ///
 /// # Errors
 /// [`WorkbenchError::NoVerdicts`], and what the disk met.
 pub fn verdicts(project: &Project, out: &Path) -> Result<usize, WorkbenchError> {
-    let tracks = project.document().tracks();
-    let rows: Vec<VerdictRow> = tracks
-        .flat_map(|(track, known)| {
-            let row = move |(&first_frame, judgement)| VerdictRow {
-                track,
-                first_frame,
-                judgement: Clone::clone(judgement),
-            };
-            known.judgements.iter().map(row)
-        })
-        .collect();
+    let mut rows = Vec::new();
+    for (track, known) in project.document().tracks() {
+        let span = project.shown(track)?.unwrap_or_default();
+        rows.extend(known.judgements.iter().map(|(&first_frame, judgement)| VerdictRow {
+            track,
+            first_frame,
+            judgement: judgement.clone(),
+            stands: judgement.seal.map(|seal| seal == span.seal(first_frame..judgement.end_frame)),
+        }));
+    }
     write(&rows, out)
 }
 
