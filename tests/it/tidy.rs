@@ -182,6 +182,27 @@ fn no_test_is_ignored_and_none_sleeps() {
 }
 
 #[test]
+fn every_misprint_that_is_cited_has_its_row() {
+    let errata = fs::read_to_string(root().join("docs/errata.md")).unwrap();
+    let mut complaints = Vec::new();
+    for path in files(&["rs", "md"]) {
+        let text = fs::read_to_string(&path).unwrap();
+        for line in text.lines().filter(|line| line.contains("rrata ")) {
+            let words = line.split(|c: char| !c.is_ascii_alphanumeric());
+            let numbers = words.filter(|word| {
+                let digits = word.strip_prefix(['E', 'Z']).unwrap_or_default();
+                !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit())
+            });
+            let without = numbers.filter(|number| !errata.contains(&format!("| {number} |")));
+            complaints.extend(
+                without.map(|number| format!("{}: {number} has no row in docs/errata.md", shown(&path))),
+            );
+        }
+    }
+    assert_none(&complaints);
+}
+
+#[test]
 fn documents_name_what_exists() {
     let architecture = fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
     let mut complaints = Vec::new();

@@ -193,7 +193,7 @@ impl Spectrum {
     ///
     /// `over_floor` is how many times the noise around it a peak's power must be. Of single tracks of pure
     /// noise one in ten has a peak 6 times its floor, one in a hundred 10 times; the median of many is quieter,
-    /// and foliage, whose peaks are broad, stands out less: 3 suits it. Peaks below one and a half resolution cells are taken
+    /// and foliage, whose peaks are broad, stands out less: 3 suits one track of it, 1.5 the median of many. Peaks below one and a half resolution cells are taken
     /// for drift, peaks below 3 % of the strongest amplitude for its leakage.
     #[must_use]
     pub fn peaks(&self, n_max: usize, over_floor: f64) -> Vec<Peak> {
