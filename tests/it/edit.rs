@@ -40,6 +40,20 @@ fn scripted_corrections_are_answered_and_undone() {
 }
 
 #[test]
+fn what_is_refused_uses_no_track_number_up() {
+    let bench = Bench::tracked();
+    let made = |bench: &Bench| {
+        let said = bench.edit("p.honami", "duplicate 0").text();
+        said.trim().rsplit_once(' ').unwrap().1.parse::<u32>().unwrap()
+    };
+    let first = made(&bench);
+    for script in ["split 0 0", "split 0 39000", "duplicate 999", "average 999 1"] {
+        assert_eq!(bench.edit("p.honami", script).code, Some(1), "{script}");
+    }
+    assert_eq!(made(&bench), first + 1);
+}
+
+#[test]
 fn a_script_of_corrections_ends_where_it_goes_wrong() {
     let bench = Bench::tracked();
     for (script, words) in [
@@ -56,6 +70,8 @@ fn a_script_of_corrections_ends_where_it_goes_wrong() {
         ("cut 0", "at least 1 group"),
         ("redo", "nothing to redo"),
         ("paint 3", "add FRAME X Y"),
+        ("swap 1 1 0 5", "track 1 cannot be worked on with itself"),
+        ("join 1 1", "track 1 cannot be worked on with itself"),
     ] {
         let ran = bench.edit("p.honami", script);
         assert_eq!(ran.code, Some(1), "{script}: {ran:?}");

@@ -71,6 +71,11 @@ pub enum Step {
 /// # Errors
 /// What the correction is refused for, and what the project met.
 pub fn prepare(project: &mut Project, step: &Step) -> Result<(Transaction, Option<TrackId>), WorkbenchError> {
+    if let Step::Swap { tracks: [a, b], .. } | Step::Join { track: a, with: b } = step
+        && a == b
+    {
+        return Err(Refused::Itself(*a).into());
+    }
     let ids = step.tracks();
     let grounds = ids.iter().map(|&id| Ground::of(project, id)).collect::<Result<Vec<Ground>, _>>()?;
     let times = project.clip().clip.times.clone();

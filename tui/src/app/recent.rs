@@ -1,6 +1,7 @@
 //! Projects opened lately, newest first: `$XDG_STATE_HOME/honami/recent`.
 //!
-//! A line each: seconds since 1970, number of tracks, path, with tabs between. Nothing needs to be opened to show them.
+//! A line each: seconds since 1970, number of tracks (and of segments still to be reviewed: `135/12`), path, with
+//! tabs between. Nothing needs to be opened to show them.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -18,6 +19,8 @@ pub struct Recent {
     pub path: PathBuf,
     /// Tracks it showed when it was left.
     pub n_tracks: usize,
+    /// Segments that were still to be reviewed then, where that was known.
+    pub n_open: Option<usize>,
     /// When it was last open, seconds since 1970.
     pub when_s: u64,
 }
@@ -25,9 +28,12 @@ pub struct Recent {
 impl Recent {
     fn of_line(line: &str) -> Option<Self> {
         let mut parts = line.splitn(3, '\t');
-        let (when_s, n_tracks) = (parts.next()?.parse().ok()?, parts.next()?.parse().ok()?);
+        let (when_s, counts) = (parts.next()?.parse().ok()?, parts.next()?);
+        let (n_tracks, n_open) = counts.split_once('/').map_or((counts, None), |(n, open)| (n, Some(open)));
+        let n_open = n_open.map(str::parse).transpose().ok()?;
+        let n_tracks = n_tracks.parse().ok()?;
         let path = parts.next().map(PathBuf::from).filter(|path| path.is_absolute())?;
-        Some(Self { path, n_tracks, when_s })
+        Some(Self { path, n_tracks, n_open, when_s })
     }
 
     /// How long ago it was open: `yesterday`.
@@ -62,7 +68,8 @@ pub fn after(mut list: Vec<Recent>, newest: Recent) -> String {
     // A path that is no text, or has a line break, has no line.
     let line = |recent: &Recent| {
         let path = recent.path.to_str().filter(|path| !path.contains('\n'))?;
-        Some(format!("{}\t{}\t{path}\n", recent.when_s, recent.n_tracks))
+        let open = recent.n_open.map_or_else(String::new, |n| format!("/{n}"));
+        Some(format!("{}\t{}{open}\t{path}\n", recent.when_s, recent.n_tracks))
     };
     list.iter().filter_map(line).collect()
 }
@@ -76,9 +83,9 @@ pub fn load() -> Vec<Recent> {
 }
 
 /// Notes that a project is open, or was until now. Lost without harm: nobody is told.
-pub(super) fn note(project: &Path, n_tracks: usize) {
+pub(super) fn note(project: &Path, n_tracks: usize, n_open: Option<usize>) {
     let (Some(file), Ok(path)) = (file(), project.canonicalize()) else { return };
-    let text = after(load(), Recent { path, n_tracks, when_s: now_s() });
+    let text = after(load(), Recent { path, n_tracks, n_open, when_s: now_s() });
     fs::create_dir_all(file.parent().unwrap_or(Path::new("/"))).ok();
     // Whole or not at all, also where two sessions end at once.
     let new = file.with_extension(std::process::id().to_string());

@@ -113,7 +113,9 @@ impl App {
             app.state.notice = Some(Notice { text, is_error: true });
         }
         app.state.size = screen.size();
-        app.state.glyphs = Glyphs::from_env(|name| std::env::var(name).ok());
+        if let Some(glyphs) = Glyphs::from_env(|name| std::env::var(name).ok()) {
+            app.state.glyphs = glyphs;
+        }
         app.look_at_display(screen);
         app.state.log = CommandLog::new(Head::of(&app.state, world.origin()));
         Ok(app)
@@ -127,7 +129,10 @@ impl App {
     /// Notes that the project was open; those of the tutorial nobody comes back to.
     pub(super) fn note(&self, world: &World) {
         if self.state.lesson.is_none() {
-            recent::note(world.project(), self.state.tracks.len());
+            let progress = self.state.review.progress();
+            // As long as nothing was found doubtful, nothing may have been looked at.
+            let n_open = (progress.total() > 0).then_some(progress.open);
+            recent::note(world.project(), self.state.tracks.len(), n_open);
         }
     }
 

@@ -224,7 +224,7 @@ impl Start {
         self.rows.extend(offers.rows.iter().map(|row| (row.name.to_owned(), row.doc.to_owned())));
         (self.recent, self.now_s) = (recent::load(), recent::now_s());
         let machine = look_at_machine(screen, offers.machine)?;
-        let glyphs = Glyphs::from_env(|name| std::env::var(name).ok());
+        let glyphs = Glyphs::from_env(|name| std::env::var(name).ok()).unwrap_or_default();
         let mut is_shown = false;
         screen.forget();
         loop {

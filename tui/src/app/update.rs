@@ -38,7 +38,7 @@ use crate::term::key::Key;
 pub use facts::Fact;
 pub use logged::again;
 pub use queue::Judge;
-pub(super) use time::RATES;
+pub(super) use time::{LOOP_MAX, RATES};
 
 /// Something that happens to the state.
 #[derive(Debug)]

@@ -33,11 +33,16 @@ impl Glyphs {
     /// All of them, the coarsest first.
     pub const ALL: [Self; 4] = [Self::Halves, Self::Quadrants, Self::Sextants, Self::Octants];
 
-    /// Those to begin with, from the environment (`HONAMI_GLYPHS` = `half`, `quadrant`, `sextant`, `octant`).
+    /// Those that the environment asks for, if for any (`HONAMI_GLYPHS` = `half`, `quadrant`, `sextant`, `octant`).
     #[must_use]
-    pub fn from_env(var: impl Fn(&str) -> Option<String>) -> Self {
-        let wanted = var("HONAMI_GLYPHS").unwrap_or_default();
-        Self::ALL.into_iter().find(|glyphs| glyphs.name() == wanted).unwrap_or_default()
+    pub fn from_env(var: impl Fn(&str) -> Option<String>) -> Option<Self> {
+        Self::named(&var("HONAMI_GLYPHS")?)
+    }
+
+    /// Those of this name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|glyphs| glyphs.name() == name)
     }
 
     /// One word, as settings have it.

@@ -31,7 +31,10 @@ fn from_the_start_screen_into_a_clip_and_the_next_time_straight_to_it() {
     assert!(terminal.wait_for_end());
     terminal.assert_restored();
     let mut terminal = honami();
-    terminal.wait_for_text("0 tracks · just now");
+    terminal.wait_for("it among those opened lately", |s| {
+        let screen = s.contents();
+        screen.contains("0 tracks") && screen.contains("· just now")
+    });
     terminal.press("\r");
     terminal.wait_for_text("5/11");
     terminal.press("q");

@@ -63,6 +63,9 @@ pub enum Refused {
         /// The frame.
         frame: u32,
     },
+    /// Two tracks are wanted.
+    #[error("track {0} cannot be worked on with itself: name another one beside it")]
+    Itself(TrackId),
     /// Nothing of the track would be left.
     #[error("that is all of track {0}: delete the track instead")]
     WholeTrack(TrackId),

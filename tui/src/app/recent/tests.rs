@@ -3,7 +3,7 @@
 use super::*;
 
 fn recent(path: &str, n_tracks: usize, when_s: u64) -> Recent {
-    Recent { path: PathBuf::from(path), n_tracks, when_s }
+    Recent { path: PathBuf::from(path), n_tracks, n_open: n_tracks.checked_sub(7), when_s }
 }
 
 #[test]
@@ -18,8 +18,15 @@ fn the_list_is_written_and_read_newest_first_and_without_doubles() {
 }
 
 #[test]
+fn a_line_without_what_is_to_be_reviewed_is_read_too() {
+    let old = Recent { n_open: None, ..recent("/a.honami", 135, 3) };
+    assert_eq!(of("3\t135\t/a.honami\n"), std::slice::from_ref(&old));
+    assert_eq!(after(Vec::new(), old), "3\t135\t/a.honami\n");
+}
+
+#[test]
 fn it_is_bounded_and_takes_no_nonsense() {
-    let mut text = "no line\n1\t2\n1\t2\trelative.honami\nx\t2\t/a\n".to_owned();
+    let mut text = "no line\n1\t2\n1\t2\trelative.honami\nx\t2\t/a\n1\t2/x\t/a\n".to_owned();
     assert_eq!(of(&text), []);
     for n in 0..100 {
         text = after(of(&text), recent(&format!("/{n}.honami"), 0, n));

@@ -5,13 +5,14 @@ use crate::app::files::Listing;
 
 /// A start screen with two projects and three offers.
 pub(in crate::app) fn start() -> Start {
-    let recent = |path: &str, n_tracks, when_s| Recent { path: PathBuf::from(path), n_tracks, when_s };
+    let recent =
+        |path: &str, n_tracks, n_open, when_s| Recent { path: PathBuf::from(path), n_tracks, n_open, when_s };
     let mut start = Start::new(&Config::default(), None);
     let now_s = 1_700_000_000;
     start.now_s = now_s;
     start.recent = vec![
-        recent("/data/2026/malva.honami", 135, now_s - 100_000),
-        recent("/data/2026/ficus-03.honami", 2010, now_s - 300_000),
+        recent("/data/2026/malva.honami", 135, Some(12), now_s - 100_000),
+        recent("/data/2026/ficus-03.honami", 2010, None, now_s - 300_000),
     ];
     let offers = [("demo", "a generated clip, tracked and grouped"), ("doctor", "what this machine has")];
     start.rows.extend(offers.map(|(name, doc)| (name.to_owned(), doc.to_owned())));
@@ -72,6 +73,18 @@ fn keys_choose_what_is_opened() {
         ("x", None),
     ] {
         assert_eq!(press(&mut start(), keys), wish, "{keys}");
+    }
+}
+
+#[test]
+fn every_binding_answers() {
+    use crate::app::keymap::KeyMap;
+    for binding in KeyMap::default().bindings().iter().filter(|binding| binding.context == Context::Start) {
+        let mut start = start();
+        start.at = 1;
+        let keys = binding.keys.iter();
+        let wish = keys.filter_map(|key| start.on_key(*key)).last();
+        assert!(start.pending.is_empty() && (wish.is_some() || start.at != 1), "{binding:?} is silent");
     }
 }
 

@@ -11,7 +11,7 @@ use crate::app::menu::Menu;
 /// Slowest and fastest that a clip is played, percent of real time.
 pub(in crate::app) const RATES: (u32, u32) = (1, 1600);
 /// Widest loop, frames to both sides.
-const LOOP_MAX: u32 = 10_000;
+pub(in crate::app) const LOOP_MAX: u32 = 10_000;
 
 /// The two rates at which a clip is played: thesis 3.3.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

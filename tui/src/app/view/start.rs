@@ -81,8 +81,9 @@ fn entries(start: &Start, list: Rect, frame: &mut Frame) {
         let name = recent.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let folder = recent.path.parent().map_or_else(String::new, |folder| folder.display().to_string());
         let tracks = if recent.n_tracks == 1 { "track" } else { "tracks" };
-        let tracks = format!("{:>5} {tracks:<6}", recent.n_tracks);
-        (name, vec![tracks, format!("· {:<14}", recent.ago(start.now_s)), folder])
+        let tracks = format!("{:>4} {tracks:<6}", recent.n_tracks);
+        let open = recent.n_open.map_or_else(String::new, |n| format!("· {n} to review"));
+        (name, vec![tracks, format!("{open:<14}"), format!("· {:<13}", recent.ago(start.now_s)), folder])
     });
     let others = start.rows.iter().map(|(name, doc)| (name.clone(), vec![doc.clone()]));
     let room = usize::from(list.width);
