@@ -206,11 +206,31 @@ fn every_misprint_that_is_cited_has_its_row() {
 fn documents_name_what_exists() {
     let architecture = fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
     let mut complaints = Vec::new();
-    for (name, package) in packages() {
+    let packages = packages();
+    for (name, package) in &packages {
         let folder = shown(&package.folder);
         if !folder.contains("fixtures") && !architecture.contains(&format!("`{folder}`")) {
             complaints.push(format!("ARCHITECTURE.md has no row for `{folder}` ({name})"));
         }
+    }
+    let first_columns = architecture.lines().filter_map(|line| line.strip_prefix("| ")?.split(" | ").next());
+    let words: BTreeSet<&str> = first_columns.flat_map(|column| column.split([' ', ','])).collect();
+    let libraries: BTreeSet<&String> = packages.values().flat_map(|package| &package.uses).collect();
+    let others = libraries.into_iter().filter(|library| !packages.contains_key(*library));
+    let without = others.filter(|library| !words.contains(library.as_str()));
+    complaints.extend(without.map(|library| format!("ARCHITECTURE.md does not say why {library} is used")));
+    assert_none(&complaints);
+}
+
+#[test]
+fn links_of_documents_lead_somewhere() {
+    let mut complaints = Vec::new();
+    for path in files(&["md"]) {
+        let text = fs::read_to_string(&path).unwrap();
+        let links = text.split("](").skip(1).filter_map(|rest| rest.split([')', '#']).next());
+        let inside = links.filter(|link| !link.is_empty() && !link.contains("://"));
+        let lost = inside.filter(|link| !path.with_file_name(link).exists());
+        complaints.extend(lost.map(|link| format!("{}: {link} is not there", shown(&path))));
     }
     assert_none(&complaints);
 }

@@ -117,7 +117,7 @@ pub(super) struct New {
     pub(super) project: PathBuf,
     /// Video, image folder or pattern.
     pub(super) clip: PathBuf,
-    /// True frame rate, where the container lies or an image sequence has none.
+    /// True frame rate, when the file's is wrong or an image sequence has none.
     #[arg(long, value_name = "F")]
     pub(super) fps: Option<f64>,
 }
