@@ -142,6 +142,12 @@ impl Capabilities {
         }
     }
 
+    /// Whether queries are answered on this side of the link, by what passes the frames on.
+    #[must_use]
+    pub fn is_relayed(&self) -> bool {
+        self.around != Around::Nothing || self.tmux().is_some()
+    }
+
     /// How pixels get to a terminal of so many columns and rows; `None` while that is unknown, and where they
     /// do not.
     #[must_use]

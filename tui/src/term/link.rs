@@ -35,6 +35,10 @@ const DELAY_AGE: Duration = Duration::from_secs(60);
 const PATIENCE: Duration = Duration::from_secs(2);
 /// After a silence, answers still to come may be to queries given up; no sooner than this are they taken at their word.
 const CALM: Duration = Duration::from_secs(1);
+/// What a terminal gets whose answers do not say when a frame was seen, bytes per second: 2 Mbit/s carry it.
+const RELAYED_RATE: f64 = 180e3;
+/// A terminal that has given so many answers to nothing is not to be believed.
+const LIES: u32 = 3;
 /// What a silent terminal gets, bytes per second.
 const SILENT_RATE: f64 = 64.0 * 1024.0;
 
@@ -52,6 +56,8 @@ pub struct Link {
     /// Frames that were sent so far.
     n_sent: u64,
     last_sent: Option<Duration>,
+    /// Bytes of the frame sent last.
+    n_bytes: usize,
     last_answer: Option<Duration>,
     /// Least time from sending to answer, and when it was seen.
     delay: Option<(Duration, Duration)>,
@@ -63,9 +69,18 @@ pub struct Link {
     silent: bool,
     /// Whether an answer may be to a query that was given up: then it says nothing of the link.
     doubtful: bool,
+    /// Whether answers do not come from where the frames are seen.
+    relayed: bool,
+    /// Answers to nothing.
+    n_surplus: u32,
 }
 
 impl Link {
+    /// Answers come from something on this side of the link, such as tmux: it says nothing of what lies behind.
+    pub fn relay(&mut self) {
+        self.relayed = true;
+    }
+
     /// A frame has been handed to the terminal.
     pub fn sent(&mut self, now: Duration, n_bytes: usize) {
         self.n_sent += 1;
@@ -74,7 +89,7 @@ impl Link {
         }
         self.doubtful &= self.silent || !self.has_paused(now, CALM);
         self.flights.push_back(Flight { sent: now, n_bytes });
-        self.last_sent = Some(now);
+        (self.last_sent, self.n_bytes) = (Some(now), n_bytes);
         if self.silent {
             self.flights.clear();
             self.flights.push_back(Flight { sent: now, n_bytes });
@@ -86,6 +101,8 @@ impl Link {
         self.silent = false;
         let flight = self.flights.pop_front();
         if flight.is_none() && !self.doubtful {
+            self.n_surplus += 1;
+            self.relayed |= self.n_surplus >= LIES;
             return;
         }
         let before = self.last_answer.replace(now);
@@ -125,12 +142,15 @@ impl Link {
     /// Delay there and back of an empty queue; `None` while unknown.
     #[must_use]
     pub fn delay(&self) -> Option<Duration> {
-        self.delay.map(|(least, _)| least)
+        self.delay.filter(|_| !self.relayed).map(|(least, _)| least)
     }
 
-    /// Bytes per second that the link carries; `None` while unknown.
+    /// Bytes per second that the link carries, or is taken to carry where it cannot be measured; `None` while unknown.
     #[must_use]
     pub fn goodput(&self) -> Option<f64> {
+        if self.relayed {
+            return Some(RELAYED_RATE);
+        }
         let (bytes, seconds) = self.served.iter().fold((0.0, 0.0), |(b, s), &(n, t)| (b + n as f64, s + t));
         (!self.served.is_empty()).then(|| bytes / seconds)
     }
@@ -170,6 +190,7 @@ impl Link {
             return (SILENT_RATE * INTERVAL.as_secs_f64()) as usize;
         }
         match self.goodput() {
+            Some(rate) if self.relayed => (rate * INTERVAL.as_secs_f64()) as usize,
             Some(rate) => ((rate * USE * INTERVAL.as_secs_f64()) as usize).clamp(BUDGET.0, BUDGET.1),
             None => FIRST_BUDGET,
         }
@@ -203,8 +224,8 @@ impl Link {
     /// How long the link is taken up by the frame sent last. One that follows sooner would only wait in a queue, where
     /// nothing can overtake it: the next key's picture least of all.
     fn service(&self) -> Duration {
-        let n_bytes = self.flights.back().map_or(0, |flight| flight.n_bytes);
-        self.goodput().map_or(Duration::ZERO, |rate| Duration::from_secs_f64(n_bytes as f64 / rate))
+        let seconds = self.goodput().map_or(0.0, |rate| self.n_bytes as f64 / rate);
+        Duration::from_secs_f64(seconds)
     }
 
     fn delay_is_old(&self, now: Duration) -> bool {

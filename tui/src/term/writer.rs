@@ -257,6 +257,9 @@ impl Writer {
     pub fn answered(&mut self, reply: &Reply, now: Duration) {
         self.capabilities.learn(reply);
         self.encoder.set_light(self.capabilities.is_light());
+        if self.capabilities.is_relayed() {
+            self.link.relay();
+        }
         if *reply == Reply::Ready {
             self.link.answered(now);
         }

@@ -110,7 +110,29 @@ fn surplus_answers_are_no_harm() {
     }
     link.sent(Duration::from_millis(20), 100);
     assert!(link.is_waiting());
-    assert_eq!(link.goodput(), None);
+    assert_eq!(link.delay(), None);
+}
+
+#[test]
+fn whoever_answers_what_was_not_asked_and_whoever_stands_between_gets_a_fixed_rate() {
+    for lies in [true, false] {
+        let mut link = Link::default();
+        if !lies {
+            link.relay();
+        }
+        let (mut now, mut n_bytes) = (Duration::ZERO, 0);
+        while now < Duration::from_secs(10) {
+            if link.next_slot(now).is_some_and(|slot| slot <= now) {
+                let size = link.budget_at(now);
+                link.sent(now, size);
+                n_bytes += size;
+                // At once, and of liars twice.
+                (0..1 + u32::from(lies)).for_each(|_| link.answered(now));
+            }
+            now += Duration::from_millis(1);
+        }
+        assert!((1_700_000..1_900_000).contains(&n_bytes), "{n_bytes} bytes in 10 s");
+    }
 }
 
 /// After one frame a second, answered as a wire of 2 Mbit/s and 80 ms does.

@@ -21,7 +21,9 @@ struct Wire {
 impl Wire {
     fn new() -> Self {
         let (reader, device) = pipe_with(PipeFlags::NONBLOCK).unwrap();
-        let writer = Writer::new(Depth::True, Capabilities::new(Around::Tmux));
+        let mut capabilities = Capabilities::new(Around::Nothing);
+        capabilities.learn(&Reply::Mode { mode: 2026, state: 0 });
+        let writer = Writer::new(Depth::True, capabilities);
         Self { reader, device, writer, now: Duration::ZERO }
     }
 
