@@ -34,3 +34,12 @@ fn what_is_wrong_is_said_and_the_rest_holds() {
         assert!(config.complaint().is_some_and(|line| line.starts_with("config.toml: ")));
     }
 }
+
+#[test]
+fn the_settings_of_the_guide_are_understood() {
+    let guide = include_str!("../../../../docs/settings.md");
+    let example = guide.split("```").nth(1).and_then(|block| block.strip_prefix("toml"));
+    let config = Config::of(example.unwrap_or("theme = \"the guide has no example\""), "");
+    assert_eq!(config.wrong, Vec::<String>::new());
+    assert_eq!(config.themes[config.theme].name, "mine");
+}
