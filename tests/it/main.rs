@@ -8,6 +8,7 @@ mod exchange;
 mod home;
 mod journal_kill;
 mod locks;
+mod offers;
 mod real_clips;
 mod replay;
 mod retrack;

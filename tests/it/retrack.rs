@@ -265,7 +265,8 @@ fn a_stopped_re_tracking_leaves_nothing_behind() {
         SessionOptions { plugin_paths: vec![program().parent().unwrap().to_owned()], read_only: false };
     let session = Session::open(&bench.path("p.honami"), &options).unwrap();
     let (track, _) = session.project.document().tracks().find(|(track, _)| track.0 == 3).unwrap();
-    let request = RetrackRequest { track, way: Way::Both, frames: 0..=N_FRAMES - 1, key: None, with: None };
+    let request =
+        RetrackRequest { track, way: Way::Both, frames: 0..=N_FRAMES - 1, keys: Vec::new(), with: None };
     for n_reports in [0, 5, 15] {
         let job = prepare(&session, &request).unwrap();
         let stopped = job.run(&StopAfter(AtomicU64::new(n_reports)));
@@ -284,7 +285,8 @@ fn a_re_tracking_of_what_has_changed_meanwhile_is_not_laid() {
         SessionOptions { plugin_paths: vec![program().parent().unwrap().to_owned()], read_only: false };
     let mut session = Session::open(&bench.path("p.honami"), &options).unwrap();
     let (track, _) = session.project.document().tracks().find(|(track, _)| track.0 == 3).unwrap();
-    let request = RetrackRequest { track, way: Way::Both, frames: 0..=N_FRAMES - 1, key: None, with: None };
+    let request =
+        RetrackRequest { track, way: Way::Both, frames: 0..=N_FRAMES - 1, keys: Vec::new(), with: None };
     let changed = "track 3 was changed while it was re-tracked: nothing was laid, re-track it again";
     for (meanwhile, refused) in [
         ("key 3 12 50 50", Some(changed)),

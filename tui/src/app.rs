@@ -28,6 +28,7 @@ pub mod layout;
 pub mod lesson;
 pub mod menu;
 pub mod motion;
+mod offering;
 pub mod opening;
 mod pace;
 pub mod panel;

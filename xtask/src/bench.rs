@@ -11,7 +11,7 @@ use crate::{BUILD, SHIPPED};
 /// Name, what it measures, and how to run it.
 type Bench = (&'static str, &'static str, fn(&[&str]) -> anyhow::Result<()>);
 
-const BENCHES: [Bench; 10] = [
+const BENCHES: [Bench; 11] = [
     ("encode", "the encoder's time, bytes and likeness: `bench encode [BYTES] [CLIP…]`", encode),
     ("trackers", "KLT against OpenCV's calcOpticalFlowPyrLK, same frames, alternating", trackers),
     ("accuracy", "δavg of KLT and of OpenCV's on calm, wind and storm: `bench accuracy [SEED]`", accuracy),
@@ -25,6 +25,7 @@ const BENCHES: [Bench; 10] = [
         "keys per track that a simulated reviewer needs, a row a correction: `bench review [--tracks N]`",
         review,
     ),
+    ("correct", "what a correction on a track of 300 frames takes, a row a model", correct),
     ("plugins", "cost of a plugin call, in process", plugins),
 ];
 
@@ -115,13 +116,23 @@ fn store(args: &[&str]) -> anyhow::Result<()> {
 
 /// The real corrections in real projects, on clips whose truth is known.
 fn review(args: &[&str]) -> anyhow::Result<()> {
+    on_project("review", args)
+}
+
+/// An example that works in projects in a folder of its own, with the shipped plugins.
+fn on_project(name: &str, args: &[&str]) -> anyhow::Result<()> {
     cargo(BUILD).args(SHIPPED).run()?;
-    let folder = target_dir()?.join("bench").join("review");
+    let folder = target_dir()?.join("bench").join(name);
     fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
     let plugins = target_dir()?.join("release");
-    example("honami-workbench", "review_bench", args)
+    example("honami-workbench", &format!("{name}_bench"), args)
         .args(["--plugin".as_ref(), plugins.as_os_str(), "--folder".as_ref(), folder.as_os_str()])
         .run()
+}
+
+/// The real corrections, committed.
+fn correct(args: &[&str]) -> anyhow::Result<()> {
+    on_project("correct", args)
 }
 
 fn plugins(args: &[&str]) -> anyhow::Result<()> {

@@ -19,7 +19,7 @@ use crate::edit::{Edit, EditError, Transaction, apply};
 use crate::over::{Laid, Over};
 use crate::track::{Quality, Sample, Source, Span, Status, TrackId};
 
-pub use blend::{Blended, Side, backward, blend, blended, forward, lay};
+pub use blend::{Blended, Side, blended};
 pub use interpolate::{hermite, linear};
 pub use mark::{delete_range, mark};
 pub use refused::Refused;

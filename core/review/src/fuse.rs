@@ -15,15 +15,6 @@ const JUMP_PX: f64 = 2.0;
 /// No sample is surer to be bad than this: one wrong frame must not cut a candidate in two.
 const SUREST: f64 = 0.999;
 
-/// One tracker's word on the feature.
-#[derive(Clone, Copy, Debug)]
-pub struct Candidate<'a> {
-    /// Its samples; where it has those of the key-frames, jumps at them are measured there.
-    pub span: &'a Span,
-    /// Suspicion of each of its samples, 0..=1; `None`: their forward-backward error decides.
-    pub doubt: Option<&'a [f32]>,
-}
-
 /// The key-frames at the ends of the stretch, image pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ends {
@@ -43,9 +34,10 @@ pub struct Picked {
 }
 
 /// The cheapest path, one sample a frame; `None` where the stretch is empty or no candidate has a sample in some
-/// frame. Of equal ones that of the candidate named first. O(frames · candidates²).
+/// frame. Of equal ones that of the candidate named first. A candidate that has samples in the key-frames' frames tells
+/// there how far it is off. O(frames · candidates²).
 #[must_use]
-pub fn fuse(frames: Range<u32>, ends: &Ends, candidates: &[Candidate<'_>]) -> Option<Vec<Picked>> {
+pub fn fuse(frames: Range<u32>, ends: &Ends, candidates: &[&Span]) -> Option<Vec<Picked>> {
     if frames.is_empty() {
         return None;
     }
@@ -53,20 +45,20 @@ pub fn fuse(frames: Range<u32>, ends: &Ends, candidates: &[Candidate<'_>]) -> Op
     let mut from: Vec<Vec<usize>> = Vec::with_capacity(frames.len());
     let mut cost: Vec<f64> = candidates
         .iter()
-        .map(|c| c.cost(frames.start) + c.gap(frames.start, frames.start.checked_sub(1), ends.before))
+        .map(|c| cost_of(c, frames.start) + gap(c, frames.start, frames.start.checked_sub(1), ends.before))
         .collect();
     for frame in frames.start + 1..frames.end {
-        let arrive = |to: &Candidate<'_>| {
-            let step = |k: usize| cost[k] + jump(&candidates[k], to, frame);
+        let arrive = |to: &&Span| {
+            let step = |k: usize| cost[k] + jump(candidates[k], to, frame);
             let best = (0..candidates.len()).min_by(|&a, &b| step(a).total_cmp(&step(b))).unwrap_or(0);
-            (best, step(best) + to.cost(frame))
+            (best, step(best) + cost_of(to, frame))
         };
         let (best, next) = candidates.iter().map(arrive).unzip();
         from.push(best);
         cost = next;
     }
     let last = frames.end - 1;
-    let total = |k: usize| cost[k] + candidates[k].gap(last, Some(frames.end), ends.after);
+    let total = |k: usize| cost[k] + gap(candidates[k], last, Some(frames.end), ends.after);
     let mut on = (0..candidates.len()).min_by(|&a, &b| total(a).total_cmp(&total(b)))?;
     if !total(on).is_finite() {
         return None;
@@ -77,7 +69,7 @@ pub fn fuse(frames: Range<u32>, ends: &Ends, candidates: &[Candidate<'_>]) -> Op
         path.push(on);
     }
     path.reverse();
-    let picked = frames.clone().zip(path).map(|(frame, k)| candidates[k].span.get(frame).map(|s| (k, *s)));
+    let picked = frames.clone().zip(path).map(|(frame, k)| candidates[k].get(frame).map(|s| (k, *s)));
     through_ends(&frames, ends, candidates, &picked.collect::<Option<Vec<_>>>()?)
 }
 
@@ -85,11 +77,11 @@ pub fn fuse(frames: Range<u32>, ends: &Ends, candidates: &[Candidate<'_>]) -> Op
 fn through_ends(
     frames: &Range<u32>,
     ends: &Ends,
-    candidates: &[Candidate<'_>],
+    candidates: &[&Span],
     path: &[(usize, Sample)],
 ) -> Option<Vec<Picked>> {
     let miss = |k: usize, frame: Option<u32>, key: Option<[f32; 2]>| {
-        let there = frame.and_then(|frame| candidates[k].span.get(frame));
+        let there = frame.and_then(|frame| candidates[k].get(frame));
         there.zip(key).map_or([0.0; 2], |(s, key)| [key[0] - s.x, key[1] - s.y])
     };
     let (first, last) = (path.first()?.0, path.last()?.0);
@@ -105,36 +97,33 @@ fn through_ends(
     Some(shifted.collect())
 }
 
-impl Candidate<'_> {
-    /// What speaks against its sample: `-ln(1 - p)`; infinite where it has none.
-    fn cost(&self, frame: u32) -> f64 {
-        let Some(sample) = self.span.get(frame) else { return f64::INFINITY };
-        let at = (frame - self.span.first_frame) as usize;
-        let p = match self.doubt.and_then(|doubt| doubt.get(at)) {
-            _ if !sample.status.is_seen() => f64::from(LOST),
-            Some(doubt) => f64::from(*doubt),
-            None => WEIGHTS.probability(&Parts { fb_px: sample.quality.fb_px, ..Parts::default() }),
-        };
-        -(1.0 - p.clamp(0.0, SUREST)).ln()
-    }
+/// What speaks against a candidate's sample: `-ln(1 - p)`; infinite where it has none.
+fn cost_of(candidate: &Span, frame: u32) -> f64 {
+    let Some(sample) = candidate.get(frame) else { return f64::INFINITY };
+    let p = if sample.status.is_seen() {
+        WEIGHTS.probability(&Parts { fb_px: sample.quality.fb_px, ..Parts::default() })
+    } else {
+        f64::from(LOST)
+    };
+    -(1.0 - p.clamp(0.0, SUREST)).ln()
+}
 
-    /// Cost of the jump to a key-frame beside the stretch: measured in the key-frame's frame where the candidate has a
-    /// sample there, else from its sample next to it.
-    fn gap(&self, inner: u32, outer: Option<u32>, key: Option<[f32; 2]>) -> f64 {
-        let sample = outer.and_then(|outer| self.span.get(outer)).or_else(|| self.span.get(inner));
-        let distance = |(sample, key): (&Sample, [f32; 2])| (sample.x - key[0]).hypot(sample.y - key[1]);
-        sample.zip(key).map_or(0.0, |at| f64::from(distance(at)) / JUMP_PX)
-    }
+/// Cost of the jump to a key-frame beside the stretch: measured in the key-frame's frame where the candidate has a
+/// sample there, else from its sample next to it.
+fn gap(candidate: &Span, inner: u32, outer: Option<u32>, key: Option<[f32; 2]>) -> f64 {
+    let sample = outer.and_then(|outer| candidate.get(outer)).or_else(|| candidate.get(inner));
+    let distance = |(sample, key): (&Sample, [f32; 2])| (sample.x - key[0]).hypot(sample.y - key[1]);
+    sample.zip(key).map_or(0.0, |at| f64::from(distance(at)) / JUMP_PX)
 }
 
 /// Cost of going from one candidate to another between a frame and the one before: their distance in the frame before,
 /// or where the second has no sample there, in this one.
-fn jump(from: &Candidate<'_>, to: &Candidate<'_>, frame: u32) -> f64 {
-    if std::ptr::eq(from.span, to.span) {
+fn jump(from: &Span, to: &Span, frame: u32) -> f64 {
+    if std::ptr::eq(from, to) {
         return 0.0;
     }
-    let both = |frame: u32| from.span.get(frame).zip(to.span.get(frame));
-    let left = || from.span.get(frame - 1).zip(to.span.get(frame));
+    let both = |frame: u32| from.get(frame).zip(to.get(frame));
+    let left = || from.get(frame - 1).zip(to.get(frame));
     let Some((a, b)) = both(frame - 1).or_else(|| both(frame)).or_else(left) else { return f64::INFINITY };
     f64::from((a.x - b.x).hypot(a.y - b.y)) / JUMP_PX
 }

@@ -9,10 +9,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use honami_model::edit::Transaction;
+use honami_model::provenance::Value;
 use honami_model::track::TrackId;
 use honami_motion::accuracy::TruePath;
 use honami_workbench::compare::{Truth, points_of, read_truth};
 use honami_workbench::generate::generate;
+use honami_workbench::offer;
 use honami_workbench::plugins::Values;
 use honami_workbench::session::{Session, SessionOptions};
 use honami_workbench::simulate::{Habits, Model, Pick, Taken, review};
@@ -21,6 +23,9 @@ use honami_workbench::track::{self, Area, PointSource, TrackRequest};
 
 /// More key-frames than anybody places on one track.
 const MAX_KEYS: u32 = 61;
+
+/// Radius of the window of a second run, pixels: there is one tracker, and with a wide window it errs elsewhere.
+const RIVAL_RADIUS: i64 = 20;
 
 /// What is asked for.
 struct Asked {
@@ -106,17 +111,16 @@ fn scene(asked: &Asked, level: Level) -> Result<Scene, Box<dyn Error>> {
     let project = folder.join("review.honami");
     remove(&project)?;
     let mut session = Session::create(&project, &clip, None, &options(asked))?;
-    let request = TrackRequest {
-        plugin: "klt".to_owned(),
-        params: Values::default(),
-        points: PointSource::Given(seeds.clone()),
-        frames: 0..asked.n_frames,
-        every: None,
-        area: Area::Whole,
-    };
-    let job = track::prepare(&mut session, &request)?;
-    let done = job.run(&())?;
-    track::finish(&mut session, done)?;
+    // What has found more, and less exactly, lies below; what is shown is what the tracker finds as it comes.
+    let wide: Values = [("radius".to_owned(), Value::Int(RIVAL_RADIUS))].into_iter().collect();
+    let given = PointSource::Given(seeds.clone());
+    for (params, points) in [(wide, given), (Values::default(), PointSource::Existing)] {
+        let plugin = "klt".to_owned();
+        let (frames, every, area) = (0..asked.n_frames, None, Area::Whole);
+        let request = TrackRequest { plugin, params, points, frames, every, area };
+        let done = track::prepare(&mut session, &request)?.run(&())?;
+        track::finish(&mut session, done)?;
+    }
     let chosen = seeds.iter().filter_map(|seed| Some((seed.track, truth.get(&seed.track)?.clone())));
     Ok(Scene { project, chosen: chosen.collect() })
 }
@@ -138,7 +142,7 @@ struct Row {
 fn rows(asked: &Asked, scene: &Scene) -> Result<Vec<Row>, Box<dyn Error>> {
     let mut rows = Vec::new();
     for pick in [Pick::Worst, Pick::First] {
-        let bare = [Model::Linear, Model::Hermite].map(|model| (model, false));
+        let bare = [Model::Linear, Model::Offered(offer::Model::Hermite)].map(|model| (model, false));
         for (model, tracked) in bare.into_iter().chain(Model::ALL.map(|model| (model, true))) {
             rows.push(row(asked, scene, model, pick, tracked)?);
         }
@@ -152,8 +156,10 @@ fn row(asked: &Asked, scene: &Scene, model: Model, pick: Pick, tracked: bool) ->
     fs::copy(&scene.project, &copy)?;
     let mut session = Session::open(&copy, &options(asked))?;
     if !tracked {
-        let run = session.project.document().runs()[0].run;
-        session.project.commit(Transaction::hide_run(run))?;
+        let runs: Vec<_> = session.project.document().runs().iter().map(|shown| shown.run).collect();
+        for run in runs {
+            session.project.commit(Transaction::hide_run(run))?;
+        }
     }
     let habits = Habits {
         model,
@@ -175,8 +181,8 @@ struct Told {
     unfinished: f64,
     at_once: f64,
     ms: f64,
-    /// Keys pressed a track that was not right at once, mean: with the mouse, and with nudges.
-    strokes: [f64; 2],
+    /// Keys pressed a track that was not right at once, median: with the mouse, and with nudges.
+    strokes: [u32; 2],
 }
 
 fn told(row: &Row) -> Told {
@@ -188,9 +194,10 @@ fn told(row: &Row) -> Told {
     let total: u32 = keys.iter().sum();
     let share = |what: fn(&Taken) -> bool| row.taken.iter().filter(|taken| what(taken)).count() as f64 / n;
     let seconds: f64 = row.taken.iter().map(|taken| taken.seconds).sum();
-    let n_corrected = row.taken.iter().filter(|taken| taken.n_keys > 0).count().max(1) as f64;
+    let corrected = &keys[keys.partition_point(|n| *n == 0)..];
+    let median = corrected.get(corrected.len() / 2).copied().unwrap_or(0);
     // The jump is the program's; `m`, a click or at most 6 nudges, Enter; at the end one Enter accepts.
-    let strokes = [1.0, 6.0].map(|place| f64::from(total) / n_corrected * (2.0 + place) + 1.0);
+    let strokes = [1, 6].map(|place| median * (2 + place) + 1);
     Told {
         mean: f64::from(total) / n,
         median: at(0.5),
@@ -213,7 +220,7 @@ fn print(asked: &Asked, level: Level, n_tracks: usize, rows: &[Row]) {
             println!(
                 "{{\"level\":\"{level}\",\"seed\":{},\"tracks\":{n_tracks},\"tolerance_px\":{},\"from\":\"{}\",\
                  \"model\":\"{}\",\"pick\":\"{:?}\",\"mean\":{:.3},\"median\":{},\"p90\":{},\"of_linear\":{:.3},\"unfinished\":{:.3},\
-                 \"at_once\":{:.3},\"ms\":{:.2},\"strokes_mouse\":{:.1},\"strokes_nudges\":{:.1}}}",
+                 \"at_once\":{:.3},\"ms\":{:.2},\"strokes_mouse\":{},\"strokes_nudges\":{}}}",
                 asked.seed,
                 asked.tolerance_px,
                 if row.tracked { "klt" } else { "keys" },
@@ -233,7 +240,7 @@ fn print(asked: &Asked, level: Level, n_tracks: usize, rows: &[Row]) {
         return;
     }
     println!(
-        "{level}, seed {}: {n_tracks} tracks of {} frames, tolerance {} px, hand 0.5 px, klt",
+        "{level}, seed {}: {n_tracks} tracks of {} frames, tolerance {} px, hand 0.5 px; klt, and klt radius={RIVAL_RADIUS} below it",
         asked.seed, asked.n_frames, asked.tolerance_px
     );
     println!(
@@ -242,7 +249,7 @@ fn print(asked: &Asked, level: Level, n_tracks: usize, rows: &[Row]) {
     for row in rows {
         let told = told(row);
         println!(
-            "{:5} {:10} {:5} {:6.1} {:6} {:4} {:10.2} {:10.0} % {:6.0} % {:8.1} {:10.0} | {:.0}",
+            "{:5} {:10} {:5} {:6.1} {:6} {:4} {:10.2} {:10.0} % {:6.0} % {:8.1} {:10} | {}",
             if row.tracked { "klt" } else { "keys" },
             row.model.name(),
             format!("{:?}", row.pick).to_lowercase(),

@@ -92,7 +92,7 @@ pub fn prepare(session: &Session, request: &ClusterRequest) -> Result<ClusterJob
     }
     let (clusterer, origin) =
         honami_host::Host::new().clusterer(plugin, &request.params, &CallContext::silent())?;
-    let provenance = stamp(&session.project, "cluster", plugin, &request.params, origin);
+    let provenance = stamp(session.project.revision(), "cluster", plugin, &request.params, origin);
     let plugin = plugin.short_name.clone();
     Ok(ClusterJob { clusterer, tracks, provenance, groups: request.groups, plugin })
 }

@@ -27,7 +27,7 @@ pub struct DenseMeter {
 /// # Errors
 /// [`WorkbenchError::NoTracker`], [`WorkbenchError::NoDense`], [`WorkbenchError::OneFrame`].
 pub fn prepare(session: &Session, track: Option<TrackId>) -> Result<DenseMeter, WorkbenchError> {
-    let (plugin, values) = usual(session, track)?;
+    let (plugin, values) = usual(session, track)?.ok_or(WorkbenchError::NoTracker)?;
     let plugin = session.registry.find(Kind::Tracker, &plugin)?.clone();
     if !plugin.offers("honami.field/1") {
         return Err(WorkbenchError::NoDense { plugin: plugin.short_name });

@@ -12,11 +12,12 @@ use honami_store::{Project, StoreError};
 
 /// A track with the runs below it.
 pub(crate) struct Ground {
-    id: TrackId,
+    /// Its number.
+    pub(crate) id: TrackId,
     /// The hand work on it.
     pub(crate) track: Track,
     /// Spans of its shown runs, the topmost last.
-    runs: Vec<(RunId, Span)>,
+    pub(crate) runs: Vec<(RunId, Span)>,
     /// Spans of the runs by which what corrections have laid down unseen was found.
     found: BTreeMap<RunId, Vec<Span>>,
 }

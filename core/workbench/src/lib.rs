@@ -15,6 +15,7 @@ pub mod export;
 pub mod generate;
 mod ground;
 pub mod import;
+pub mod offer;
 pub mod plots;
 pub mod progress;
 pub mod retrack;

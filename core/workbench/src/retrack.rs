@@ -9,6 +9,7 @@ mod direction;
 mod lay;
 mod pass;
 mod plan;
+mod study;
 #[cfg(test)]
 mod tests;
 
@@ -17,18 +18,19 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
 
 use honami_host::Values;
-use honami_media::Media;
 use honami_model::correct::Correction;
 use honami_model::document::{Key, RunId};
 use honami_model::history::EntryId;
 use honami_model::track::{Span, TrackId};
-use honami_store::{Project, RunHead};
+use honami_store::RunHead;
 
 use crate::error::WorkbenchError;
 use crate::ground::Ground;
 use crate::progress::Progress;
 use crate::session::Session;
 pub(crate) use direction::usual;
+pub use study::{Study, study};
+
 use direction::{Direction, Made};
 use lay::{Runs, Tracked};
 use pass::{Found, Meter, Scene};
@@ -54,16 +56,15 @@ pub struct RetrackRequest {
     pub way: Way,
     /// First and last frame; key-frames among them are where passes begin and end.
     pub frames: RangeInclusive<u32>,
-    /// A key-frame that is not in the project yet: it is set by the same edit.
-    pub key: Option<(u32, Key)>,
+    /// Key-frames that are not in the project yet: they are set by the same edit.
+    pub keys: Vec<(u32, Key)>,
     /// The tracker, short name or full id, with its parameters; `None`: those of the track's run.
     pub with: Option<(String, Values)>,
 }
 
 /// Passes that are ready to go.
 pub struct RetrackJob {
-    media: Arc<Media>,
-    ground: Ground,
+    study: Arc<Study>,
     request: RetrackRequest,
     stretches: Vec<Stretch>,
     forward: Option<Direction>,
@@ -93,55 +94,12 @@ pub struct RetrackOutcome {
     pub warnings: Vec<String>,
 }
 
-/// What a person means who says `way` with the cursor on `frame`: up to the neighbouring key-frames, or where there
-/// are none to the track's birth and the clip's ends. On a key-frame, both ways are both of its sides.
-///
-/// # Errors
-/// When there is no such track.
-pub fn around(
-    project: &Project,
-    track: TrackId,
-    way: Way,
-    frame: u32,
-    key: Option<(u32, Key)>,
-) -> Result<RetrackRequest, WorkbenchError> {
-    let ground = Ground::of(project, track)?;
-    let anchors = lay::anchors(&ground, key, &project.clip().clip.times);
-    let frames = plan::around(&anchors, frame, way, project.clip().clip.n_frames());
-    Ok(RetrackRequest { track, way, frames, key, with: None })
-}
-
 /// Loads the tracker, once for each direction.
 ///
 /// # Errors
-/// When the plugin, its parameters or the frames are not what they must be, or no key-frame in them says where the
-/// feature is.
+/// When there is no such track; as [`Study::job`].
 pub fn prepare(session: &Session, request: &RetrackRequest) -> Result<RetrackJob, WorkbenchError> {
-    let (first, last) = (*request.frames.start(), *request.frames.end());
-    let n_frames = session.media.clip().n_frames();
-    if first > last || last >= n_frames {
-        return Err(WorkbenchError::Frames { start: first, end: last.saturating_add(1), n_frames });
-    }
-    let ground = Ground::of(&session.project, request.track)?;
-    let anchors = lay::anchors(&ground, request.key, &session.media.clip().times);
-    let stretches = plan::stretches(&anchors, &request.frames, request.way);
-    if stretches.is_empty() {
-        return Err(WorkbenchError::NoAnchor { track: request.track, first, last });
-    }
-    let (plugin, values) = request.with.clone().map_or_else(|| usual(session, Some(request.track)), Ok)?;
-    let start = |pass: fn(&Stretch) -> Option<Pass>, word| {
-        let passes: Vec<Pass> = stretches.iter().filter_map(pass).collect();
-        Direction::start(session, request.track, (&plugin, &values), &passes, word)
-    };
-    Ok(RetrackJob {
-        media: Arc::clone(&session.media),
-        ground,
-        request: request.clone(),
-        forward: start(Stretch::forward, "forward")?,
-        backward: start(Stretch::backward, "backward")?,
-        stretches,
-        margin_px: direction::margin_px(&values),
-    })
+    Arc::new(study(session, request.track)?).job(request.clone())
 }
 
 impl RetrackJob {
@@ -151,14 +109,15 @@ impl RetrackJob {
     /// [`WorkbenchError::Stopped`], [`WorkbenchError::LostAtOnce`], and what the clip or the tracker met; nothing is
     /// kept then.
     pub fn run(self, progress: &dyn Progress) -> Result<Retracked, WorkbenchError> {
-        let Self { media, ground, request, stretches, forward, backward, margin_px } = self;
+        let Self { study, request, stretches, forward, backward, margin_px } = self;
+        let (media, ground) = (&study.media, &study.ground);
         let (ahead, back): (Vec<_>, Vec<_>) =
             stretches.iter().map(|stretch| (stretch.forward(), stretch.backward())).unzip();
         let total = ahead.iter().chain(&back).flatten().map(|pass| pass.order().count() as u64).sum();
         let meter = Meter { progress, done: AtomicU64::new(0), total };
         let times = &media.clip().times;
         let path = ground.shown(times).span().clone();
-        let scene = Scene { media: &media, track: request.track, path: &path, margin_px, meter: &meter };
+        let scene = Scene { media, track: request.track, path: &path, margin_px, meter: &meter };
         let make = |direction: Option<Direction>, passes: &[Option<Pass>]| {
             direction.map_or_else(|| Ok(Made::default()), |direction| direction.make(&scene, passes))
         };
@@ -176,7 +135,7 @@ impl RetrackJob {
         let mut warnings = ahead.warnings;
         warnings.extend(back.warnings);
         warnings.dedup();
-        let correction = lay::correction(&ground, &request, &tracked, Runs::default(), times)?;
+        let correction = lay::correction(ground, &request, &tracked, Runs::default(), times)?;
         Ok(Retracked { request, tracked, heads: [ahead.head, back.head], correction, warnings })
     }
 }
@@ -202,7 +161,7 @@ pub fn finish(session: &mut Session, done: Retracked) -> Result<RetrackOutcome, 
     let times = project.clip().clip.times.clone();
     let ground = Ground::of(project, request.track)?;
     let stretches =
-        plan::stretches(&lay::anchors(&ground, request.key, &times), &request.frames, request.way);
+        plan::stretches(&lay::anchors(&ground, &request.keys, &times), &request.frames, request.way);
     if !stretches.iter().eq(tracked.iter().map(|one| &one.stretch)) {
         return Err(WorkbenchError::Changed { track: request.track });
     }

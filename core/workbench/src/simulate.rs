@@ -4,8 +4,10 @@
 //! is, and does so with the corrections that a person has, in a real project. Nothing here is any better than what the
 //! terminal offers.
 
+use std::sync::Arc;
 use std::time::Instant;
 
+use honami_model::correct::{Refused, key_only, linear};
 use honami_model::document::Key;
 use honami_model::track::{Span, TrackId};
 use honami_motion::accuracy::TruePath;
@@ -14,8 +16,8 @@ use rand_distr::{Distribution as _, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 
 use crate::error::WorkbenchError;
-use crate::retrack::{self, Way};
-use crate::script::{self, ScriptError};
+use crate::offer::{self, AtOnce, Granted, Wish};
+use crate::retrack;
 use crate::session::Session;
 
 /// What becomes of the samples beside one that is placed.
@@ -23,29 +25,31 @@ use crate::session::Session;
 pub enum Model {
     /// Straight lines between key-frames.
     Linear,
-    /// Hermite curves through key-frames.
-    Hermite,
-    /// The tracked path, displaced up to the next key-frames.
-    Space,
-    /// Tracked again, forward from the key-frame.
-    Forward,
-    /// Tracked again from the key-frames on both sides, and blended.
-    Both,
+    /// What the terminal offers under this name.
+    Offered(offer::Model),
+    /// What the terminal offers first.
+    First,
 }
 
 impl Model {
     /// All of them, the cheapest to make first.
-    pub const ALL: [Self; 5] = [Self::Linear, Self::Hermite, Self::Space, Self::Forward, Self::Both];
+    pub const ALL: [Self; 7] = [
+        Self::Linear,
+        Self::Offered(offer::Model::Hermite),
+        Self::Offered(offer::Model::Space),
+        Self::Offered(offer::Model::Forward),
+        Self::Offered(offer::Model::Both),
+        Self::Offered(offer::Model::Fused),
+        Self::First,
+    ];
 
-    /// Its name in tables; also the word of a script that does it, where there is one.
+    /// Its name in tables.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Linear => "linear",
-            Self::Hermite => "hermite",
-            Self::Space => "space",
-            Self::Forward => "forward",
-            Self::Both => "both ways",
+            Self::Offered(model) => model.word(),
+            Self::First => "first",
         }
     }
 }
@@ -100,10 +104,10 @@ pub fn review(
     track: TrackId,
     truth: &TruePath,
     habits: &Habits,
-) -> Result<Taken, ScriptError> {
+) -> Result<Taken, WorkbenchError> {
     let mut rng = Pcg64Mcg::seed_from_u64(habits.seed ^ (u64::from(track.0) << 32));
-    let born = place(session, truth, truth.first_frame, || 0.0).map(|v| v.to_string());
-    script::step(session, &["key", &track.to_string(), &truth.first_frame.to_string(), &born[0], &born[1]])?;
+    let born = place(session, truth, truth.first_frame, || 0.0);
+    at_once(session, track, truth.first_frame, born, key_only)?;
     let mut taken = Taken { n_keys: 0, is_right: false, seconds: 0.0, n_bare: 0 };
     loop {
         let shown = session.project.shown(track)?;
@@ -153,34 +157,56 @@ fn place(session: &Session, truth: &TruePath, frame: u32, mut tremor: impl FnMut
     [inside(x + tremor(), clip.width), inside(y + tremor(), clip.height)]
 }
 
-/// Places a sample, and does with those beside it what the model says; `false` where the tracker has found nothing
-/// and only the key-frame was set.
+/// Places a sample, and does with those beside it what the model says; `false` where it could find nothing and only the
+/// key-frame was set.
 fn correct(
     session: &mut Session,
     track: TrackId,
     frame: u32,
-    at: [f32; 2],
+    to: [f32; 2],
     model: Model,
-) -> Result<bool, ScriptError> {
-    let numbers = [track.to_string(), frame.to_string(), at[0].to_string(), at[1].to_string()];
-    let mut by_word = |word: &str| {
-        let [track, frame, x, y] = &numbers;
-        script::step(session, &[word, track, frame, x, y]).map(drop)
-    };
-    let way = match model {
-        Model::Linear | Model::Hermite | Model::Space => return by_word(model.name()).map(|()| true),
-        Model::Forward => Way::Forward,
-        Model::Both => Way::Both,
-    };
-    let key = Some((frame, Key::set(at[0], at[1])));
-    let request = retrack::around(&session.project, track, way, frame, key)?;
-    let tracked = retrack::prepare(session, &request).and_then(|job| job.run(&()));
-    match tracked {
-        Ok(tracked) => retrack::finish(session, tracked).map(|_| true).map_err(ScriptError::from),
-        Err(WorkbenchError::LostAtOnce { .. } | WorkbenchError::NoAnchor { .. }) => {
-            let [track, frame, x, y] = &numbers;
-            script::step(session, &["key", track, frame, x, y]).map(|_| false)
+) -> Result<bool, WorkbenchError> {
+    let model = match model {
+        Model::Linear => return at_once(session, track, frame, to, linear),
+        Model::Offered(model) => model,
+        Model::First => {
+            let study = retrack::study(session, track)?;
+            let first = offer::errors(&study, frame, &())?.first(study.has_rivals());
+            first.unwrap_or(offer::Model::Space)
         }
-        Err(error) => Err(error.into()),
+    };
+    if let Some(correct) = model.at_once() {
+        return at_once(session, track, frame, to, correct);
     }
+    let keys = vec![(frame, Key::set(to[0], to[1]))];
+    let study = Arc::new(retrack::study(session, track)?);
+    match offer::grant(&study, &Wish { track, frame, model, keys }, &()) {
+        Ok(Granted::Retracked(retracked)) => retrack::finish(session, *retracked).map(|_| true),
+        Ok(Granted::Ready(correction)) => {
+            session.project.commit(correction.transaction)?;
+            Ok(true)
+        }
+        Err(WorkbenchError::LostAtOnce { .. } | WorkbenchError::NoAnchor { .. }) => {
+            at_once(session, track, frame, to, key_only).map(|_| false)
+        }
+        Err(error) => Err(error),
+    }
+}
+
+fn at_once(
+    session: &mut Session,
+    track: TrackId,
+    frame: u32,
+    to: [f32; 2],
+    correct: AtOnce,
+) -> Result<bool, WorkbenchError> {
+    let study = retrack::study(session, track)?;
+    let shown = study.ground.shown(study.times());
+    // Where the track is not shown there is nothing to carry along.
+    let (correction, is_whole) = match correct(&shown, frame, to) {
+        Err(Refused::NoSample { .. }) => (key_only(&shown, frame, to)?, false),
+        corrected => (corrected?, true),
+    };
+    session.project.commit(correction.transaction)?;
+    Ok(is_whole)
 }

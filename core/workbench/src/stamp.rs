@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 
 use honami_host::{Origin, PluginInfo, Values};
+use honami_model::history::EntryId;
 use honami_model::provenance::{Provenance, Value};
 use honami_store::Project;
 
 /// Says what is about to run, with all its parameters, on which revision of the project.
 pub(crate) fn stamp(
-    project: &Project,
+    on: EntryId,
     what: &str,
     plugin: &PluginInfo,
     params: &Values,
@@ -24,7 +25,7 @@ pub(crate) fn stamp(
         abi: (narrow(origin.abi.0), narrow(origin.abi.1)),
         params: all.iter().map(|(id, value)| (id.to_owned(), value.clone())).collect(),
         seed: SEED,
-        input_revision: project.revision().0,
+        input_revision: on.0,
         sandbox: origin.sandbox.to_owned(),
         simd: simd().to_owned(),
         date: honami_store::now(),

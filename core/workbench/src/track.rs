@@ -156,7 +156,7 @@ fn begin(
     let (tracker, origin) =
         honami_host::Host::new().tracker(plugin, &request.params, &CallContext::silent())?;
     let head = RunHead {
-        provenance: stamp(&session.project, "track", plugin, &request.params, origin),
+        provenance: stamp(session.project.revision(), "track", plugin, &request.params, origin),
         tracks: seeds.iter().map(|seed| seed.track).collect(),
         frames: request.frames.clone(),
     };

@@ -206,7 +206,7 @@ table! {
     MotionDial "motion-dial" ["v d"] [Review ""] "choose the directions of motion that are shown"
     MotionSource "motion-source" ["v f"] [Review ""] "show motion everywhere in the picture, if a tracker measures it"
     Marks "marks" ["M"] [Review ""] "mark all tracks in the picture, or only the selected one"
-    Column "next-panel" ["Tab"] [Review "" Move "model"] "show the next panel beside the picture, after the last none; while moving, offer the next correction"
+    Column "next-panel" ["Tab"] [Review "" Move "model"] "show the next panel beside the picture, after the last none; while moving, offer the next correction: its error is that at key-frames left out"
     PanelQueue "panel-queue" ["P q"] [Review ""] "show or hide the queue of doubtful segments"
     PanelTracks "panel-tracks" ["P t"] [Review ""] "show or hide the tracks"
     PanelGroups "panel-groups" ["P g"] [Review ""] "show or hide the groups"

@@ -49,6 +49,9 @@ impl Before {
         }
         state.looked.is_refused();
         state.mode = self.mode.unwrap_or(Mode::Review);
+        if let Mode::Move(moving) = &mut state.mode {
+            moving.refused(&state.clip.times);
+        }
         state.frame = self.frame;
         state.selected = self.selected;
         state.corrected = self.corrected;

@@ -2,7 +2,7 @@
 //!
 //! The preview is the correction itself, made anew with every key: what is seen is what will be kept.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -11,45 +11,16 @@ use honami_model::correct::{self, Correction, Layers, Refused, Shown};
 use honami_model::document::Key;
 use honami_model::edit::Edit;
 use honami_model::track::{Source, Span, TrackId};
+use honami_workbench::offer::{AtOnce, Model};
+
+pub use offer::{Answer, Ask, Ghost, Offer};
+
+mod offer;
 
 /// Image pixels of a nudge by one at this magnification.
 #[must_use]
 pub fn nudge_px(zoom: u8) -> f32 {
     1.0 / f32::from(1_u16 << zoom)
-}
-
-/// What becomes of the samples beside the one that is moved.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Model {
-    /// They are carried along.
-    Space,
-    /// A curve through the key-frames replaces them.
-    Hermite,
-    /// They stay.
-    KeyOnly,
-}
-
-impl Model {
-    /// All of them, in the order in which they are offered.
-    pub const ALL: [Self; 3] = [Self::Space, Self::Hermite, Self::KeyOnly];
-
-    /// The word for it on screen.
-    #[must_use]
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Space => "in space",
-            Self::Hermite => "curve",
-            Self::KeyOnly => "this frame only",
-        }
-    }
-
-    fn correct(self, shown: &Shown<'_>, frame: u32, to: [f32; 2]) -> Result<Correction, Refused> {
-        match self {
-            Self::Space => correct::space(shown, frame, to),
-            Self::Hermite => correct::hermite(shown, frame, to),
-            Self::KeyOnly => correct::key_only(shown, frame, to),
-        }
-    }
 }
 
 /// How the sample is moved.
@@ -77,14 +48,16 @@ pub struct Moving {
     pub from: [f32; 2],
     /// How it is moved.
     pub tool: Tool,
-    /// Frames that are made key-frames with it, as they are: the correction ends there.
-    pub pinned: BTreeSet<u32>,
+    /// Frames that are made key-frames with it, as they are: the correction ends there. Image pixels.
+    pub pins: BTreeMap<u32, [f32; 2]>,
     /// The frame walked to along the path, while the picture stays.
     pub walked: Option<u32>,
     /// The track and what lies below, once known.
     pub layers: Option<Arc<Layers>>,
     /// What would be kept, or why it cannot be.
-    pub ghost: Option<Result<Arc<Correction>, String>>,
+    pub ghost: Option<Ghost>,
+    /// What is known of the models.
+    pub offer: Offer,
 }
 
 impl Moving {
@@ -99,8 +72,10 @@ impl Moving {
             }
             Some(_) => Model::Space,
         };
-        let (pinned, walked, layers, ghost) = Default::default();
-        Self { track, frame, from, tool: Tool::Place { to: from, model }, pinned, walked, layers, ghost }
+        // Where the track is not shown there is nothing to carry along.
+        let offer = Offer::new(model == Model::KeyOnly);
+        let (pins, walked, layers, ghost) = Default::default();
+        Self { track, frame, from, tool: Tool::Place { to: from, model }, pins, walked, layers, ghost, offer }
     }
 
     /// Where the sample will be.
@@ -130,15 +105,21 @@ impl Moving {
     #[must_use]
     pub fn has_moved(&self) -> bool {
         let to = self.to();
-        (to[0] - self.from[0]).hypot(to[1] - self.from[1]) > 0.0 || !self.pinned.is_empty()
+        (to[0] - self.from[0]).hypot(to[1] - self.from[1]) > 0.0 || !self.pins.is_empty()
     }
 
-    /// Makes the preview anew. A slide is cut to what keeps the samples in their order.
+    /// Makes the preview anew, where it is made at once, or shows what was found. A slide is cut to what keeps the samples in their order.
     pub fn preview(&mut self, times: &FrameTimes) {
         let Some(layers) = self.layers.clone() else { return };
         let shown = layers.shown(times);
         let ghost = match self.tool {
-            Tool::Place { to, model } => self.placed(&shown, to, model),
+            Tool::Place { to, model } => match model.at_once() {
+                Some(correct) => self.placed(&shown, to, correct),
+                None => {
+                    self.ghost = self.found();
+                    return;
+                }
+            },
             Tool::Slide(frames) => {
                 let step_s = times.nominal_fps().map_or(1.0, |fps| 1.0 / fps);
                 correct::time(&shown, self.frame, frames * step_s).map(|slid| {
@@ -150,15 +131,23 @@ impl Moving {
         self.ghost = Some(ghost.map(Arc::new).map_err(|why| why.to_string()));
     }
 
-    fn placed(&self, shown: &Shown<'_>, to: [f32; 2], model: Model) -> Result<Correction, Refused> {
-        if self.pinned.is_empty() {
-            return model.correct(shown, self.frame, to);
+    fn placed(&self, shown: &Shown<'_>, to: [f32; 2], correct: AtOnce) -> Result<Correction, Refused> {
+        if self.pins.is_empty() {
+            return correct(shown, self.frame, to);
         }
-        let key = |&frame: &u32| {
-            let sample = shown.span().get(frame)?;
-            Some(Edit::SetKey { track: self.track, frame, key: Key::confirmed(sample.x, sample.y) })
+        let key = |(&frame, &[x, y]): (&u32, &[f32; 2])| Edit::SetKey {
+            track: self.track,
+            frame,
+            key: Key::confirmed(x, y),
         };
-        let pins = shown.correct(self.pinned.iter().filter_map(key).collect(), "")?;
-        shown.then(&pins, |shown| model.correct(shown, self.frame, to), "corrected")
+        let pins = shown.correct(self.pins.iter().map(key).collect(), "")?;
+        shown.then(&pins, |shown| correct(shown, self.frame, to), "corrected")
+    }
+
+    /// The track and what lies below it are these now.
+    pub fn study(&mut self, layers: Arc<Layers>, times: &FrameTimes) {
+        self.layers = Some(layers);
+        self.offer.forget();
+        self.preview(times);
     }
 }

@@ -12,6 +12,7 @@ use honami_model::judgement::Judgement;
 use honami_model::track::TrackId;
 use honami_workbench::WorkbenchError;
 use honami_workbench::cluster::{self, ClusterRequest};
+use honami_workbench::offer::{Granted, Wish};
 use honami_workbench::plugins::{Kind, PluginInfo};
 use honami_workbench::retrack::{self, Way};
 use honami_workbench::session::Session;
@@ -20,9 +21,11 @@ use honami_workbench::track::{self, TrackRequest};
 use honami_workbench::{correct, dense};
 
 use super::command_log::{self, Origin};
+use super::correcting::{Answer, Ask};
 use super::dense::Measuring;
 use super::form::{Plugin, Task};
 use super::jobs::{Done, Running, Work};
+use super::offering::Offering;
 use super::reviewing::Reviewing;
 use super::seat::Seat;
 use super::state::{Job, Notice, State};
@@ -46,6 +49,8 @@ pub(super) struct World {
     seat: Seat,
     /// The track that a correction is open on.
     studied: Option<TrackId>,
+    /// Works corrections out; `None` where there is no thread for it.
+    offering: Option<Offering>,
 }
 
 /// Facts, or the line that says why there are none.
@@ -54,9 +59,10 @@ type Facts = Result<Vec<Fact>, WorkbenchError>;
 impl World {
     pub(super) fn new(session: Session, waker: Waker) -> Self {
         let reviewing = Reviewing::start(Arc::clone(&session.media), waker.clone()).ok();
+        let offering = Offering::start(waker.clone()).ok();
         let (rows, seat) = (BTreeMap::new(), Seat::default());
         let (running, measuring) = (None, None);
-        Self { session, waker, running, reviewing, measuring, rows, n_told: 0, seat, studied: None }
+        Self { session, waker, running, reviewing, measuring, rows, n_told: 0, seat, studied: None, offering }
     }
 
     /// The state to begin with, of the usual size.
@@ -145,6 +151,8 @@ impl World {
                 self.studied = Some(track);
                 self.layers().map(|fact| fact.into_iter().collect())
             }
+            Effect::Offer(ask) => Ok(self.offer(ask)),
+            Effect::Keep(wish, hint) => self.keep_granted(&wish, hint),
             Effect::AddFeature { frame, at } => self.add_feature(frame, at),
             Effect::Undo(n) => self.travel("undone", n, Project::undo),
             Effect::Jump(to) => self.jump(to),
@@ -201,9 +209,45 @@ impl World {
     }
 
     /// What the studied track is made from.
-    fn layers(&self) -> Result<Option<Fact>, WorkbenchError> {
+    fn layers(&mut self) -> Result<Option<Fact>, WorkbenchError> {
         let Some(track) = self.studied else { return Ok(None) };
-        Ok(Some(Fact::Layers(self.session.project.layers(track)?.map(Arc::new))))
+        let layers = self.session.project.layers(track)?;
+        if let Some(offering) = self.offering.as_mut().filter(|_| layers.is_some()) {
+            offering.study(retrack::study(&self.session, track)?);
+        }
+        Ok(Some(Fact::Layers(layers.map(Arc::new))))
+    }
+
+    /// Has something worked out behind the screen; without a thread for it nothing comes of a wish.
+    fn offer(&mut self, ask: Ask) -> Vec<Fact> {
+        match (&mut self.offering, ask) {
+            (Some(offering), ask) => {
+                offering.ask(ask);
+                Vec::new()
+            }
+            (None, Ask::Ghost(Some(wish))) => {
+                let why = "there is no thread to track again on; Tab offers another correction".to_owned();
+                vec![Fact::Offered(Answer::Ghost(wish, Err(why)))]
+            }
+            (None, _) => Vec::new(),
+        }
+    }
+
+    /// Keeps what was previewed.
+    fn keep_granted(&mut self, wish: &Wish, hint: Hint) -> Facts {
+        match self.offering.as_mut().and_then(|offering| offering.take(wish)) {
+            Some(Granted::Ready(correction)) => self.commit(correction.transaction, hint),
+            Some(Granted::Retracked(retracked)) => {
+                let line = retrack::finish(&mut self.session, *retracked)?.line;
+                self.studied = None;
+                self.shown_and(said(format!("{line} ({hint})")))
+            }
+            None => {
+                let line =
+                    format!("track {} has changed since this was worked out: nothing was kept", wish.track);
+                Ok(vec![said_wrong(line), Fact::Refused])
+            }
+        }
     }
 
     fn save_log(&self, text: &str) -> Facts {
@@ -274,8 +318,8 @@ impl World {
     }
 
     fn retrack(&mut self, track: TrackId, way: Way, frame: u32, now: Duration) -> Facts {
-        let request = retrack::around(&self.session.project, track, way, frame, None)?;
-        let job = retrack::prepare(&self.session, &request)?;
+        let study = Arc::new(retrack::study(&self.session, track)?);
+        let job = study.job(study.around(way, frame, Vec::new()))?;
         self.start(Work::Retrack(Box::new(job)), "re-tracking", false, now)
     }
 
@@ -320,6 +364,8 @@ impl World {
         let (told, failed) = self.reviewing.as_ref().map(Reviewing::told).unwrap_or_default();
         let mut news: Vec<Fact> = (!told.is_empty()).then_some(Fact::Review(told)).into_iter().collect();
         news.extend(failed.map(|error| said_wrong(format!("suspicion cannot be measured: {error}"))));
+        let answers = self.offering.as_mut().map(Offering::news).unwrap_or_default();
+        news.extend(answers.into_iter().map(Fact::Offered));
         news.extend(self.job_news());
         news
     }

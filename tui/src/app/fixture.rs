@@ -5,15 +5,19 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use honami_model::clip::{Clip, FrameTimes};
-use honami_model::correct::Layers;
+use honami_model::correct::{Correction, Layers};
 use honami_model::document::{Key, Origin, RunId, Track};
+use honami_model::edit::Edit;
 use honami_model::hierarchy::{Dendrogram, Merge};
 use honami_model::history::{Entry, EntryId};
+use honami_model::over::{Laid, Over};
 use honami_model::track::{Quality, Sample, Source, Span, Status, TrackId};
+use honami_workbench::offer::{Errors, Wish};
 use honami_workbench::plugins::Param;
 use honami_workbench::review::{Evidence, Review, Subject};
 use ratatui::layout::Rect;
 
+use super::correcting::{Answer, Ask};
 use super::form::{Plugin, Task};
 use super::layout::Lens;
 use super::state::State;
@@ -133,12 +137,42 @@ pub(super) fn send(state: &mut State, msg: Msg) -> Vec<Effect> {
         match effect {
             Effect::Study(track) => {
                 let layers = layers(state, track).map(Arc::new);
-                update(state, Msg::Fact(Fact::Layers(layers)));
+                let asked = update(state, Msg::Fact(Fact::Layers(layers)));
+                asked.into_iter().for_each(|effect| answer(state, effect));
             }
+            offer @ Effect::Offer(_) => answer(state, offer),
             other => left.push(other),
         }
     }
     left
+}
+
+/// Works out what is asked for: of errors nothing is known, and a tracker finds the feature half a pixel lower, up to
+/// the neighbouring key-frames.
+pub(super) fn answer(state: &mut State, effect: Effect) {
+    let answer = match effect {
+        Effect::Offer(Ask::Errors(track, _)) => Answer::Errors(track, Ok(Errors::default())),
+        Effect::Offer(Ask::Ghost(Some(wish))) => {
+            let ghost = ghost(state, &wish).map(Arc::new).ok_or_else(|| "nothing was found".to_owned());
+            Answer::Ghost(wish, ghost)
+        }
+        _ => return,
+    };
+    update(state, Msg::Fact(Fact::Offered(answer)));
+}
+
+fn ghost(state: &State, wish: &Wish) -> Option<Correction> {
+    let layers = layers(state, wish.track)?;
+    let shown = layers.shown(&state.clip.times);
+    let track = wish.track;
+    let keys = wish.keys.iter().map(|&(frame, key)| Edit::SetKey { track, frame, key });
+    let (before, after) = shown.keys_around(wish.frame);
+    let frames = before.map_or(0, |key| key + 1)..after.unwrap_or(state.clip.n_frames());
+    let lower =
+        |sample: &Sample| Over::Sample(Laid { sample: Sample { y: sample.y + 0.5, ..*sample }, run: None });
+    let over = frames.clone().map(|frame| shown.span().get(frame).map(lower)).collect();
+    let lay = Edit::Lay { track, first_frame: frames.start, over };
+    shown.correct(keys.chain([lay]).collect(), wish.model.word()).ok()
 }
 
 /// Several hundred tracks more, beside and above one another.

@@ -11,7 +11,7 @@ use super::command_log::{self, Head, Line, What};
 use super::effects::World;
 use super::seat::Seat;
 use super::state::{Notice, State};
-use super::update::{Effect, Fact, Msg, again, update};
+use super::update::{Effect, Fact, Msg, again, stand_by, update};
 use crate::term::signals;
 
 /// Actions that are not done again: those that concern the terminal and files alone, and the ways through the queue,
@@ -126,6 +126,12 @@ impl Player {
     }
 
     fn step(&mut self, line: &Line) -> Result<(), String> {
+        for effect in stand_by(&mut self.state, line) {
+            self.carry_out(effect);
+        }
+        if line.here.as_ref().is_some_and(|here| here.chosen.is_some()) {
+            self.wait_for_ghost().map_err(|error| error.to_string())?;
+        }
         for effect in again(&mut self.state, line)? {
             self.carry_out(effect);
         }
@@ -134,8 +140,22 @@ impl Player {
 
     fn carry_out(&mut self, effect: Effect) {
         for fact in self.world.carry_out(effect, self.state.now) {
-            update(&mut self.state, Msg::Fact(fact));
+            for effect in update(&mut self.state, Msg::Fact(fact)) {
+                self.carry_out(effect);
+            }
         }
+    }
+
+    /// Waits until the correction that is moved is worked out.
+    fn wait_for_ghost(&mut self) -> anyhow::Result<()> {
+        while self.state.awaits_ghost() {
+            let news = self.world.news();
+            if news.is_empty() {
+                self.woken.read(&mut [0; 64]).context("nothing is heard of the correction")?;
+            }
+            news.into_iter().for_each(|fact| drop(update(&mut self.state, Msg::Fact(fact))));
+        }
+        Ok(())
     }
 
     /// Waits for the end of the job.

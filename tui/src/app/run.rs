@@ -1,5 +1,6 @@
 //! The wheel: wait, update, carry out, draw, paint. Draws only what changed, sends nothing when nothing does.
 
+use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
@@ -250,9 +251,9 @@ impl App {
     /// Updates the state and does what it wants; returns whether it wants to leave.
     fn tell(&mut self, msg: Msg, screen: &mut Screen, world: &mut World) -> anyhow::Result<bool> {
         let before = self.state.shown_frame();
-        let effects = update(&mut self.state, msg);
+        let mut effects = VecDeque::from(update(&mut self.state, msg));
         self.log();
-        for effect in effects {
+        while let Some(effect) = effects.pop_front() {
             match effect {
                 Effect::Leave => return Ok(true),
                 Effect::Suspend => {
@@ -277,7 +278,7 @@ impl App {
                 Effect::Mouse(ours) => screen.set_mouse(ours)?,
                 other => {
                     for fact in world.carry_out(other, screen.now()) {
-                        update(&mut self.state, Msg::Fact(fact));
+                        effects.extend(update(&mut self.state, Msg::Fact(fact)));
                     }
                 }
             }

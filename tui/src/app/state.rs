@@ -136,6 +136,10 @@ pub struct State {
     pub lesson: Option<Lesson>,
     /// What was done in this session.
     pub log: CommandLog,
+    /// Keys that wait until a correction is worked out that they keep.
+    pub held: Vec<Key>,
+    /// Whether corrections are worked out behind the screen.
+    pub is_asking: bool,
 }
 
 /// What keys mean.
@@ -240,6 +244,12 @@ pub struct Link {
 }
 
 impl State {
+    /// Whether a sample is moved whose correction is still being worked out.
+    #[must_use]
+    pub fn awaits_ghost(&self) -> bool {
+        matches!(&self.mode, Mode::Move(moving) if moving.is_pending())
+    }
+
     /// The state before anything is known of the project.
     #[must_use]
     pub fn new(name: String, clip: Clip, size: (u16, u16)) -> Self {
@@ -296,6 +306,8 @@ impl State {
             mouse: true,
             lesson: None,
             log: CommandLog::default(),
+            held: Vec::new(),
+            is_asking: false,
         }
     }
 

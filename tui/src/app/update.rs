@@ -9,6 +9,7 @@ mod look;
 mod motion;
 mod mouse;
 mod moving;
+mod offers;
 mod pick;
 mod queue;
 mod ranges;
@@ -23,10 +24,12 @@ use honami_model::history::EntryId;
 use honami_model::track::TrackId;
 use honami_workbench::cluster::ClusterRequest;
 use honami_workbench::correct::Step;
+use honami_workbench::offer::Wish;
 use honami_workbench::retrack;
 use honami_workbench::track::TrackRequest;
 
 use super::action::{Action, Context};
+use super::correcting::Ask;
 use super::files::Lead;
 use super::keymap::Found;
 use super::lesson;
@@ -36,7 +39,7 @@ use crate::term::input::{Mouse, MouseKind};
 use crate::term::key::Key;
 
 pub use facts::Fact;
-pub use logged::again;
+pub use logged::{again, stand_by};
 pub use queue::Judge;
 pub(super) use time::{LOOP_MAX, RATES};
 
@@ -72,6 +75,10 @@ pub enum Effect {
     Correct(Step, Hint),
     /// Tell what a track is made from, now and after every change until an edit is committed.
     Study(TrackId),
+    /// Work something out behind the screen for the studied track.
+    Offer(Ask),
+    /// Keep what was found for a wish, and say what may be done next.
+    Keep(Wish, Hint),
     /// Place a new track here; its number is the project's to give.
     AddFeature {
         /// Frame of its first key-frame.
@@ -122,7 +129,8 @@ pub enum Effect {
 
 /// The next state, and what is to be done.
 pub fn update(state: &mut State, msg: Msg) -> Vec<Effect> {
-    let effects = match msg {
+    let is_key = matches!(msg, Msg::Key(_));
+    let mut effects = match msg {
         Msg::Key(key) => {
             pressed(state);
             on_key(state, key)
@@ -153,6 +161,10 @@ pub fn update(state: &mut State, msg: Msg) -> Vec<Effect> {
             Vec::new()
         }
     };
+    if !is_key {
+        effects.extend(offers::release(state));
+    }
+    effects.extend(offers::asks(state));
     lesson::follow(state);
     effects
 }
@@ -173,9 +185,14 @@ const NAME_MAX: usize = 60;
 const TYPED_MAX: usize = 256;
 
 fn on_key(state: &mut State, key: Key) -> Vec<Effect> {
+    if !state.held.is_empty() {
+        offers::hold_more(state, key);
+        return Vec::new();
+    }
     let context = state.mode.context();
     state.pending.push(key);
     match state.keys.find(context, &state.pending) {
+        found if offers::hold(state, found) => Vec::new(),
         Found::Prefix => Vec::new(),
         Found::Action(action) => {
             state.pending.clear();
@@ -295,6 +312,8 @@ fn open_menu(state: &mut State, title: &'static str) {
 mod bindings_tests;
 #[cfg(test)]
 mod keys_tests;
+#[cfg(test)]
+mod offers_tests;
 #[cfg(test)]
 mod queue_tests;
 #[cfg(test)]

@@ -7,6 +7,7 @@ mod labels;
 mod lesson;
 mod lines;
 mod menu;
+mod offers;
 mod opening;
 pub mod picture;
 pub mod start;

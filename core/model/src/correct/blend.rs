@@ -1,65 +1,12 @@
-//! What a tracker found from the key-frames of a track, laid over it: one way, or both ways and blended.
+//! What a tracker found from two key-frames, blended into one path.
 
-use std::ops::Range;
-
-use super::{Correction, Refused, Shown, is_placed, position};
+use super::{is_placed, position};
 use crate::clip::FrameTimes;
 use crate::curve::{Knot, Segment};
-use crate::document::RunId;
-use crate::over::{Laid, Over};
 use crate::track::{Quality, Sample, Source, Span, Status};
 
 /// Steepness of the two sigmoids over the blended range: the middle 60 % hold nine tenths of the change.
 const STEEPNESS: f64 = 10.0;
-
-/// Lays what was found forwards from a frame, until it is lost or up to the next key-frame.
-///
-/// # Errors
-/// [`Refused::NoSamples`] when it is lost at once.
-pub fn forward(shown: &Shown<'_>, found: &Span, run: RunId, from: u32) -> Result<Correction, Refused> {
-    let end = shown.keys_around(from).1.unwrap_or(shown.times.len());
-    let n = (from + 1..end).take_while(|&frame| placed(found, frame).is_some()).count();
-    let frames = from + 1..from + 1 + u32::try_from(n).unwrap_or(0);
-    let asked = from + 1..end;
-    laid(shown, found, Some(run), frames, asked, "re-tracked forward")
-}
-
-/// Lays what was found backwards from a frame, until it is lost or down to the previous key-frame.
-///
-/// # Errors
-/// [`Refused::NoSamples`] when it is lost at once.
-pub fn backward(shown: &Shown<'_>, found: &Span, run: RunId, from: u32) -> Result<Correction, Refused> {
-    let start = shown.keys_around(from).0.map_or(0, |before| before + 1);
-    let n = (start..from).rev().take_while(|&frame| placed(found, frame).is_some()).count();
-    let frames = from - u32::try_from(n).unwrap_or(0)..from;
-    laid(shown, found, Some(run), frames, start..from, "re-tracked backward")
-}
-
-/// Lays what was found over a range as it is; frames that it does not reach stay, and so do key-frames.
-///
-/// # Errors
-/// [`Refused::NoSamples`] when it reaches none.
-pub fn lay(
-    shown: &Shown<'_>,
-    found: &Span,
-    run: Option<RunId>,
-    frames: Range<u32>,
-) -> Result<Correction, Refused> {
-    laid(shown, found, run, frames.clone(), frames, "re-tracked")
-}
-
-fn laid(
-    shown: &Shown<'_>,
-    found: &Span,
-    run: Option<RunId>,
-    frames: Range<u32>,
-    asked: Range<u32>,
-    words: &str,
-) -> Result<Correction, Refused> {
-    let over = |frame| Some(found.get(frame).map(|&sample| Over::Sample(Laid { sample, run })));
-    let edit = shown.relay(frames, |frame| over(frame).filter(Option::is_some));
-    shown.correct(vec![edit.ok_or(Refused::NoSamples { track: shown.id, frames: asked })?], words)
-}
 
 /// Which of two passes a sample counts to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -121,35 +68,6 @@ pub fn blended(
         }
     };
     inner.filter_map(|frame| at(frame).map(|(sample, side)| Blended { frame, sample, side })).collect()
-}
-
-/// Lays the [`blended`] path of two passes between two key-frames.
-///
-/// # Errors
-/// [`Refused::NoKey`] when one of the two is no key-frame; [`Refused::NoSamples`] when they are neighbours.
-pub fn blend(
-    shown: &Shown<'_>,
-    forward: &Span,
-    backward: &Span,
-    run: RunId,
-    keys: (u32, u32),
-) -> Result<Correction, Refused> {
-    let key = |frame: u32| {
-        let key = shown.track.keys.get(&frame).ok_or(Refused::NoKey { track: shown.id, frame })?;
-        Ok::<_, Refused>((frame, [f64::from(key.x), f64::from(key.y)]))
-    };
-    let inner = keys.0 + 1..keys.1;
-    let path = blended(forward, backward, [key(keys.0)?, key(keys.1)?], shown.times);
-    let over = |frame: u32| {
-        let at = path.binary_search_by_key(&frame, |blended| blended.frame).ok()?;
-        let Blended { sample, side, .. } = path[at];
-        Some(Some(Over::Sample(Laid { sample, run: side.map(|_| run) })))
-    };
-    let edit = shown.relay(inner.clone(), over);
-    shown.correct(
-        vec![edit.ok_or(Refused::NoSamples { track: shown.id, frames: inner })?],
-        "re-tracked both ways",
-    )
 }
 
 /// The sample in a frame where the feature is seen or predicted.

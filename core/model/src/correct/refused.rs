@@ -55,14 +55,6 @@ pub enum Refused {
         /// The frame.
         frame: u32,
     },
-    /// A blend goes from one key-frame to another.
-    #[error("track {track} has no key-frame at {frame}; a blend goes from one key-frame to the next")]
-    NoKey {
-        /// The track.
-        track: TrackId,
-        /// The frame.
-        frame: u32,
-    },
     /// Two tracks are wanted.
     #[error("track {0} cannot be worked on with itself: name another one beside it")]
     Itself(TrackId),

@@ -102,21 +102,14 @@ fn any_given() -> impl Strategy<Value = Given> {
     })
 }
 
-fn any_found() -> impl Strategy<Value = Span> {
-    (0..N_FRAMES, prop::collection::vec(any_sample(), 0..30))
-        .prop_map(|(first_frame, samples)| Span { first_frame, samples })
-}
-
 /// Every tool on one track, at a frame and up to another one.
 fn every_tool(
     shown: &Shown<'_>,
     frame: u32,
     end: u32,
     to: [f32; 2],
-    found: &[Span],
 ) -> Vec<(&'static str, Result<Correction, Refused>)> {
     let frames = frame.min(end)..frame.max(end);
-    let (before, after) = shown.keys_around(frame);
     let at = |to: [f32; 2]| to.map(f64::from);
     let drawn =
         [(0.0, to), (0.1, [5.0, 6.0]), (0.7, to)].map(|(elapsed_s, to)| Drawn { elapsed_s, at: at(to) });
@@ -129,19 +122,14 @@ fn every_tool(
         ("space", space(shown, frame, to)),
         ("time", time(shown, frame, f64::from(to[0]) / 200.0 - 0.25).map(|slid| slid.correction)),
         ("sketch", sketch(shown, &[stroke])),
-        ("forward", forward(shown, &found[0], RunId(9), frame)),
-        ("backward", backward(shown, &found[1], RunId(9), frame)),
-        ("lay", lay(shown, &found[0], None, frames.clone())),
-        ("blend", blend(shown, &found[0], &found[1], RunId(9), (before.unwrap_or(0), after.unwrap_or(end)))),
         ("lost", mark(shown, frames.clone(), Status::Lost)),
         ("occluded", mark(shown, frames.clone(), Status::Occluded)),
         ("seen", mark(shown, frames.clone(), Status::Tracked)),
         ("delete", delete_range(shown, frames)),
         (
             "then",
-            key_only(shown, frame, to).and_then(|first| {
-                shown.then(&first, |shown| forward(shown, &found[0], RunId(9), frame), "re-tracked")
-            }),
+            key_only(shown, frame, to)
+                .and_then(|first| shown.then(&first, |shown| space(shown, frame, to), "corrected")),
         ),
     ]
 }
@@ -156,10 +144,10 @@ proptest! {
     #[test]
     fn corrections_keep_their_word(
         given in any_given(), frame in 0..N_FRAMES, end in 0..N_FRAMES + 4,
-        to in prop::array::uniform2(0.0_f32..99.0), found in prop::collection::vec(any_found(), 2),
+        to in prop::array::uniform2(0.0_f32..99.0),
     ) {
         let shown = given.shown();
-        for (tool, correction) in every_tool(&shown, frame, end, to, &found) {
+        for (tool, correction) in every_tool(&shown, frame, end, to) {
             let Ok(correction) = correction else { continue };
             let before = document(&[(ID, &given.track)]);
             let mut after = before.clone();
@@ -236,7 +224,6 @@ fn refusals_say_what_to_do() {
     let shown = given.shown();
     let mut short = given.clone();
     short.runs[0].1.samples.truncate(10);
-    let none = Span::default();
     for (refused, want) in [
         (
             space(&short.shown(), 12, [1.0, 1.0]).err(),
@@ -245,12 +232,6 @@ fn refusals_say_what_to_do() {
         (mark(&short.shown(), 12..20, Status::Lost).err(), "track 42 has no samples in frames 12-19"),
         (mark(&short.shown(), 2..4, Status::Tracked).err(), "track 42: frames 2-3 are already seen"),
         (delete_range(&short.shown(), 0..20).err(), "that is all of track 42: delete the track instead"),
-        (
-            blend(&shown, &none, &none, RunId(1), (5, 9)).err(),
-            "track 42 has no key-frame at 9; a blend goes from one key-frame to the next",
-        ),
-        (blend(&shown, &none, &none, RunId(1), (5, 6)).err(), "track 42 has no samples in frame 6"),
-        (forward(&shown, &none, RunId(1), 6).err(), "track 42 has no samples in frames 7-23"),
         (
             sketch(&shown, &[]).err(),
             "the stroke covers no frame; draw while the clip plays, for longer than its delay",
@@ -267,7 +248,6 @@ fn refusals_say_what_to_do() {
 fn lines_say_which_frames_and_how_far() {
     let given = Given::run(|t_s| [100.0 * t_s, 10.0]).keyed(&[(4, 16.0, 10.0), (16, 64.0, 10.0)]);
     let shown = given.shown();
-    let found = Span { first_frame: 0, samples: given.runs[0].1.samples.clone() };
     let label =
         |correction: Result<Correction, Refused>| correction.map(|correction| correction.transaction.label);
     let mut other = given.clone();
@@ -291,7 +271,6 @@ fn lines_say_which_frames_and_how_far() {
         ),
         (label(mark(&shown, 10..20, Status::Occluded)), "track 42: frames 10-19 occluded with 1 key-frame"),
         (label(delete_range(&shown, 2..18)), "track 42: frames 2-17 taken away with 2 key-frames"),
-        (label(forward(&shown, &found, RunId(2), 4)), "track 42: frame 0 re-tracked forward"),
         (whole(split(&shown, 10, TrackId(99))), "track 42 split at 10: track 99 goes on"),
         (whole(swap(&shown, &beside, 10..N_FRAMES)), "tracks 42 and 50 swapped: frames 10-23"),
         (whole(join(&beside, &shown)), "track 50 joined with track 42: frames 12-23 filled"),

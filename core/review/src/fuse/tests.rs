@@ -19,8 +19,7 @@ fn span(frames: Range<u32>, off: impl Fn(u32) -> f32) -> Span {
 const KEYS: Ends = Ends { before: Some([10.0, 5.0]), after: Some([10.0, 5.0]) };
 
 fn path(ends: &Ends, spans: &[Span]) -> Option<Vec<(usize, f32)>> {
-    let candidates: Vec<Candidate<'_>> = spans.iter().map(|span| Candidate { span, doubt: None }).collect();
-    let picked = fuse(1..9, ends, &candidates)?;
+    let picked = fuse(1..9, ends, &spans.iter().collect::<Vec<_>>())?;
     Some(picked.iter().map(|p| (p.candidate, p.sample.x)).collect())
 }
 
@@ -45,12 +44,10 @@ fn a_path_goes_through_the_key_frames() {
 }
 
 #[test]
-fn suspicion_decides_between_two_that_fit_alike() {
-    let (a, b) = (span(0..10, |_| 0.0), span(0..10, |_| 0.0));
-    let (sure, doubtful) = ([0.1; 10], [0.6; 10]);
-    for (doubts, want) in [([&sure, &doubtful], 0), ([&doubtful, &sure], 1), ([&sure, &sure], 0)] {
-        let candidates =
-            [(&a, doubts[0]), (&b, doubts[1])].map(|(span, d)| Candidate { span, doubt: Some(d) });
+fn the_forward_backward_error_decides_between_two_that_fit_alike() {
+    let (sure, mut doubtful) = (span(0..10, |_| 0.0), span(0..10, |_| 0.0));
+    doubtful.samples.iter_mut().for_each(|sample| sample.quality.fb_px = Some(3.0));
+    for (candidates, want) in [([&sure, &doubtful], 0), ([&doubtful, &sure], 1), ([&sure, &sure], 0)] {
         let picked = fuse(1..9, &KEYS, &candidates).unwrap_or_default();
         assert!(!picked.is_empty() && picked.iter().all(|p| p.candidate == want), "{picked:?}");
     }

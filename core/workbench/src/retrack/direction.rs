@@ -5,6 +5,7 @@ use honami_model::provenance::{Provenance, Value};
 use honami_model::track::TrackId;
 use honami_store::RunHead;
 
+use super::Study;
 use super::pass::{Found, Rider, Scene};
 use super::plan::Pass;
 use crate::error::WorkbenchError;
@@ -31,20 +32,19 @@ pub(super) struct Made {
 impl Direction {
     /// Loads the tracker for these passes; `None` where there are none.
     pub(super) fn start(
-        session: &Session,
-        track: TrackId,
+        study: &Study,
         (plugin, values): (&str, &Values),
         passes: &[Pass],
         word: &str,
     ) -> Result<Option<Self>, WorkbenchError> {
         let frames = || passes.iter().flat_map(|pass| [pass.from, pass.frames.start, pass.frames.end - 1]);
         let (Some(first), Some(last)) = (frames().min(), frames().max()) else { return Ok(None) };
-        let plugin = session.registry.find(Kind::Tracker, plugin)?;
+        let plugin = study.registry.find(Kind::Tracker, plugin)?;
         let (tracker, origin) = honami_host::Host::new().tracker(plugin, values, &CallContext::silent())?;
         let from: Vec<String> = passes.iter().map(|pass| pass.from.to_string()).collect();
         let what = format!("retrack {word} from {}", from.join(", "));
-        let provenance = stamp(&session.project, &what, plugin, values, origin);
-        let head = RunHead { provenance, tracks: track.into(), frames: first..last + 1 };
+        let provenance = stamp(study.revision, &what, plugin, values, origin);
+        let head = RunHead { provenance, tracks: study.track().into(), frames: first..last + 1 };
         Ok(Some(Self { tracker, head }))
     }
 
@@ -62,8 +62,11 @@ impl Direction {
 }
 
 /// The tracker and the parameters that made a track, or else those of the last run; a tracker that is not at hand any
-/// more is passed over.
-pub(crate) fn usual(session: &Session, track: Option<TrackId>) -> Result<(String, Values), WorkbenchError> {
+/// more is passed over. `None`: there is none.
+pub(crate) fn usual(
+    session: &Session,
+    track: Option<TrackId>,
+) -> Result<Option<(String, Values)>, WorkbenchError> {
     let known = |provenance: Provenance| {
         let plugin = session.registry.find(Kind::Tracker, &provenance.plugin_id).ok()?;
         Some((plugin.id.clone(), provenance.params.into_iter().collect::<Values>()))
@@ -71,12 +74,12 @@ pub(crate) fn usual(session: &Session, track: Option<TrackId>) -> Result<(String
     let project = &session.project;
     for run in track.into_iter().flat_map(|track| project.document().runs_of(track).rev()) {
         if let Some(usual) = known(project.run(run)?.head.provenance) {
-            return Ok(usual);
+            return Ok(Some(usual));
         }
     }
     let last = project.runs()?.into_iter().rev().find_map(|run| known(run.head.provenance));
     let any = || session.registry.plugins().iter().find(|plugin| plugin.kind == Kind::Tracker);
-    last.or_else(|| Some((any()?.id.clone(), Values::default()))).ok_or(WorkbenchError::NoTracker)
+    Ok(last.or_else(|| Some((any()?.id.clone(), Values::default()))))
 }
 
 /// How much of the picture a tracker is given round the path, pixels.

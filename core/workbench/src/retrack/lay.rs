@@ -7,7 +7,7 @@ use honami_model::correct::{Correction, Side, blended};
 use honami_model::document::{Key, RunId};
 use honami_model::edit::Edit;
 use honami_model::over::{Laid, Over};
-use honami_model::track::Source;
+use honami_model::track::{Source, TrackId};
 
 use super::pass::Found;
 use super::plan::{self, Anchors, Stretch};
@@ -31,9 +31,9 @@ pub(super) struct Runs {
 }
 
 /// Where a person, or the track's birth, says where the feature is; with a key-frame that is still to be set.
-pub(super) fn anchors(ground: &Ground, key: Option<(u32, Key)>, times: &FrameTimes) -> Anchors {
+pub(super) fn anchors(ground: &Ground, more: &[(u32, Key)], times: &FrameTimes) -> Anchors {
     let mut keys = ground.track.keys.clone();
-    keys.extend(key);
+    keys.extend(more.iter().copied());
     plan::anchors(&keys, ground.shown(times).span())
 }
 
@@ -46,6 +46,16 @@ fn is_hand(ground: &Ground, frame: u32, over: &Over) -> bool {
     matches!(sample.source, Source::Key | Source::Sketch) || is_marked
 }
 
+/// A path that was laid over a track.
+pub(super) struct Paved {
+    track: TrackId,
+    correction: Correction,
+    /// The first and the last frame in which it lies.
+    pub(super) frames: (u32, u32),
+    /// Frames in which it does not, because a person has made what is there.
+    n_kept: usize,
+}
+
 /// The correction that lays what was found.
 pub(super) fn correction(
     ground: &Ground,
@@ -54,11 +64,32 @@ pub(super) fn correction(
     runs: Runs,
     times: &FrameTimes,
 ) -> Result<Correction, WorkbenchError> {
-    let track = request.track;
+    let path = tracked.iter().flat_map(|one| one.path(runs, times)).collect();
+    let laid = laid(ground, &request.keys, path, times)?;
+    let (first, last) = laid.frames;
+    let way = match request.way {
+        Way::Forward => "forward",
+        Way::Backward => "backward",
+        Way::Both => "both ways",
+    };
+    let found = tracked.iter().flat_map(|one| [&one.forward, &one.backward]).flatten();
+    let lost: Vec<String> = found.filter_map(|found| found.lost).map(|frame| frame.to_string()).collect();
+    let lost = if lost.is_empty() { String::new() } else { format!(", lost at {}", lost.join(" and ")) };
+    Ok(laid.labelled(&request.keys, &format!("re-tracked {first}-{last} {way}"), &lost))
+}
+
+/// Sets key-frames and lays a path over a track, but not over what a person has made of it.
+pub(super) fn laid(
+    ground: &Ground,
+    keys: &[(u32, Key)],
+    path: Vec<(u32, Laid)>,
+    times: &FrameTimes,
+) -> Result<Paved, WorkbenchError> {
+    let track = ground.id;
     let under = &ground.track.over;
     let mut new: BTreeMap<u32, Over> = BTreeMap::new();
     let mut n_kept = 0;
-    for (frame, laid) in tracked.iter().flat_map(|one| one.path(runs, times)) {
+    for (frame, laid) in path {
         if under.get(&frame).is_some_and(|over| is_hand(ground, frame, over)) {
             n_kept += 1;
         } else {
@@ -70,50 +101,35 @@ pub(super) fn correction(
     };
     let over = |frame| new.get(&frame).or_else(|| under.get(&frame)).copied();
     let lay = Edit::Lay { track, first_frame: first, over: (first..=last).map(over).collect() };
-    let key = request.key.map(|(frame, key)| Edit::SetKey { track, frame, key });
-    let edits = key.into_iter().chain([lay]).collect();
-    let mut correction = ground.shown(times).correct(edits, "")?;
-    correction.transaction.label = label(request, tracked, (first, last), n_kept, correction.largest_px);
-    Ok(correction)
+    let keys = keys.iter().map(|&(frame, key)| Edit::SetKey { track, frame, key });
+    let correction = ground.shown(times).correct(keys.chain([lay]).collect(), "")?;
+    Ok(Paved { track, correction, frames: (first, last), n_kept })
 }
 
-/// What was done, in the user's words: `track 42: re-tracked 120-203 both ways, up to 6.3 px`.
-fn label(
-    request: &RetrackRequest,
-    tracked: &[Tracked],
-    (first, last): (u32, u32),
-    n_kept: usize,
-    largest_px: f32,
-) -> String {
-    let way = match request.way {
-        Way::Forward => "forward",
-        Way::Backward => "backward",
-        Way::Both => "both ways",
-    };
-    let mut label = format!("track {}: ", request.track);
-    if let Some((frame, _)) = request.key {
-        label += &format!("key-frame at {frame}, ");
+impl Paved {
+    /// Says what was done, in the user's words: `track 42: re-tracked 120-203 both ways, up to 6.3 px`.
+    pub(super) fn labelled(self, keys: &[(u32, Key)], what: &str, lost: &str) -> Correction {
+        let Self { track, mut correction, n_kept, .. } = self;
+        let mut label = format!("track {track}: ");
+        keys.iter().for_each(|(frame, _)| label += &format!("key-frame at {frame}, "));
+        label += what;
+        if correction.largest_px >= 0.05 {
+            label += &format!(", up to {:.1} px", correction.largest_px);
+        }
+        label += lost;
+        match n_kept {
+            0 => {}
+            1 => label += ", 1 frame of hand work kept",
+            n => label += &format!(", {n} frames of hand work kept"),
+        }
+        correction.transaction.label = label;
+        correction
     }
-    label += &format!("re-tracked {first}-{last} {way}");
-    if largest_px >= 0.05 {
-        label += &format!(", up to {largest_px:.1} px");
-    }
-    let found = tracked.iter().flat_map(|one| [&one.forward, &one.backward]).flatten();
-    let lost: Vec<String> = found.filter_map(|found| found.lost).map(|frame| frame.to_string()).collect();
-    if !lost.is_empty() {
-        label += &format!(", lost at {}", lost.join(" and "));
-    }
-    match n_kept {
-        0 => {}
-        1 => label += ", 1 frame of hand work kept",
-        n => label += &format!(", {n} frames of hand work kept"),
-    }
-    label
 }
 
 impl Tracked {
     /// The new sample of every frame of the stretch that has one, and the run it counts to.
-    fn path(&self, runs: Runs, times: &FrameTimes) -> Vec<(u32, Laid)> {
+    pub(super) fn path(&self, runs: Runs, times: &FrameTimes) -> Vec<(u32, Laid)> {
         let Stretch { frames, before, after } = &self.stretch;
         match (&self.forward, &self.backward, before.zip(*after)) {
             (Some(ahead), Some(back), Some((before, after))) => {

@@ -5,6 +5,7 @@ use std::ops::{Range, RangeInclusive};
 
 use honami_model::document::Key;
 use honami_model::track::{Source, Span};
+use honami_review::loko::Placed;
 
 use super::Way;
 
@@ -43,6 +44,11 @@ impl Pass {
 }
 
 impl Stretch {
+    /// The frames between two positions.
+    pub(super) fn between([(first, before), (last, after)]: [Placed; 2]) -> Self {
+        Self { frames: first + 1..last, before: Some(before), after: Some(after) }
+    }
+
     pub(super) fn forward(&self) -> Option<Pass> {
         let at = self.before?;
         let frames = self.frames.clone();
@@ -57,7 +63,7 @@ impl Stretch {
 }
 
 /// Frames in which a person, or the birth of the track, says where the feature is; `None`: that it is lost there.
-pub(super) type Anchors = BTreeMap<u32, Option<[f32; 2]>>;
+pub(crate) type Anchors = BTreeMap<u32, Option<[f32; 2]>>;
 
 /// The key-frames, and the track's first sample where it was found before the first of them: what the feature is was
 /// said there.

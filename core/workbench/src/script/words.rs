@@ -201,7 +201,8 @@ fn retrack(session: &mut Session, given: &Arguments<'_>) -> Outcome {
             Some((plugin.id.clone(), values))
         }
     };
-    let request = RetrackRequest { track, way, frames: frames.start..=frames.end - 1, key: None, with };
+    let request =
+        RetrackRequest { track, way, frames: frames.start..=frames.end - 1, keys: Vec::new(), with };
     let done = retrack::prepare(session, &request)?.run(&())?;
     Ok(Act::Committed(retrack::finish(session, done)?.entry))
 }

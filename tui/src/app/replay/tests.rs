@@ -96,7 +96,9 @@ fn a_session_done_again_makes_the_same_document() {
         "a Enter e n b u d Enter 8 . m 3 l Enter 4 , r 2 . x r . Esc o e n space Enter d k",
         "a Enter 8 . m 3 l Enter 4 , e s e d y j y e a e d 2 . r 1 . d r X Y",
         "a Enter 8 . m l Enter g s a 9 l Enter e j Enter u 8 . m k Enter 4 , e x Enter e j Enter u u",
-        "a Enter 8 . m 3 l Enter 4 , | m 2 k Tab Enter T l Enter [ ] * P t z Ctrl-Left b Esc S O",
+        "a Enter 8 . m 3 l Enter 4 , | m 2 k Tab Tab Tab Enter T l Enter [ ] * P t z Ctrl-Left b Esc S O",
+        // What is held until a correction is worked out, and given up, leaves no line.
+        "a Enter 8 . m 3 l Enter 4 , | m 2 k Tab Enter T l Esc Esc m 2 j Enter u",
         "a Enter g l a m l Enter ? Esc g k Enter m l Enter 9 9 g f d d u",
     ] {
         let bench = Bench::new();

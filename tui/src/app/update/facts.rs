@@ -7,7 +7,8 @@ use honami_model::correct::Layers;
 use honami_model::history::{Entry, EntryId};
 use honami_workbench::review::Told;
 
-use super::{Mode, State, logged, motion, moving, queue, sketch, tell};
+use super::{Mode, State, logged, motion, moving, offers, queue, sketch, tell};
+use crate::app::correcting::Answer;
 use crate::app::dense::FieldOf;
 use crate::app::files::Listing;
 use crate::app::menu::Menu;
@@ -29,6 +30,8 @@ pub enum Fact {
     Tracker(Option<String>),
     /// What a track is made from; `None` where it is not shown any more.
     Layers(Option<Arc<Layers>>),
+    /// Something was worked out for the sample that is moved.
+    Offered(Answer),
     /// A new track was placed: it becomes the selected one.
     Placed(honami_model::track::TrackId),
     /// A correction was made, and with it perhaps a new track: that becomes the selected one.
@@ -70,6 +73,7 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
             sketch::on_layers(state, layers.as_ref());
             moving::on_layers(state, layers);
         }
+        Fact::Offered(answer) => offers::on_answer(state, answer),
         Fact::Late(by) => {
             if let Mode::Sketch(sketching) = &mut state.mode {
                 sketching.late(by);
@@ -142,5 +146,6 @@ fn on_tracks(state: &mut State, rows: Vec<TrackRow>) {
     };
     if track.is_some_and(|track| state.row(track).is_none()) {
         state.mode = Mode::Review;
+        state.held.clear();
     }
 }

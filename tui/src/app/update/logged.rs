@@ -3,8 +3,9 @@
 use std::time::Duration;
 
 use honami_model::track::TrackId;
+use honami_workbench::offer::Model;
 
-use super::{Action, Context, Effect, Mode, Msg, State, actions, on_text, time, update};
+use super::{Action, Context, Effect, Mode, Msg, State, actions, offers, on_text, time, update};
 use crate::app::action::TABLE;
 use crate::app::command_log::{Here, Line, Touch, What};
 use crate::app::layout::Lens;
@@ -21,6 +22,8 @@ pub(super) fn action(state: &mut State, action: Action) {
     }
     let chosen = match &state.mode {
         Mode::Menu(menu) if action == Action::Accept => menu.chosen().map(|row| row.label.clone()),
+        // Which model was offered first was up to the time that it takes to try them.
+        Mode::Move(moving) if action == Action::Accept => moving.model().map(|model| model.word().to_owned()),
         _ => None,
     };
     let sketched = match &state.mode {
@@ -98,6 +101,18 @@ fn push_bare(state: &mut State, what: What) {
     state.log.push(Line { t_s: state.now.as_secs_f64(), what, here: None });
 }
 
+/// Chooses the model by which a line keeps what is moved; what must be worked out for it is in the effects.
+pub fn stand_by(state: &mut State, line: &Line) -> Vec<Effect> {
+    let chosen = line.here.as_ref().and_then(|here| here.chosen.as_deref());
+    let model = Model::ALL.into_iter().find(|model| chosen == Some(model.word()));
+    let State { mode, clip, .. } = &mut *state;
+    if let (Mode::Move(moving), Some(model)) = (mode, model) {
+        moving.choose(model);
+        moving.preview(&clip.times);
+    }
+    offers::asks(state)
+}
+
 /// Does again what a line of a log says, at the same time of the clock, the same frame and the same track.
 ///
 /// # Errors
@@ -131,8 +146,9 @@ pub fn again(state: &mut State, line: &Line) -> Result<Vec<Effect>, String> {
             if let Some(judge) = &here.judged {
                 return Ok(vec![Effect::Judge(judge.clone())]);
             }
-            let effects = actions::act(state, called);
+            let mut effects = actions::act(state, called);
             state.count = None;
+            effects.extend(offers::asks(state));
             Ok(effects)
         }
         What::Text(typed) => {

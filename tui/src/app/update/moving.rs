@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use honami_model::correct::Layers;
+use honami_workbench::offer::Model;
 
 use super::{Effect, Mode, State, UNDO, complain, edit, say};
-use crate::app::correcting::{Model, Moving, Tool, nudge_px};
+use crate::app::correcting::{Moving, Tool, nudge_px};
 
 /// Begins to move the selected track's sample here to another place.
 pub(super) fn begin(state: &mut State) -> Vec<Effect> {
@@ -42,8 +43,7 @@ pub(super) fn on_layers(state: &mut State, layers: Option<Arc<Layers>>) {
     if let (Mode::Move(moving), Some(layers)) = (mode, layers)
         && moving.track == layers.id
     {
-        moving.layers = Some(layers);
-        moving.preview(&clip.times);
+        moving.study(layers, &clip.times);
     }
 }
 
@@ -74,10 +74,11 @@ pub(super) fn point(state: &mut State, at: [f32; 2]) {
 pub(super) fn next_model(state: &mut State) {
     let State { mode, clip, .. } = state;
     if let Mode::Move(moving) = mode
-        && let Tool::Place { model, .. } = &mut moving.tool
+        && let Some(model) = moving.model()
     {
-        let at = Model::ALL.iter().position(|other| other == model).unwrap_or(0);
-        *model = Model::ALL[(at + 1) % Model::ALL.len()];
+        let models: Vec<Model> = moving.models().collect();
+        let at = models.iter().position(|other| *other == model).unwrap_or(0);
+        moving.choose(models[(at + 1) % models.len()]);
         moving.preview(&clip.times);
     }
 }
@@ -99,18 +100,18 @@ pub(super) fn pin(state: &mut State) {
     let frame = moving.walked.unwrap_or(here);
     let known = moving.layers.as_ref().map(|layers| {
         let shown = layers.shown(&clip.times);
-        (shown.span().get(frame).is_some(), shown.track().keys.contains_key(&frame))
+        (shown.span().get(frame).map(|sample| [sample.x, sample.y]), shown.track().keys.contains_key(&frame))
     });
     let line = match known {
         _ if frame == moving.frame => {
             "( and ) walk to another sample of the path; * makes it a key-frame".to_owned()
         }
         Some((_, true)) => format!("frame {frame} is a key-frame already: corrections end there"),
-        Some((true, false)) => {
-            let word = if moving.pinned.remove(&frame) {
+        Some((Some(at), false)) => {
+            let word = if moving.pins.remove(&frame).is_some() {
                 "is no key-frame any more"
             } else {
-                moving.pinned.insert(frame);
+                moving.pins.insert(frame, at);
                 "becomes a key-frame as it is: the correction ends there"
             };
             moving.preview(&clip.times);
@@ -124,6 +125,14 @@ pub(super) fn pin(state: &mut State) {
 /// Keeps what is previewed.
 pub(super) fn keep(state: &mut State) -> Vec<Effect> {
     let Mode::Move(moving) = &state.mode else { return Vec::new() };
+    if let (Some(wish), Some(Ok(_))) = (moving.wish(), &moving.ghost) {
+        leave(state);
+        return vec![Effect::Keep(wish, UNDO)];
+    }
+    if moving.is_pending() {
+        complain(state, "it is still being worked out: look at it before it is kept");
+        return Vec::new();
+    }
     let (moving, hint) = match moving.tool {
         Tool::Place { .. } => (moving, "t t tracks again round it, u undoes"),
         Tool::Slide(_) => (moving, UNDO),
@@ -141,10 +150,15 @@ pub(super) fn keep(state: &mut State) -> Vec<Effect> {
             return Vec::new();
         }
     };
-    let (track, frame) = (moving.track, moving.frame);
-    state.mode = Mode::Review;
-    state.frame = frame;
-    state.corrected = Some(track);
-    super::time::keep_in_view(state);
+    leave(state);
     vec![Effect::Commit(transaction, hint)]
+}
+
+/// Goes back to reviewing, at the sample that was moved.
+fn leave(state: &mut State) {
+    if let Mode::Move(moving) = std::mem::replace(&mut state.mode, Mode::Review) {
+        state.frame = moving.frame;
+        state.corrected = Some(moving.track);
+        super::time::keep_in_view(state);
+    }
 }

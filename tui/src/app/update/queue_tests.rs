@@ -130,6 +130,7 @@ fn undoing_a_verdict_goes_back_to_its_item() {
 fn what_the_project_refuses_is_not_lost() {
     for (from, keys, left) in [
         ("frame=20", "m l l Enter", "move 2 0 | frame 20 track 1"),
+        ("frame=20", "m l Tab Enter", "move 1 0 | frame 20 track 1"),
         ("frame=20", "m l 5 . Enter", "move 1 0 | frame 25 track 1"),
         ("frame=20", "T l Enter", "slide 1.00 | frame 20 track 1"),
         ("", "a 1 0 h Enter", "place 150 120 | frame 0 track 1"),

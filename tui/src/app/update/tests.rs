@@ -509,9 +509,13 @@ fn a_correction_is_seen_before_it_is_kept() {
     let kept = |frames: &str| format!("review | frame 20 track 1 | commit track 1: frames {frames}");
     for (from, keys, expect) in [
         // What becomes of the samples beside it: Tab offers the next model.
-        ("frame=20", "m l Tab Enter", kept("11-49 drawn through key-frames, up to 38.8 px")),
-        ("frame=20", "m l Tab Tab Enter", kept("20").replace("frames 20", "key-frame at 20 (moved 1.0 px)")),
-        ("frame=20", "m l Tab Tab Tab Enter", kept("11-49 corrected, up to 1.0 px")),
+        ("frame=20", "m l Tab Tab Enter", kept("11-49 drawn through key-frames, up to 38.8 px")),
+        (
+            "frame=20",
+            "m l Tab Tab Tab Tab Tab Enter",
+            kept("20").replace("frames 20", "key-frame at 20 (moved 1.0 px)"),
+        ),
+        ("frame=20", "m l Tab Tab Tab Tab Tab Tab Enter", kept("11-49 corrected, up to 1.0 px")),
         // Nudges are smaller the closer one looks.
         ("frame=20 zoom=2", "m 2 l H", "move 0.4375 0 | frame 20 track 1".to_owned()),
         ("frame=20", "m Ctrl-Right 5 Ctrl-Up", "move 0.10000038 -0.5 | frame 20 track 1".to_owned()),

@@ -9,6 +9,7 @@ use ratatui::text::{Line, Span};
 use honami_model::track::{Source, Status, TrackId};
 use honami_workbench::review::Parts;
 
+use super::offers::offers;
 use super::{fill, fitted, put, style, width};
 use crate::app::action::{Action, Context, TABLE};
 use crate::app::clock::rate_words;
@@ -109,7 +110,10 @@ pub(super) fn track(state: &State, area: Rect, frame: &mut Frame) {
     spans.extend(row.name.iter().map(|name| Span::raw(format!("  {}", fitted(name, width(name).min(most))))));
     let left = Line::from(spans);
     let room = usize::from(area.width).saturating_sub(left.width() + 2);
-    let right = Line::styled(whole(words(state, row), " · ", room), style::DIM);
+    let right = match &state.mode {
+        Mode::Move(moving) if moving.model().is_some() => offers(moving, room),
+        _ => Line::styled(whole(words(state, row), " · ", room), style::DIM),
+    };
     let free = usize::from(area.width).saturating_sub(left.width() + right.width() + 5);
     put(frame, area, 0, &left);
     put_right(frame, area, &right, left.width());
@@ -308,7 +312,10 @@ fn moving_words(moving: &Moving, frame: u32) -> String {
     let (from, to) = (moving.from, moving.to());
     let moved = (to[0] - from[0]).hypot(to[1] - from[1]);
     let mut words = match moving.tool {
-        Tool::Place { model, .. } => format!("{}  {moved:.2} px {}", moving.frame, model.word()),
+        Tool::Place { model, .. } => {
+            let pending = if moving.is_pending() { " …" } else { "" };
+            format!("{}  {moved:.2} px {}{pending}", moving.frame, model.word())
+        }
         Tool::Slide(frames) => format!("{}  {frames:+.2} frames, {moved:.2} px", moving.frame),
     };
     if let Some(affected) = moving.affected() {

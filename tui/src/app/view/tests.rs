@@ -4,11 +4,13 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use super::*;
+use crate::app::correcting::Answer;
 use crate::app::fixture;
 use crate::app::plotted::{Plotted, Subject};
 use crate::app::state::{Job, Link, Notice};
 use crate::app::update::{Fact, Msg, update};
 use honami_model::track::TrackId;
+use honami_workbench::offer::{Errors, LeftOut, Model};
 use honami_workbench::overlay::VelocityField;
 use ratatui::style::{Color, Modifier};
 
@@ -166,6 +168,14 @@ fn screens_of_corrections() {
     check("sketch_80x24", (80, 24), "z s 4 l . 3 l k . 3 l k . 2 l . + +", |_| {});
     check("sketch_mono_40x12", (40, 12), "s 4 l . 8 l 3 k 3 . 8 l .", |state| state.mono = true);
     check("range_120x40", (120, 40), "P t y j y r 1 9 l", |_| {});
+    // The one that does best is offered, and still being worked out.
+    check("offers_80x24", (80, 24), "", |state| {
+        fixture::press(state, "m l");
+        let px = [(Model::Both, 0.31), (Model::Space, 0.82), (Model::Hermite, 2.4)];
+        let known = px.map(|(model, mean_px)| (model, LeftOut { n: 2, mean_px }));
+        let told = Answer::Errors(TrackId(1), Ok(Errors::new(known)));
+        update(state, Msg::Fact(Fact::Offered(told)));
+    });
 }
 
 #[test]

@@ -116,24 +116,20 @@ fn sigmoids_sum_to_one_and_end_on_the_key_frames() {
             super::super::blend::rising(tau)
         );
     }
-    let given = Given::run(|_| [0.0, 0.0]).keyed(&[(2, 10.0, 0.0), (22, 20.0, 0.0)]);
     let at_x = |x: f64| Span {
         first_frame: 0,
         samples: vec![sample([x, 0.0], Status::Tracked, Source::Tracked); 24],
     };
-    let blended = blend(&given.shown(), &at_x(10.0), &at_x(20.0), RunId(5), (2, 22)).unwrap();
-    let x: Vec<f32> = blended.span.samples.iter().map(|sample| sample.x).collect();
-    assert_eq!((x[2], x[12], x[22]), (10.0, 15.0, 20.0));
-    assert!(x[2..=22].windows(2).all(|pair| pair[0] < pair[1]));
-    assert!((x[7] - 10.701_04).abs() < 1e-4, "{}", x[7]);
-    for k in 0..=10 {
-        assert!((x[2 + k] + x[22 - k] - 30.0).abs() < 1e-5, "the weights sum to one");
+    let times = FrameTimes::constant(24, 25.0).unwrap();
+    let blended = blended(&at_x(10.0), &at_x(20.0), [(2, [10.0, 0.0]), (22, [20.0, 0.0])], &times);
+    let x: Vec<f32> = blended.iter().map(|at| at.sample.x).collect();
+    assert_eq!((blended[0].frame, x.len(), x[9]), (3, 19, 15.0));
+    assert!(x[0] > 10.0 && x[18] < 20.0 && x.windows(2).all(|pair| pair[0] < pair[1]));
+    assert!((x[4] - 10.701_04).abs() < 1e-4, "{}", x[4]);
+    for k in 0..=9 {
+        assert!((x[k] + x[18 - k] - 30.0).abs() < 1e-5, "the weights sum to one");
     }
-    let run = |frame: u32| match blended.track.over.get(&frame) {
-        Some(Over::Sample(laid)) => laid.run,
-        _ => None,
-    };
-    assert_eq!((run(3), run(2)), (Some(RunId(5)), None));
+    assert_eq!((blended[0].side, blended[18].side), (Some(Side::Forward), Some(Side::Backward)));
 }
 
 /// f followed, - lost: forwards and backwards, and what the blend makes of them (a ahead, b back, m both, i bridged).
@@ -145,7 +141,8 @@ fn a_blend_follows_the_one_that_has_not_lost_it() {
             letters.chars().map(|letter| sample([x, 0.0], status(letter), Source::Tracked)).collect();
         Span { first_frame: 1, samples }
     };
-    let given = Given::run(|_| [0.0, 0.0]).keyed(&[(0, 10.0, 0.0), (10, 20.0, 0.0)]);
+    let times = FrameTimes::constant(11, 25.0).unwrap();
+    let keys = [(0, [10.0, 0.0]), (10, [20.0, 0.0])];
     for (ahead, back, want) in [
         ("fffffffff", "fffffffff", "mmmmmmmmm"),
         ("fffffffff", "----fffff", "aaaaammmm"),
@@ -155,16 +152,15 @@ fn a_blend_follows_the_one_that_has_not_lost_it() {
         ("---------", "---------", "iiiiiiiii"),
         ("ffffff---", "---ffffff", "aaaambbbb"),
     ] {
-        let blended =
-            blend(&given.shown(), &found(ahead, 10.0), &found(back, 20.0), RunId(5), (0, 10)).unwrap();
+        let blended = blended(&found(ahead, 10.0), &found(back, 20.0), keys, &times);
         let letter = |sample: &Sample| match (sample.source, sample.x) {
             (Source::Interpolated, _) => 'i',
             (_, 10.0) => 'a',
             (_, 20.0) => 'b',
             _ => 'm',
         };
-        let letters: String = (1..10).map(|frame| letter(blended.span.get(frame).unwrap())).collect();
-        let x: Vec<f32> = (0..=10).map(|frame| blended.span.get(frame).unwrap().x).collect();
+        let letters: String = blended.iter().map(|at| letter(&at.sample)).collect();
+        let x: Vec<f32> = blended.iter().map(|at| at.sample.x).collect();
         assert!(x.windows(2).all(|pair| pair[0] <= pair[1]), "{ahead} {back}: {x:?}");
         assert_eq!(letters, want, "{ahead} {back}");
     }

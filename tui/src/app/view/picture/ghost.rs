@@ -37,10 +37,8 @@ impl Canvas<'_> {
                 self.mark([sample.x, sample.y], &RING, GHOST, '@');
             }
         }
-        for f in moving.pinned.iter().copied().filter(|f| near(*f)) {
-            if let Some(at) = row.and_then(|row| row.at(f)) {
-                self.mark(at, &[(0, 0)], KEY, '*');
-            }
+        for (_, at) in moving.pins.iter().filter(|(f, _)| near(**f)) {
+            self.mark(*at, &[(0, 0)], KEY, '*');
         }
         if let Some(at) = moving.walked.and_then(|f| row?.at(f)) {
             self.mark(at, &RING, DARK, ' ');
