@@ -99,7 +99,7 @@ fn what_is_kept_is_what_was_shown_and_keys_wait_for_it() {
     let mut state = start("frame=20");
     press(&mut state, "m");
     let wishes = press_alone(&mut state, "l Tab Enter Tab");
-    assert_eq!(wishes, [wish.clone()]);
+    assert_eq!(wishes, std::slice::from_ref(&wish));
     assert_eq!(state.held.len(), 2);
     assert!(state.notice.as_ref().is_some_and(|notice| notice.text.starts_with("both ways …")));
     assert_eq!(moving(&state).model(), Some(Model::Both), "no other model is offered meanwhile");
