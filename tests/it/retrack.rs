@@ -123,7 +123,7 @@ fn hand_work_is_kept_and_undo_takes_all_back() {
     let by_hand = bench.samples("p.honami");
     let said = bench.edit("p.honami", "retrack 3 both 0 24\n").text();
     assert!(
-        said.contains("track 3: re-tracked 1-22 both ways, up to ") && said.contains(" hand work kept"),
+        said.contains("track 3: re-tracked 1-22 both ways, moved up to ") && said.contains(" hand work kept"),
         "{said}"
     );
     let now = bench.samples("p.honami");
@@ -155,7 +155,7 @@ fn two_ways_meet_the_key_frames() {
     let script = format!("key 5 20 {} {}\nretrack 5 both 0 20 klt radius=7\n", at[0] + 3.0, at[1]);
     let said = bench.edit("p.honami", &script).text();
     let last = said.lines().last().unwrap();
-    assert!(last.contains("track 5: re-tracked 1-19 both ways, up to "), "{said}");
+    assert!(last.contains("track 5: re-tracked 1-19 both ways, moved up to "), "{said}");
     let rows = bench.samples("p.honami");
     let now = positions(&rows);
     let moved = (now[&(5, 19)][0] - now[&(5, 20)][0]).hypot(now[&(5, 19)][1] - now[&(5, 20)][1]);

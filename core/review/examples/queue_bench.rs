@@ -38,7 +38,7 @@ fn subject(rng: &mut Pcg64Mcg, track: u32) -> Subject {
         Sample { x: at[0], y: at[1], status: Status::Tracked, source: Source::Tracked, quality }
     };
     let span = Span { first_frame: 0, samples: (0..N_FRAMES).map(sample).collect() };
-    Subject { track: TrackId(track), span: Arc::new(span), rivals: Vec::new() }
+    Subject { track: TrackId(track), span: Arc::new(span), rivals: Vec::new(), unseen: Vec::new() }
 }
 
 /// The longest of many times, milliseconds.

@@ -24,6 +24,8 @@ pub struct Subject {
     pub span: Arc<Span>,
     /// What the runs say of it, where there are several; else empty.
     pub rivals: Vec<Arc<Span>>,
+    /// Frames, ascending, of which a person has said that the feature is not seen there: nothing is doubtful in them.
+    pub unseen: Vec<u32>,
 }
 
 /// What speaks against a sample; larger is worse but for `ncc`. A part that could not be measured is `None`.
@@ -108,6 +110,12 @@ impl Evidence {
     #[must_use]
     pub fn span(&self, track: TrackId) -> Option<&Arc<Span>> {
         self.rows.get(&track).map(|row| &row.subject.span)
+    }
+
+    /// Frames, ascending, of which a person has said that the feature is not seen there.
+    #[must_use]
+    pub fn unseen(&self, track: TrackId) -> &[u32] {
+        self.rows.get(&track).map_or(&[], |row| &row.subject.unseen)
     }
 
     /// What speaks against each sample of a track; empty parts where a sample is not [judged](is_judged).

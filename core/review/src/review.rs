@@ -76,6 +76,7 @@ impl Evidence {
     #[must_use]
     pub fn segments(&self, track: TrackId, judgements: &BTreeMap<u32, Judgement>) -> Option<Segments> {
         let (span, parts) = (self.span(track)?, self.parts(track)?);
-        Some(segments(track, span, &parts, judgements.iter().map(|(&frame, judgement)| (frame, judgement))))
+        let evidence = (&parts[..], self.unseen(track));
+        Some(segments(track, span, evidence, judgements.iter().map(|(&frame, judgement)| (frame, judgement))))
     }
 }

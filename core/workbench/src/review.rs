@@ -7,8 +7,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use honami_media::Media;
-use honami_model::document::RunId;
+use honami_model::document::{RunId, Track};
 use honami_model::judgement::Judgement;
+use honami_model::over::{Laid, Over};
 use honami_model::track::{Span, TrackId};
 use honami_store::Project;
 
@@ -73,8 +74,10 @@ impl Changes {
         let is_gone = |track: &TrackId| !new.tracks.contains_key(track);
         changes.gone = known.tracks.keys().copied().filter(is_gone).collect();
         let mut rivals = rivals(project, &moved.iter().map(|(track, _)| *track).collect())?;
-        let subject =
-            |(track, span)| Subject { track, span, rivals: rivals.remove(&track).unwrap_or_default() };
+        let subject = |(track, span)| {
+            let unseen = document.track(track).map(unseen).unwrap_or_default();
+            Subject { track, span, rivals: rivals.remove(&track).unwrap_or_default(), unseen }
+        };
         changes.subjects = moved.into_iter().map(subject).collect();
         // Last: what could not be read has not been told.
         *known = new;
@@ -86,6 +89,14 @@ impl Changes {
     pub fn is_empty(&self) -> bool {
         self.subjects.is_empty() && self.judgements.is_empty() && self.gone.is_empty()
     }
+}
+
+/// Frames of which a person has said that the feature is lost, hidden or outside. What a tracker lost keeps its run,
+/// also where it was laid over the track.
+fn unseen(track: &Track) -> Vec<u32> {
+    let is_said =
+        |over: &Over| matches!(over, Over::Sample(Laid { sample, run: None }) if !sample.status.is_seen());
+    track.over.iter().filter(|(_, over)| is_said(over)).map(|(&frame, _)| frame).collect()
 }
 
 /// What runs of different trackers say of some tracks; of those followed by one only, nothing.
@@ -149,7 +160,7 @@ impl Reviewer {
         let mut touched: BTreeSet<TrackId> = judgements.iter().map(|(track, _)| *track).collect();
         self.judgements.extend(judgements);
         let moved: Vec<TrackId> = subjects.iter().map(|subject| subject.track).collect();
-        let nothing = |track| Subject { track, span: Arc::default(), rivals: Vec::new() };
+        let nothing = |track| Subject { track, span: Arc::default(), rivals: Vec::new(), unseen: Vec::new() };
         let all = moved.len() + gone.len();
         if all > MANY && all > self.evidence.tracks().count() / MANY {
             self.measure_all(subjects, &gone);
@@ -248,6 +259,22 @@ fn correlate(
         correlator.look(frame, &media.frame(frame)?.planes().y);
     }
     Ok(Some(correlator))
+}
+
+/// Tracks with segments that are still to be reviewed, as far as that is known without looking at the pictures.
+///
+/// # Errors
+/// What the project met.
+pub fn n_doubtful(project: &Project) -> Result<usize, WorkbenchError> {
+    let Changes { subjects, judgements, .. } = Changes::since(&mut Known::default(), project)?;
+    let judgements: BTreeMap<TrackId, Judgements> = judgements.into_iter().collect();
+    let evidence = Evidence::new(subjects, crate::track::threads() as usize);
+    let none = Judgements::new();
+    let is_doubtful = |track: &TrackId| {
+        let segments = evidence.segments(*track, judgements.get(track).unwrap_or(&none));
+        segments.is_some_and(|segments| !segments.items.is_empty())
+    };
+    Ok(evidence.tracks().filter(is_doubtful).count())
 }
 
 /// The review of a project, measured to the end.

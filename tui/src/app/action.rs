@@ -126,8 +126,8 @@ table! {
     FineDown "fine-down" ["J" "Shift-Down"] [Place ".25" Move ".25" Sketch ""] "a quarter of a pixel down"
     FineUp "fine-up" ["K" "Shift-Up"] [Place ".25" Move ".25" Sketch ""] "a quarter of a pixel up"
     FineRight "fine-right" ["L" "Shift-Right"] [Place ".25" Move ".25" Form "" Slide ".25" Sketch ""] "a quarter of a pixel right, or a tenth of a value's range up"
-    Accept "accept" ["Enter"] [Place "place" Move "keep" Form "run" Menu "choose" Prompt "done" Review "" Dial "keep" History "go there" Slide "keep" Start "open" Sketch "keep"]
-        "accept: keep, place, run or go; while reviewing, the open item, or the sample here as a key-frame"
+    Accept "accept" ["Enter"] [Place "place" Move "keep" Form "run" Menu "choose" Prompt "done" Review "accept" Dial "keep" History "go there" Slide "keep" Start "open" Sketch "keep"]
+        "accept: keep, place, run or go; reviewing: the open item, else open the track's, or make a key-frame"
     Back "back" ["Esc" "Ctrl-c"] [Place "back" Move "back" Form "back" Menu "back" Prompt "back" Label "back" Review "" Dial "back" History "back" Slide "back" Start "" Sketch "back"]
         "back: leave what is open, undone; while reviewing, stop the clip or the job, give up the range, then the picks"
     // Time.
@@ -138,8 +138,8 @@ table! {
     Loop "loop" ["b"] [Review ""] "loop round this frame, or stop; 12 b: 12 frames to both sides"
     NextItem "next-item" ["n"] [Review "next"] "open the next item of the queue, at its worst frame"
     PreviousItem "previous-item" ["p"] [Review ""] "open the previous item of the queue"
-    WorstFrame "worst-frame" ["w"] [Review "worst"]
-        "go to the worst frame of the item; again, to those of the track's other items"
+    WorstFrame "worst-frame" ["w"] [Review "open"]
+        "open the selected track's item at its worst frame; again, the track's next"
     Bisect "bisect" ["|"] [Review ""] "go half-way between the key-frames around"
     Reject "reject" ["R"] [Review ""] "the open item's track is of no use; on to the next item"
     Later "later" ["E"] [Review ""] "put the open item off; on to the next item"

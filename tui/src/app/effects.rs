@@ -288,7 +288,7 @@ impl World {
             [.., last] => format!("{word}: {} edits, the last of them: {last}", labels.len()),
         };
         // What was done before something failed is shown all the same.
-        self.shown_and(match failure {
+        self.arrived(match failure {
             None => said(line),
             Some(error) if labels.is_empty() => failed(&error.into()),
             Some(error) => said_wrong(format!("{line}; the next: {error}")),
@@ -309,7 +309,16 @@ impl World {
             (0, _) => format!("at edit {to}: {label} ({n_again} done again)"),
             _ => format!("at edit {to}: {label} ({n_back} taken back, {n_again} done again)"),
         };
-        self.shown_and(said(line))
+        self.arrived(said(line))
+    }
+
+    /// At another edit; a track that is there again is what the user wanted back.
+    fn arrived(&mut self, fact: Fact) -> Facts {
+        let before: Vec<TrackId> = self.rows.keys().copied().collect();
+        let mut facts = self.shown_and(fact)?;
+        let again = self.rows.keys().find(|track| before.binary_search(track).is_err());
+        facts.extend(again.map(|track| Fact::ThereAgain(*track)));
+        Ok(facts)
     }
 
     fn track(&mut self, request: &TrackRequest, now: Duration) -> Facts {

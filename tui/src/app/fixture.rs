@@ -59,7 +59,12 @@ fn edits() -> Vec<Entry> {
 
 /// What there is to review, without pictures: forward-backward errors, losses and jumps.
 pub(super) fn review(state: &mut State) {
-    let subject = |row: &TrackRow| Subject { track: row.id, span: Arc::clone(&row.span), rivals: Vec::new() };
+    let subject = |row: &TrackRow| Subject {
+        track: row.id,
+        span: Arc::clone(&row.span),
+        rivals: Vec::new(),
+        unseen: Vec::new(),
+    };
     let evidence = Evidence::new(state.tracks.iter().map(subject).collect(), 1);
     state.review = Review::default();
     for row in &state.tracks {

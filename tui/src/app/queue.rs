@@ -1,6 +1,7 @@
 //! The item of the queue that is being looked at, and what looking at it takes.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -49,6 +50,11 @@ impl Opened {
         self.last = now;
     }
 
+    /// Whether the track is no longer as it was when it was opened.
+    fn is_worked_on(&self, row: &TrackRow) -> bool {
+        !Arc::ptr_eq(&self.span, &row.span) && self.span != row.span
+    }
+
     /// What it has taken so far.
     #[must_use]
     pub fn effort(&self, row: &TrackRow) -> Effort {
@@ -95,6 +101,8 @@ impl Opened {
 pub struct Looked {
     /// Those that were left without a verdict, by track and first frame: what they took is not forgotten.
     left: BTreeMap<(TrackId, u32), Opened>,
+    /// One that nobody has opened, while its track is looked at.
+    visited: Option<Opened>,
     /// The one whose verdict is on its way into the project.
     judging: Option<Opened>,
     /// Those that were judged, by the edits that keep the verdicts.
@@ -107,12 +115,60 @@ impl Looked {
         self.left.insert((opened.item.track, opened.item.frames.start), opened);
     }
 
-    /// An item is opened: where it was left before, what it took then counts.
+    /// An item is opened: what was done for it before counts, whether it was left or its track worked on with none open.
+    /// By such work it may have become another: then it is the one that lay there.
     #[must_use]
-    pub fn open(&mut self, new: Opened) -> Opened {
-        match self.left.remove(&(new.item.track, new.item.frames.start)) {
+    pub fn open(&mut self, new: Opened, row: &TrackRow) -> Opened {
+        let (track, frames) = (new.item.track, new.item.frames.clone());
+        let is_it = |old: &Opened| old.item.track == track && overlap(&old.item.frames, &frames);
+        if let Some(visited) = self
+            .visited
+            .take_if(|visited| visited.item.track == track)
+            .filter(|visited| visited.is_worked_on(row))
+        {
+            let visited = self.joined(visited);
+            return Opened { item: new.item, last: new.last, ..visited };
+        }
+        let exact = Some((track, frames.start)).filter(|key| self.left.contains_key(key));
+        let lay_there = |(_, old): &(_, &Opened)| is_it(old) && old.is_worked_on(row);
+        let key = exact.or_else(|| self.left.iter().find(lay_there).map(|(key, _)| *key));
+        match key.and_then(|key| self.left.remove(&key)) {
             Some(left) => Opened { item: new.item, last: new.last, ..left },
             None => new,
+        }
+    }
+
+    /// The item of the track that is looked at, which nobody has opened.
+    #[must_use]
+    pub fn visited(&self) -> Option<&Opened> {
+        self.visited.as_ref()
+    }
+
+    /// A key is pressed while a track is looked at, which has this item. What was done for the one before is kept if its
+    /// track, which is `before` now, was worked on; looking at it was passing by.
+    pub fn visit(&mut self, before: Option<&TrackRow>, at: Option<(&TrackRow, &Item)>, now: Duration) {
+        let goes_on = |visited: &Opened| at.is_some_and(|(row, _)| row.id == visited.item.track);
+        if let Some(left) = self.visited.take_if(|visited| !goes_on(visited))
+            && before.is_some_and(|row| left.is_worked_on(row))
+        {
+            let left = self.joined(left);
+            self.leave(left);
+        }
+        if let Some((row, item)) = at {
+            self.visited.get_or_insert_with(|| Opened::new(item.clone(), row, now)).pressed(now);
+        }
+    }
+
+    /// With what was done for the same item on earlier visits.
+    fn joined(&mut self, visited: Opened) -> Opened {
+        match self.left.remove(&(visited.item.track, visited.item.frames.start)) {
+            Some(left) => Opened {
+                keystrokes: left.keystrokes + visited.keystrokes,
+                active: left.active + visited.active,
+                last: visited.last,
+                ..left
+            },
+            None => visited,
         }
     }
 
@@ -147,10 +203,23 @@ impl State {
         self.opened.as_ref().filter(|opened| Some(opened.item.track) == self.selected)
     }
 
-    /// The item that the screen speaks of: the opened one, or the worst of the selected track.
+    /// What is doubtful still of the open item; with none open, the worst of the selected track.
+    #[must_use]
+    pub fn doubt(&self) -> Option<&Item> {
+        let is_it =
+            |item: &&Item| self.opened().is_none_or(|opened| overlap(&opened.item.frames, &item.frames));
+        self.review.queue.of_track(self.selected?).find(is_it)
+    }
+
+    /// The item that the screen speaks of: what is doubtful, else the open one as it was.
     #[must_use]
     pub fn current_item(&self) -> Option<&Item> {
-        let worst = || self.review.queue.of_track(self.selected?).next();
-        self.opened().map(|opened| &opened.item).or_else(worst)
+        self.doubt().or_else(|| self.opened().map(|opened| &opened.item))
     }
+}
+
+/// Whether some frame is in both.
+#[must_use]
+pub fn overlap(a: &Range<u32>, b: &Range<u32>) -> bool {
+    a.start < b.end && b.start < a.end
 }

@@ -169,12 +169,13 @@ pub fn update(state: &mut State, msg: Msg) -> Vec<Effect> {
     effects
 }
 
-/// A key counts for the open item, as long as its track is the selected one.
+/// A key counts for the open item, as long as its track is the selected one; else for that of the track which is.
 fn pressed(state: &mut State) {
     let (now, is_its) = (state.now, state.opened().is_some());
     if let Some(opened) = &mut state.opened {
         if is_its { opened.pressed(now) } else { opened.waited(now) }
     }
+    queue::visit(state);
 }
 
 /// Largest number before a command.
@@ -254,6 +255,7 @@ fn append(typed: &mut String, more: impl Iterator<Item = char>, n_max: usize) {
 
 /// Does an action and forgets its count.
 fn call(state: &mut State, action: Action) -> Vec<Effect> {
+    let action = queue::meant(state, action);
     logged::action(state, action);
     let effects = actions::act(state, action);
     state.count = None;

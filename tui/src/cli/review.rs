@@ -14,6 +14,10 @@ use super::{Answer, options, there, where_is_the_clip};
 /// So many items are listed for people; machines get all.
 const LISTED: usize = 40;
 
+/// What the codes of reasons mean.
+const LEGEND: &str = "FB: the way back misses, NCC: looks different, JMP: sudden step, NBR: moves unlike its neighbours, \
+                      DIS: trackers disagree, LOST: lost";
+
 /// Prints the queue, most doubtful first.
 pub(super) fn review(args: &Project, common: &Common) -> anyhow::Result<Answer> {
     there(&args.project)?;
@@ -28,7 +32,7 @@ fn text(session: &Session, review: &Review) -> String {
     let progress = review.progress();
     let mut lines = vec![match progress.total() {
         0 => "nothing is doubtful".to_owned(),
-        total => format!("{} of {total} segments to review", progress.open),
+        _ => format!("{} segments to review, {} done", progress.open, progress.judged.done()),
     }];
     let found = Verdict::ALL.into_iter().filter(|verdict| progress.judged.of(*verdict) > 0);
     let found: Vec<String> =
@@ -50,6 +54,7 @@ fn text(session: &Session, review: &Review) -> String {
         ));
     }
     if !review.queue.is_empty() {
+        lines.push(LEGEND.to_owned());
         lines.push(format!("{:>7}  {:>11}  {:>6}  {:>9}  reasons", "track", "frames", "worst", "suspicion"));
     }
     lines.extend(review.queue.iter().take(LISTED).map(row));
@@ -69,8 +74,22 @@ fn row(item: &Item) -> String {
     let frames = format!("{}-{}", item.frames.start, item.frames.end - 1);
     let later = if item.later { "  later" } else { "" };
     let (track, worst) = (item.track.0, item.worst);
-    format!("{track:>7}  {frames:>11}  {worst:>6}  {:>9.2}  {}{later}", item.suspicion, item.reasons)
+    let suspicion = suspicion(item.suspicion);
+    format!("{track:>7}  {frames:>11}  {worst:>6}  {suspicion:>9}  {}{later}", item.reasons)
 }
+
+/// A probability: near 1 with the digits that tell it from 1.
+fn suspicion(p: f32) -> String {
+    match p {
+        p if p < 0.995 => format!("{p:.2}"),
+        p if p < 0.999_95 => format!("{p:.4}"),
+        p if p < 0.999_999_5 => format!("{p:.6}"),
+        _ => ">.999999".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests;
 
 fn machine(session: &Session, review: &Review) -> Value {
     let item = |item: &Item| {

@@ -1,5 +1,6 @@
 //! `spectrum`: frequencies of tracks and groups.
 
+use honami_workbench::review;
 use honami_workbench::spectra::{self, Line, Peak, Spectra, Subject};
 use serde_json::json;
 
@@ -15,7 +16,9 @@ pub(super) fn spectrum(args: &Spectrum) -> anyhow::Result<Answer> {
     let mut spectra = if is_table {
         spectra::of_table(&args.project, args.peaks)?
     } else {
-        spectra::of_project(&look(&args.project)?, args.peaks)?
+        let project = look(&args.project)?;
+        warn(review::n_doubtful(&project)?);
+        spectra::of_project(&project, args.peaks)?
     };
     if let Some(track) = args.track {
         spectra.lines.retain(|line| matches!(line.subject, Subject::Track(id) if id.0 == track));
@@ -25,6 +28,16 @@ pub(super) fn spectrum(args: &Spectrum) -> anyhow::Result<Answer> {
         );
     }
     Ok(describe(&spectra))
+}
+
+/// What was never looked at may be no movement of the plant: says so.
+fn warn(n_doubtful: usize) {
+    let who = match n_doubtful {
+        0 => return,
+        1 => "1 track has".to_owned(),
+        n => format!("{n} tracks have"),
+    };
+    report::say(&format!("{who} doubtful frames that nobody has reviewed: honami review lists them"));
 }
 
 fn describe(spectra: &Spectra) -> Answer {

@@ -52,6 +52,7 @@ fn case(
         span: Arc::clone(&shown[k]),
         // Half of them were followed by one tracker only.
         rivals: if k % 2 == 0 { vec![Arc::clone(&shown[k]), Arc::clone(&beside[k])] } else { Vec::new() },
+        unseen: Vec::new(),
     };
     let mut evidence = Evidence::new(leaves.iter().enumerate().map(subject).collect(), 2);
     let mut correlator = evidence.correlator(&evidence.tracks().collect::<Vec<_>>());

@@ -32,7 +32,7 @@ fn written(letters: &str) -> Span {
 }
 
 fn subject(track: u32, span: Span) -> Subject {
-    Subject { track: TrackId(track), span: Arc::new(span), rivals: Vec::new() }
+    Subject { track: TrackId(track), span: Arc::new(span), rivals: Vec::new(), unseen: Vec::new() }
 }
 
 #[test]

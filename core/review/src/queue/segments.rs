@@ -75,14 +75,22 @@ pub struct Segments {
 /// The doubtful segments of a track and the suspicion of every sample; judged segments are left out as long as their
 /// samples are those that were judged.
 ///
-/// A segment is a longest range of doubtful or lost samples without key-frames, ranges near each other joined.
+/// A segment is a longest range of doubtful or lost samples without key-frames, ranges near each other joined. The
+/// frames `unseen`, ascending, are those of which a person has said that the feature is not seen there: like a key-frame
+/// they are no part of it.
 pub fn segments<'a>(
     track: TrackId,
     span: &Span,
-    parts: &[Parts],
+    (parts, unseen): (&[Parts], &[u32]),
     judgements: impl IntoIterator<Item = (u32, &'a Judgement)>,
 ) -> Segments {
-    let suspicions: Vec<f32> = span.samples.iter().zip(parts).map(|(s, parts)| of_sample(s, parts)).collect();
+    let is_word = |frame: u32, sample: &Sample| {
+        is_wall(sample) || !sample.status.is_seen() && unseen.binary_search(&frame).is_ok()
+    };
+    let suspicion = |((frame, sample), parts): ((u32, &Sample), &Parts)| {
+        if is_word(frame, sample) { 0.0 } else { of_sample(sample, parts) }
+    };
+    let suspicions: Vec<f32> = span.frames().zip(&span.samples).zip(parts).map(suspicion).collect();
     let standing = standing(span, judgements);
     let with = |later: bool| {
         let wanted = standing.iter().filter(move |(_, verdict)| (*verdict == Verdict::Later) == later);
@@ -93,7 +101,7 @@ pub fn segments<'a>(
     let mut found: Vec<Range<u32>> = Vec::new();
     let mut is_open = false;
     for (frame, (sample, suspicion)) in span.frames().zip(span.samples.iter().zip(&suspicions)) {
-        if is_wall(sample) || is_done(frame) {
+        if is_word(frame, sample) || is_done(frame) {
             is_open = false;
         } else if *suspicion >= DOUBTFUL {
             match found.last_mut().filter(|last| is_open && frame - last.end <= NEAR) {

@@ -8,7 +8,7 @@ use proptest::test_runner::{Config, RngSeed};
 use super::*;
 
 /// A track and its evidence, a letter a sample: `.` good, `d` doubtful, `D` more so, `l` lost, `k` key-frame,
-/// `o` occluded.
+/// `o` occluded; `L` and `O` where a person has said so.
 fn written(letters: &str) -> (Span, Vec<Parts>) {
     let good = Parts { fb_px: Some(0.02), ncc: Some(0.99), jump: Some(1.0), nbr_px: Some(0.2), dis_px: None };
     let doubtful = Parts { fb_px: Some(2.0), ncc: Some(0.3), nbr_px: Some(12.0), ..good };
@@ -18,8 +18,8 @@ fn written(letters: &str) -> (Span, Vec<Parts>) {
             '.' => (Status::Tracked, Source::Tracked, good),
             'd' => (Status::Tracked, Source::Tracked, doubtful),
             'D' => (Status::Tracked, Source::Tracked, bad),
-            'l' => (Status::Lost, Source::Tracked, Parts::default()),
-            'o' => (Status::Occluded, Source::Tracked, Parts::default()),
+            'l' | 'L' => (Status::Lost, Source::Tracked, Parts::default()),
+            'o' | 'O' => (Status::Occluded, Source::Tracked, Parts::default()),
             _ => (Status::Tracked, Source::Key, Parts::default()),
         };
         (Sample { x: 1.0, y: 2.0, status, source, quality: Quality::default() }, parts)
@@ -37,7 +37,10 @@ fn judged(span: &Span, frames: Range<u32>, verdict: Verdict) -> (u32, Judgement)
 
 fn found(letters: &str, judgements: &[(u32, Judgement)]) -> Segments {
     let (span, parts) = written(letters);
-    segments(TrackId(1), &span, &parts, judgements.iter().map(|(frame, judgement)| (*frame, judgement)))
+    let unseen: Vec<u32> =
+        (100..).zip(letters.chars()).filter(|(_, c)| "LO".contains(*c)).map(|(f, _)| f).collect();
+    let judgements = judgements.iter().map(|(frame, judgement)| (*frame, judgement));
+    segments(TrackId(1), &span, (&parts, &unseen), judgements)
 }
 
 #[test]
@@ -53,6 +56,10 @@ fn segments_lie_between_key_frames_and_near_ones_are_one() {
         ("..dDllll", vec![(102..108, 103, "FB NCC NBR LOST")]),
         ("ddoodd", vec![(100..106, 100, "FB NCC NBR")]),
         ("kook", vec![]),
+        ("..LLLL", vec![]),
+        ("..OO..", vec![]),
+        ("ddLLLl", vec![(100..102, 100, "FB NCC NBR"), (105..106, 105, "LOST")]),
+        ("ddOdd", vec![(100..102, 100, "FB NCC NBR"), (103..105, 103, "FB NCC NBR")]),
         ("", vec![]),
     ] {
         let items = found(letters, &[]).items;
@@ -76,7 +83,7 @@ fn judged_segments_leave_and_come_back_when_their_samples_change() {
 
     let mut moved = span;
     moved.samples[3].x += 0.5;
-    let back = segments(TrackId(1), &moved, &parts, [(accepted.0, &accepted.1)]);
+    let back = segments(TrackId(1), &moved, (&parts, &[]), [(accepted.0, &accepted.1)]);
     assert_eq!((back.items.len(), back.judged), (1, Tally::default()));
 }
 

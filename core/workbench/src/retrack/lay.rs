@@ -7,7 +7,7 @@ use honami_model::correct::{Correction, Side, blended};
 use honami_model::document::{Key, RunId};
 use honami_model::edit::Edit;
 use honami_model::over::{Laid, Over};
-use honami_model::track::{Source, TrackId};
+use honami_model::track::{Source, Span, TrackId};
 
 use super::pass::Found;
 use super::plan::{self, Anchors, Stretch};
@@ -75,7 +75,11 @@ pub(super) fn correction(
     let found = tracked.iter().flat_map(|one| [&one.forward, &one.backward]).flatten();
     let lost: Vec<String> = found.filter_map(|found| found.lost).map(|frame| frame.to_string()).collect();
     let lost = if lost.is_empty() { String::new() } else { format!(", lost at {}", lost.join(" and ")) };
-    Ok(laid.labelled(&request.keys, &format!("re-tracked {first}-{last} {way}"), &lost))
+    let differ = tracked.iter().filter_map(Tracked::largest_difference).max_by(|a, b| a.1.total_cmp(&b.1));
+    let differ = differ.filter(|(_, px)| *px >= 0.05);
+    let differ =
+        differ.map_or_else(String::new, |(frame, px)| format!(", ways differ up to {px:.1} px at {frame}"));
+    Ok(laid.labelled(&request.keys, &format!("re-tracked {first}-{last} {way}"), &(differ + &lost)))
 }
 
 /// Sets key-frames and lays a path over a track, but not over what a person has made of it.
@@ -107,16 +111,17 @@ pub(super) fn laid(
 }
 
 impl Paved {
-    /// Says what was done, in the user's words: `track 42: re-tracked 120-203 both ways, up to 6.3 px`.
-    pub(super) fn labelled(self, keys: &[(u32, Key)], what: &str, lost: &str) -> Correction {
+    /// Says what was done, in the user's words: `track 42: re-tracked 120-203 both ways, moved up to 6.3 px`,
+    /// and then the notes.
+    pub(super) fn labelled(self, keys: &[(u32, Key)], what: &str, notes: &str) -> Correction {
         let Self { track, mut correction, n_kept, .. } = self;
         let mut label = format!("track {track}: ");
         keys.iter().for_each(|(frame, _)| label += &format!("key-frame at {frame}, "));
         label += what;
         if correction.largest_px >= 0.05 {
-            label += &format!(", up to {:.1} px", correction.largest_px);
+            label += &format!(", moved up to {:.1} px", correction.largest_px);
         }
-        label += lost;
+        label += notes;
         match n_kept {
             0 => {}
             1 => label += ", 1 frame of hand work kept",
@@ -145,6 +150,20 @@ impl Tracked {
             (_, Some(one), _) => self.alone(one, runs.backward),
             (None, None, _) => Vec::new(),
         }
+    }
+
+    /// The frame in which the two ways are farthest apart, and how far, pixels: there the blended path is least sure, and
+    /// a key-frame tells most. `None` where only one way, or neither, has seen the feature.
+    fn largest_difference(&self) -> Option<(u32, f32)> {
+        let (ahead, back) = (&self.forward.as_ref()?.span, &self.backward.as_ref()?.span);
+        let seen = |span: &Span, frame| {
+            span.get(frame).filter(|sample| sample.status.is_seen()).map(|sample| [sample.x, sample.y])
+        };
+        let apart = |frame| {
+            let ([ax, ay], [bx, by]) = (seen(ahead, frame)?, seen(back, frame)?);
+            Some((frame, (ax - bx).hypot(ay - by)))
+        };
+        self.stretch.frames.clone().filter_map(apart).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     fn alone(&self, found: &Found, run: Option<RunId>) -> Vec<(u32, Laid)> {

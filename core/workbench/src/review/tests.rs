@@ -121,6 +121,29 @@ fn the_track_that_goes_astray_is_found_and_leaves_when_judged_until_it_changes()
     assert!(again.queue.of_track(astray).count() > 0 && again.progress().judged.done() == 0);
 }
 
+#[test]
+fn what_a_person_calls_lost_is_not_doubtful_until_that_is_undone() {
+    use crate::correct::{Step, prepare};
+    let (_folder, mut session, astray) = project();
+    let n_found = |session: &Session| {
+        let review = review(&session.project, Arc::clone(&session.media), &()).unwrap();
+        review.queue.of_track(astray).count()
+    };
+    assert!(n_found(&session) > 0);
+    let n_doubtful = |session: &Session| super::n_doubtful(&session.project).unwrap();
+    let before = n_doubtful(&session);
+    for status in [Status::Lost, Status::Occluded, Status::Outside] {
+        let frames = ASTRAY - 3..N_FRAMES;
+        let mark = Step::Mark { tracks: astray.into(), frames, status };
+        let (edit, _) = prepare(&mut session.project, &mark).unwrap();
+        session.project.commit(edit).unwrap();
+        assert_eq!(n_found(&session), 0, "{status:?}");
+        assert_eq!(n_doubtful(&session) + 1, before, "{status:?}");
+        session.project.undo().unwrap();
+        assert!(n_found(&session) > 0, "{status:?}");
+    }
+}
+
 /// Everything that a reviewer tells, after it was told of a project and has looked at all pictures.
 fn all(reviewer: &mut Reviewer, known: &mut Known, project: &Project, review: &mut Review) {
     let mut told = reviewer.tell(Changes::since(known, project).unwrap());

@@ -59,7 +59,7 @@ pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {
         Action::GoTrack => time::go_track(state),
         Action::NextItem => queue::step(state, count(state)),
         Action::PreviousItem => queue::step(state, -count(state)),
-        Action::WorstFrame => queue::go_worst(state),
+        Action::WorstFrame => queue::open_worst(state),
         Action::Bisect => queue::bisect(state),
         Action::Reject => return queue::judge(state, Some(Verdict::Rejected)),
         Action::Later => return queue::judge(state, Some(Verdict::Later)),

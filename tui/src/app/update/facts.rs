@@ -7,7 +7,7 @@ use honami_model::correct::Layers;
 use honami_model::history::{Entry, EntryId};
 use honami_workbench::review::Told;
 
-use super::{Mode, State, logged, motion, moving, offers, queue, sketch, tell};
+use super::{Mode, State, logged, motion, moving, offers, queue, sketch, tell, time};
 use crate::app::correcting::Answer;
 use crate::app::dense::FieldOf;
 use crate::app::files::Listing;
@@ -36,6 +36,8 @@ pub enum Fact {
     Placed(honami_model::track::TrackId),
     /// A correction was made, and with it perhaps a new track: that becomes the selected one.
     Corrected(Option<honami_model::track::TrackId>),
+    /// This track is there again, by undo or redo: it becomes the selected one.
+    ThereAgain(honami_model::track::TrackId),
     /// A job began, went on, or ended.
     Job(Option<Job>),
     /// Something worth a line.
@@ -96,6 +98,7 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
             state.range = None;
             state.selected = made.or(state.selected);
         }
+        Fact::ThereAgain(track) => time::select(state, track),
         Fact::Job(job) => {
             if let (Some(old), None) = (&state.job, &job) {
                 let plugin = old.plugin.clone();

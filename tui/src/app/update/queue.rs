@@ -8,8 +8,8 @@ use honami_model::track::TrackId;
 use honami_workbench::review::{Item, Rank};
 use serde::{Deserialize, Serialize};
 
-use super::{Effect, State, complain, edit, say, time};
-use crate::app::queue::Opened;
+use super::{Action, Effect, Mode, State, complain, edit, say, time};
+use crate::app::queue::{Opened, overlap};
 
 /// A verdict to be kept: the world adds who and when.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -69,21 +69,33 @@ pub(super) fn open_rank(state: &mut State, rank: Rank) {
     }
 }
 
+/// What an action means: to accept on a doubtful track whose item is not open is to open that.
+pub(super) fn meant(state: &State, action: Action) -> Action {
+    let opens = action == Action::Accept && matches!(state.mode, Mode::Review);
+    let is_closed = opens && state.opened().is_none() && state.current_item().is_some();
+    if is_closed && state.read_only.is_none() { Action::WorstFrame } else { action }
+}
+
+/// A key counts for the item of the track that is worked on, also where nobody has opened it.
+pub(super) fn visit(state: &mut State) {
+    let open = state.opened.as_ref().map(|opened| opened.item.track);
+    let at = state.selected.filter(|track| Some(*track) != open).and_then(|track| state.row(track)).cloned();
+    let before = state.looked.visited().and_then(|visited| state.row(visited.item.track)).cloned();
+    let worst = at.as_ref().and_then(|row| state.review.queue.of_track(row.id).next()).cloned();
+    state.looked.visit(before.as_ref(), at.as_ref().zip(worst.as_ref()), state.now);
+}
+
 fn open(state: &mut State, item: Item) {
-    let Some(row) = state.row(item.track) else { return };
-    let new = Opened::new(item.clone(), row, state.now);
+    let Some(row) = state.row(item.track).cloned() else { return };
+    let new = Opened::new(item.clone(), &row, state.now);
     if let Some(left) = state.opened.take() {
         state.looked.leave(left);
     }
-    state.opened = Some(state.looked.open(new));
+    state.opened = Some(state.looked.open(new, &row));
     time::stop(state);
     time::select(state, item.track);
     time::go(state, item.worst);
-    let (first, last) = (item.frames.start, item.frames.end - 1);
-    say(
-        state,
-        format!("track {}: frames {first}-{last}, {} ({:.2})", item.track, item.reasons, item.suspicion),
-    );
+    say(state, words_of(&item, (0, 1)));
 }
 
 /// Says what was found of the open item, and goes on to the next; `None`: what its samples say of themselves.
@@ -100,7 +112,7 @@ pub(super) fn judge(state: &mut State, verdict: Option<Verdict>) -> Vec<Effect> 
         Judge { track: row.id, frames, verdict, reasons, effort: opened.effort(row) }
     });
     let Some(found) = found else {
-        complain(state, "no item is open: n opens the most doubtful");
+        complain(state, "no item is open: w opens the selected track's, n the most doubtful");
         return Vec::new();
     };
     let judged = state.opened.take();
@@ -116,10 +128,6 @@ pub(super) fn judge(state: &mut State, verdict: Option<Verdict>) -> Vec<Effect> 
     }
     state.log.judged(&found);
     vec![Effect::Judge(found)]
-}
-
-fn overlap(a: &Range<u32>, b: &Range<u32>) -> bool {
-    a.start < b.end && b.start < a.end
 }
 
 /// The document stands elsewhere: a new edit may keep a verdict; where verdicts were undone, the item of the first of
@@ -141,25 +149,46 @@ pub(super) fn on_history(state: &mut State, from: EntryId, has_grown: bool) {
     }
 }
 
-/// Goes to the worst frame of the open item; again, to those of the track's other items.
-pub(super) fn go_worst(state: &mut State) {
+/// Opens the selected track's item that holds the frame, else its most doubtful one, at its worst frame; where that is
+/// open already and looked at, the track's next.
+pub(super) fn open_worst(state: &mut State) {
     let Some(track) = state.selected else {
         return complain(state, "select a track first: j takes the next");
     };
-    let mut worst: Vec<u32> = state.opened().map(|opened| opened.item.worst).into_iter().collect();
-    for item in state.review.queue.of_track(track) {
-        if !worst.contains(&item.worst) {
-            worst.push(item.worst);
+    let items: Vec<Item> = state.review.queue.of_track(track).cloned().collect();
+    let here = state.frame;
+    let is_open =
+        |item: &Item| state.opened().is_some_and(|opened| overlap(&opened.item.frames, &item.frames));
+    let at = match (items.iter().position(is_open), state.opened()) {
+        (Some(at), _) if items[at].worst == here => Some((at + 1) % items.len()),
+        (Some(at), _) => Some(at),
+        // Its samples are no longer doubtful.
+        (None, Some(opened)) if items.is_empty() || opened.item.worst != here => None,
+        (None, _) => items.iter().position(|item| item.frames.contains(&here)).or(Some(0)),
+    };
+    let opened = state.opened().map(|opened| opened.item.worst);
+    match (at.and_then(|at| Some((at, items.get(at)?))), opened) {
+        (Some((at, item)), _) if is_open(item) => {
+            time::go(state, item.worst);
+            say(state, words_of(item, (at, items.len())));
         }
-    }
-    let at = worst.iter().position(|&frame| frame == state.frame).map_or(0, |at| (at + 1) % worst.len());
-    match worst.get(at).copied() {
-        Some(frame) => {
-            time::go(state, frame);
-            say(state, format!("track {track}: doubtful frame {} of {}", at + 1, worst.len()));
+        (Some((at, item)), _) => {
+            open(state, item.clone());
+            say(state, words_of(item, (at, items.len())));
         }
-        None => say(state, format!("track {track}: nothing is doubtful")),
+        (None, Some(worst)) => {
+            time::go(state, worst);
+            say(state, format!("track {track}: the open item is no longer doubtful"));
+        }
+        (None, None) => say(state, format!("track {track}: nothing is doubtful")),
     }
+}
+
+/// What is opened; where the track has several items also which.
+fn words_of(item: &Item, (at, n): (usize, usize)) -> String {
+    let (first, last) = (item.frames.start, item.frames.end - 1);
+    let which = if n > 1 { format!(", item {} of {n} of the track", at + 1) } else { String::new() };
+    format!("track {}: frames {first}-{last}, {} ({:.2}){which}", item.track, item.reasons, item.suspicion)
 }
 
 /// Goes half-way between the key-frames around, or the ends of the track.

@@ -125,6 +125,77 @@ fn undoing_a_verdict_goes_back_to_its_item() {
     assert_eq!(state.opened().map(|opened| opened.item.frames.clone()), Some(70..80));
 }
 
+#[test]
+fn a_deleted_track_that_is_there_again_is_the_selected_one() {
+    let mut state = start("track=7");
+    press(&mut state, "d d");
+    assert_eq!(state.selected, Some(TrackId(2)));
+    update(&mut state, Msg::Fact(Fact::ThereAgain(TrackId(7))));
+    assert_eq!(state.selected, Some(TrackId(7)));
+}
+
+#[test]
+fn what_is_done_to_a_doubtful_track_counts_for_its_item_also_where_nobody_has_opened_it() {
+    let at = |state: &mut State, secs: u64, keys: &str| {
+        update(state, Msg::Clock(Duration::from_secs(secs)));
+        press(state, keys)
+    };
+    let judged = |state: &mut State, secs: u64, keys: &str| -> Judge {
+        let effects = at(state, secs, keys);
+        let [Effect::Judge(found)] = &effects[..] else { panic!("{effects:?}") };
+        found.clone()
+    };
+    let mark = |frame: u32, sample: &mut Sample| {
+        if frame == 72 {
+            (sample.x, sample.source, sample.status) = (3.0, Source::Key, Status::Tracked);
+        }
+    };
+    // Corrected first, and then opened by Enter and accepted: four keys and seven seconds.
+    let mut state = start("frame=72");
+    at(&mut state, 10, ".");
+    at(&mut state, 13, ",");
+    change(&mut state, mark);
+    at(&mut state, 15, "Enter");
+    assert_eq!(state.opened().map(|opened| opened.item.frames.clone()), Some(70..80));
+    let found = judged(&mut state, 17, "Enter");
+    assert_eq!((found.effort.keystrokes, found.effort.key_frames, found.verdict.word()), (4, 1, "fixed"));
+    assert!((found.effort.seconds - 7.0).abs() < 1e-3, "{:?}", found.effort);
+    // Corrected, left for another, and come back to: the keys on the other are not its.
+    let mut state = start("frame=72");
+    at(&mut state, 10, ".");
+    change(&mut state, mark);
+    at(&mut state, 11, "j");
+    at(&mut state, 12, ". ,");
+    at(&mut state, 20, "k");
+    at(&mut state, 21, "w");
+    let found = judged(&mut state, 23, "Enter");
+    assert_eq!((found.effort.keystrokes, found.effort.key_frames), (3, 1));
+    assert!((found.effort.seconds - 3.0).abs() < 1e-3, "{:?}", found.effort);
+    // Passing by is no work.
+    let mut state = start("frame=72");
+    at(&mut state, 10, "j");
+    at(&mut state, 11, "k");
+    at(&mut state, 12, "j");
+    at(&mut state, 13, "w");
+    let found = judged(&mut state, 14, "Enter");
+    assert_eq!((found.track, found.effort.keystrokes), (TrackId(2), 1));
+}
+
+#[test]
+fn an_item_that_has_changed_shows_what_it_is_now() {
+    let mut state = start("");
+    press(&mut state, "n");
+    assert_eq!(state.doubt().map(|item| item.worst), Some(70));
+    let wrong: Vec<_> = state.review.queue.of_track(TrackId(1)).cloned().collect();
+    let half = wrong.iter().filter(|item| item.frames.start == 70).cloned();
+    let half = half.map(|item| honami_workbench::review::Item { frames: 75..80, worst: 75, ..item });
+    state.review.queue.set(TrackId(1), half);
+    assert_eq!(state.doubt().map(|item| item.worst), Some(75));
+    state.review.queue.set(TrackId(1), []);
+    assert_eq!(state.doubt(), None, "it has no numbers any more");
+    assert_eq!(state.current_item().map(|item| item.worst), Some(70), "it is open still");
+}
+
 /// Whatever was placed, typed or opened is there again.
 #[test]
 fn what_the_project_refuses_is_not_lost() {

@@ -134,9 +134,21 @@ fn moving_in_time() {
         ("frame=20", "]", "review | frame 50 track 1"),
         ("frame=99", "2 [", "review | frame 10 track 1"),
         ("frame=60", "]", "review | frame 60 track 1 | said track 1: no key-frame after this"),
-        ("", "w", "review | frame 70 track 1 | said track 1: doubtful frame 1 of 2"),
-        ("", "w w", "review | frame 40 track 1 | said track 1: doubtful frame 2 of 2"),
-        ("", "w w w", "review | frame 70 track 1 | said track 1: doubtful frame 1 of 2"),
+        (
+            "",
+            "w",
+            "review | frame 70 track 1 | said track 1: frames 70-79, LOST (0.85), item 1 of 2 of the track",
+        ),
+        (
+            "",
+            "w w",
+            "review | frame 40 track 1 | said track 1: frames 40-49, FB (0.23), item 2 of 2 of the track",
+        ),
+        (
+            "",
+            "w w w",
+            "review | frame 70 track 1 | said track 1: frames 70-79, LOST (0.85), item 1 of 2 of the track",
+        ),
         ("", "1 2 Esc", "review | frame 0 track 1"),
         ("", "1 2 F9", "review | frame 0 track 1"),
         ("", "g x", "review | frame 0 track 1"),
@@ -206,7 +218,7 @@ fn looping() {
         assert_eq!((state.frame, state.shown_frame()), (20, shown), "after {ms} ms");
     }
     // Edits are of the frame round which it goes, and the work goes on there.
-    let effects = press(&mut state, "Enter");
+    let effects = press(&mut state, "*");
     assert!(line(&state, &effects).contains("commit track 1: key-frame at 20 (confirmed)"));
     press(&mut state, "m");
     assert_eq!((state.frame, state.shown_frame(), state.play), (20, 20, None));
@@ -274,9 +286,40 @@ fn the_queue() {
         ("", "n R", &format!("{second} | track 1 0-99 rejected with 1 keys")),
         ("", "n E", &format!("{second} | track 1 70-79 later with 1 keys")),
         // Another track is selected: the item is no longer the one that Enter speaks of.
-        ("", "n j Enter", "review | frame 70 track 2 | error track 2 has no sample at 70; m places one"),
-        ("", "n . . w", &format!("{first} | said track 1: doubtful frame 1 of 2")),
-        ("", "R", "review | frame 0 track 1 | error no item is open: n opens the most doubtful"),
+        ("", "n j Enter", "review | frame 56 track 2 | said track 2: frames 40-59, FB (0.23)"),
+        (
+            "",
+            "n . . w",
+            &format!("{first} | said track 1: frames 70-79, LOST (0.85), item 1 of 2 of the track"),
+        ),
+        // The item that holds the frame is opened first, and then the track's others.
+        (
+            "frame=43",
+            "w",
+            "review | frame 40 track 1 | said track 1: frames 40-49, FB (0.23), item 2 of 2 of the track",
+        ),
+        (
+            "frame=43",
+            "w w",
+            &format!("{first} | said track 1: frames 70-79, LOST (0.85), item 1 of 2 of the track"),
+        ),
+        // Enter opens what is doubtful and not open yet; `*` confirms, but nothing that is lost.
+        (
+            "frame=20",
+            "Enter",
+            &format!("{first} | said track 1: frames 70-79, LOST (0.85), item 1 of 2 of the track"),
+        ),
+        ("frame=75", "Enter Enter", &format!("{second} | track 1 70-79 lost with 1 keys")),
+        (
+            "frame=75",
+            "*",
+            "review | frame 75 track 1 | error track 1 is lost at frame 75: place it, or leave it so (m places it)",
+        ),
+        (
+            "",
+            "R",
+            "review | frame 0 track 1 | error no item is open: w opens the selected track's, n the most doubtful",
+        ),
         (
             "locked",
             "n Enter",
@@ -339,8 +382,8 @@ fn editing() {
             "m Enter",
             "review | frame 80 track 2 | commit track 2: key-frame at 80 (placed at 66.1, 120.0)",
         ),
-        ("frame=20", "Enter", &format!("{sway} | commit track 1: key-frame at 20 (confirmed)")),
-        ("frame=50", "Enter", "review | frame 50 track 1 | said track 1: frame 50 is a key-frame already"),
+        ("frame=20", "*", &format!("{sway} | commit track 1: key-frame at 20 (confirmed)")),
+        ("frame=50", "*", "review | frame 50 track 1 | said track 1: frame 50 is a key-frame already"),
         ("frame=50", "X", "review | frame 50 track 1 | commit track 1: key-frame at 50 cleared"),
         (
             "frame=20",

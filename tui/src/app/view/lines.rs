@@ -31,7 +31,7 @@ fn facts(state: &State, nth: usize) -> Vec<(u8, String)> {
     facts.extend(state.tracker.clone().map(|tracker| (5, tracker)));
     let progress = state.review.progress();
     if progress.total() > 0 {
-        facts.push((1, format!("{} of {} to review", progress.open, progress.total())));
+        facts.push((1, format!("{} to review, {} done", progress.open, progress.judged.done())));
     }
     facts.extend(state.groups.as_ref().map(|groups| (4, counted(groups.k as usize, "group"))));
     let lens = Lens::shown(state);
@@ -141,10 +141,16 @@ fn words(state: &State, row: &TrackRow) -> Vec<String> {
         }
         .to_owned(),
     }];
-    match state.current_item() {
+    match state.doubt() {
         Some(item) => {
-            words.push(format!("worst {}", item.worst));
-            words.extend(item.reasons.codes().map(|code| measured(code, &item.parts)));
+            // Its numbers are of that frame, not of this one: the first of them is not shown without it.
+            let at = if item.worst == state.frame {
+                "worst here".into()
+            } else {
+                format!("worst at {}", item.worst)
+            };
+            let reasons: Vec<String> = item.reasons.codes().map(|code| measured(code, &item.parts)).collect();
+            words.push(format!("{at}: {}", reasons.join(", ")));
         }
         None => {
             let quality = sample.map(|sample| sample.quality).unwrap_or_default();
@@ -411,9 +417,10 @@ fn is_useful(state: &State, action: Action) -> bool {
         return true;
     }
     match action {
+        Action::Accept => state.opened().is_some() && state.read_only.is_none(),
         Action::NextItem => !state.review.queue.is_empty(),
         Action::MoveSample => !state.tracks.is_empty() && state.read_only.is_none(),
-        Action::WorstFrame => state.current_item().is_some(),
+        Action::WorstFrame => state.opened().is_none() && state.doubt().is_some(),
         Action::RunTracker => state.tracks.is_empty() && state.job.is_none() && state.read_only.is_none(),
         Action::RetrackBoth => state.selected.is_some() && state.job.is_none() && state.read_only.is_none(),
         Action::RunClusterer => state.tracks.len() > 1 && state.job.is_none() && state.read_only.is_none(),

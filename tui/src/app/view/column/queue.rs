@@ -30,7 +30,7 @@ impl<'a> QueueList<'a> {
 impl List for QueueList<'_> {
     fn heading(&self) -> String {
         let progress = self.state.review.progress();
-        format!("{:>6} {:>9}  {} of {}", "track", "frames", progress.open, progress.total())
+        format!("{:>6} {:>9}  {} left, {} done", "track", "frames", progress.open, progress.judged.done())
     }
 
     fn nothing(&self) -> &'static str {
