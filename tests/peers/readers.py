@@ -157,13 +157,16 @@ def elementtree_cvat():
     theirs, n_keys = {}, 0
     for track in root.iter("track"):
         for point in track:
+            if point.get("honami") == "end":
+                continue
             x, y = (float(v) - 0.5 for v in point.get("points").split(","))
             status = OUTSIDE if point.get("outside") == "1" else OCCLUDED if point.get("occluded") == "1" else TRACKED
             key = int(track.get("id")), int(point.get("frame"))
             theirs[key] = x, y
             was = ours[key][2]
             assert status == {LOST: OUTSIDE, REJECTED: OUTSIDE, NEWBORN: TRACKED}.get(was, was), (key, status, was)
-            assert (point.get("keyframe") == "1") == (ours[key][3] == "key"), key
+            is_key = point.get("keyframe") == "1" and point.get("honami") is None
+            assert is_key == (ours[key][3] == "key"), key
     same(theirs, {key: sample[:2] for key, sample in ours.items()})
 
 
@@ -171,15 +174,26 @@ def datumaro_cvat():
     import datumaro
 
     read = datumaro.Dataset.import_from("cvat.xml", "cvat")
-    theirs = {}
+    theirs, keys = {}, {}
     for item in read:
         for shape in item.annotations:
-            if shape.type == datumaro.AnnotationType.points and not shape.attributes.get("outside"):
-                x, y = shape.points[:2]
-                track, frame = shape.attributes["track_id"], item.attributes["frame"]
-                theirs[int(track), int(frame)] = x - 0.5, y - 0.5
-    occluded = {(t, f) for t, fs in table().items() for f, s in fs.items() if s[2] == OCCLUDED}
-    same({key: at for key, at in theirs.items() if key not in occluded}, seen(), 0.01)
+            track, frame = int(shape.attributes["track_id"]), int(item.attributes["frame"])
+            gone, hidden = shape.attributes["outside"], shape.attributes["occluded"]
+            if not gone:
+                theirs[track, frame] = tuple(v - 0.5 for v in shape.points[:2])
+            if shape.attributes["keyframe"]:
+                keys.setdefault(track, {})[frame] = "gone" if gone else "hidden" if hidden else "seen"
+    words = {TRACKED: "seen", NEWBORN: "seen", OCCLUDED: "hidden"}
+    ours = {(t, f): words.get(s[2], "gone") for t, frames in table().items() for f, s in frames.items()}
+    tracks = table()
+    same(theirs, {(t, f): tracks[t][f][:2] for (t, f), status in ours.items() if status != "gone"}, 0.01)
+    # CVAT takes the key-frames alone and holds each until the next, the last one to the end of the clip.
+    n_frames = int(ElementTree.parse("cvat.xml").findtext("meta/task/size"))
+    for track in tracks:
+        shown = "gone"
+        for frame in range(n_frames):
+            shown = keys[track].get(frame, shown)
+            assert shown == ours.get((track, frame), "gone"), (track, frame, shown)
 
 
 def trackmate_whole():

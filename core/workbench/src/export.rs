@@ -7,7 +7,7 @@ use std::sync::Arc;
 use honami_exchange::foreign::{self, ForeignError, ForeignTrack, Format, Loss, Outgoing};
 use honami_exchange::origin::Origin;
 use honami_exchange::{AtomicFile, GroupRow, TrackRow, TrackTable, Writer};
-use honami_model::track::{Source, Span, TrackId, TrackSet};
+use honami_model::track::{Span, TrackId, TrackSet};
 use honami_store::Project;
 
 use crate::error::WorkbenchError;
@@ -49,8 +49,6 @@ pub struct Exported {
     pub n_samples: u64,
     /// What the format could not keep.
     pub losses: Vec<Loss>,
-    /// What its reader should know.
-    pub notes: Vec<String>,
 }
 
 /// Writes the shown tracks, corrections included; nothing is left behind when it fails.
@@ -89,7 +87,6 @@ pub fn tracks(project: &Project, out: &Path, request: &ExportRequest) -> Result<
         n_tracks: foreign.len(),
         n_samples: foreign.iter().map(|track| track.n_samples() as u64).sum(),
         losses: foreign::losses(request.format, &what),
-        notes: notes(request, &foreign),
     })
 }
 
@@ -119,17 +116,6 @@ fn own(project: &Project, mut table: TrackTable, tracks: &[ForeignTrack]) -> Res
         }
     }
     Ok(table.finish()?)
-}
-
-fn notes(request: &ExportRequest, tracks: &[ForeignTrack]) -> Vec<String> {
-    if request.format != Format::Cvat || request.every_frame {
-        return Vec::new();
-    }
-    let is_bare = |track: &&ForeignTrack| !track.samples().any(|(_, sample)| sample.source == Source::Key);
-    let n_bare = tracks.iter().filter(is_bare).count();
-    let lines = "CVAT itself loads key-frames only, with straight lines between them";
-    let advice = "--every-frame makes every frame a key-frame";
-    vec![format!("{lines}: {n_bare} of {} tracks have none; {advice}", tracks.len())]
 }
 
 /// Writes the group of every track of the shown clustering; returns their number.

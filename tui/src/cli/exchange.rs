@@ -121,7 +121,6 @@ fn tracks(args: &Export) -> anyhow::Result<Answer> {
         written.n_samples
     );
     text.extend(written.losses.iter().map(|loss| format!("\nnot kept: {loss}")));
-    text.extend(written.notes.iter().map(|note| format!("\nnote: {note}")));
     let losses: Vec<_> = written
         .losses
         .iter()
@@ -133,7 +132,6 @@ fn tracks(args: &Export) -> anyhow::Result<Answer> {
         "tracks": written.n_tracks,
         "samples": written.n_samples,
         "not_kept": losses,
-        "notes": written.notes,
     });
     Ok(Answer { json, text, done: true })
 }

@@ -2,7 +2,9 @@
 //!
 //! `<track id label source><points frame keyframe outside occluded points="x,y" z_order/></track>`, as the
 //! "XML annotation format" page of CVAT's manual has it. CVAT itself, when it loads such a file, takes the
-//! key-frames alone and draws straight lines between them; the other frames are for other readers.
+//! key-frames alone, draws straight lines between them and holds the last one to the end of the clip, unless it
+//! is outside. So that it shows what is seen where, the frames in which that changes are key-frames too, and a
+//! shape of no sample ends each span. [`ADDED`] marks both; CVAT and others read no such attribute.
 
 use std::io::{BufRead, Write};
 
@@ -15,6 +17,10 @@ use crate::origin::Raster;
 
 /// The label of a track without a name.
 const UNNAMED: &str = "track";
+
+/// The attribute of shapes that CVAT needs and no hand has made: `key` on an ordinary sample that is a key-frame
+/// there, `end` on a shape that is no sample.
+const ADDED: &str = "honami";
 
 /// Shapes that are no points.
 const SHAPES: [&str; 7] = ["box", "polygon", "polyline", "ellipse", "mask", "cuboid", "skeleton"];
@@ -73,6 +79,7 @@ fn track<R: BufRead>(
                     "points" if tag.get("points").is_some_and(|points| points.contains(';')) => {
                         tally.add("shapes of several points: only single ones are tracks");
                     }
+                    "points" if tag.get(ADDED) == Some("end") => {}
                     "points" => {
                         let frame = tag.need("frame", "a whole number of 0 or more")?;
                         draft.put(room, frame, sample(&tag, raster)?)?;
@@ -114,7 +121,8 @@ fn sample(tag: &Tag, raster: Raster) -> Result<Sample, Flaw> {
         (false, true) => Status::Occluded,
         (false, false) => Status::Tracked,
     };
-    let source = if tag.flag("keyframe")? { Source::Key } else { Source::Imported };
+    let is_key = tag.flag("keyframe")? && tag.get(ADDED).is_none();
+    let source = if is_key { Source::Key } else { Source::Imported };
     Ok(Sample { x, y, status, source, quality: Quality::default() })
 }
 
@@ -124,20 +132,70 @@ pub(crate) fn write(mut out: impl Write, raster: Raster, what: &Outgoing<'_>) ->
         let id = track.number.map_or_else(|| at.to_string(), |number| number.to_string());
         let (label, source) = (escaped(label(track)), source(track));
         writeln!(out, "  <track id=\"{id}\" label=\"{label}\" source=\"{source}\">")?;
-        for (frame, sample) in track.samples() {
-            let keyframe = u8::from(what.every_frame || sample.source == Source::Key);
-            let gone = matches!(sample.status, Status::Lost | Status::Outside | Status::Rejected);
-            let (outside, occluded) = (u8::from(gone), u8::from(sample.status == Status::Occluded));
+        for shape in shapes(track, what) {
+            let Shape { frame, sample, keyframe, added, gone } = shape;
+            let (keyframe, outside) = (u8::from(keyframe), u8::from(gone));
+            let occluded = u8::from(is_occluded(sample) && !gone);
+            let added = added.map(|word| format!(" {ADDED}=\"{word}\"")).unwrap_or_default();
             let [x, y] = raster.from_ours([sample.x.into(), sample.y.into()]);
             writeln!(
                 out,
                 "    <points frame=\"{frame}\" keyframe=\"{keyframe}\" outside=\"{outside}\" \
-                 occluded=\"{occluded}\" points=\"{x},{y}\" z_order=\"0\"></points>"
+                 occluded=\"{occluded}\" points=\"{x},{y}\" z_order=\"0\"{added}></points>"
             )?;
         }
         writeln!(out, "  </track>")?;
     }
     writeln!(out, "</annotations>")
+}
+
+/// A shape of a track as it is written.
+#[derive(Clone, Copy)]
+struct Shape<'a> {
+    frame: u32,
+    sample: &'a Sample,
+    keyframe: bool,
+    /// What [`ADDED`] says of it.
+    added: Option<&'static str>,
+    gone: bool,
+}
+
+/// The shapes of a track: its samples, and one behind every span that ends seen before the clip does.
+fn shapes<'a>(track: &'a ForeignTrack, what: &Outgoing<'_>) -> impl Iterator<Item = Shape<'a>> {
+    let (every_frame, n_frames) = (what.every_frame, what.n_frames);
+    let mut samples = track.samples().peekable();
+    // What CVAT shows until it is told otherwise: nothing.
+    let mut shown = (true, false);
+    std::iter::from_fn(move || {
+        let (frame, sample) = samples.next()?;
+        let gone = is_gone(sample);
+        let now = (gone, is_occluded(sample));
+        let is_key = every_frame || sample.source == Source::Key;
+        let added = (!is_key && now != shown).then_some("key");
+        shown = now;
+        let of = Shape { frame, sample, keyframe: is_key || added.is_some(), added, gone };
+        let next = frame.saturating_add(1);
+        let ends = !gone && next < n_frames && samples.peek().is_none_or(|&(frame, _)| frame > next);
+        let end = ends.then_some(Shape { frame: next, keyframe: true, added: Some("end"), gone: true, ..of });
+        if ends {
+            shown = (true, false);
+        }
+        Some(std::iter::once(of).chain(end))
+    })
+    .flatten()
+}
+
+fn is_gone(sample: &Sample) -> bool {
+    matches!(sample.status, Status::Lost | Status::Outside | Status::Rejected)
+}
+
+fn is_occluded(sample: &Sample) -> bool {
+    sample.status == Status::Occluded
+}
+
+/// Number of samples that CVAT itself does not load.
+pub(crate) fn n_between(what: &Outgoing<'_>) -> usize {
+    what.tracks.iter().flat_map(|track| shapes(track, what)).filter(|shape| !shape.keyframe).count()
 }
 
 fn label(track: &ForeignTrack) -> &str {

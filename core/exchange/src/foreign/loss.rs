@@ -2,7 +2,7 @@
 
 use honami_model::track::{Quality, Sample, Source, Status};
 
-use super::{ForeignTrack, Format, Outgoing};
+use super::{ForeignTrack, Format, Outgoing, cvat};
 
 /// Something that our tracks have and a format may lack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,6 +14,8 @@ enum Aspect {
     NamedNumber,
     Name,
     KeyFrame,
+    /// Samples that are no key-frames, where not every frame becomes one.
+    Between,
     Occluded,
     Outside,
     Lost,
@@ -82,6 +84,7 @@ const SHEETS: [Sheet; 8] = [
             (Aspect::Rejected, "become outside"),
             (Aspect::Newborn, SEEN),
             (Aspect::Quality, DROPPED),
+            (Aspect::Between, "CVAT itself draws straight lines there; --every-frame keeps them"),
             (Aspect::Source, "one word for a track: manual, semi-auto, auto"),
             (Aspect::Times, COUNTED),
         ],
@@ -179,6 +182,7 @@ impl Aspect {
             Self::Number | Self::AnyNumber | Self::NamedNumber => "track numbers",
             Self::Name => "names",
             Self::KeyFrame => "key-frames",
+            Self::Between => "samples between key-frames",
             Self::Occluded => "occluded samples",
             Self::Outside => "samples outside the picture",
             Self::Lost => "lost samples",
@@ -204,6 +208,7 @@ impl Aspect {
                 tracks.filter(|track: &&ForeignTrack| track.name.is_some()).count()
             }
             Self::KeyFrame => samples(|s| s.source == Source::Key),
+            Self::Between => cvat::n_between(what),
             Self::Occluded => samples(|s| s.status == Status::Occluded),
             Self::Outside => samples(|s| s.status == Status::Outside),
             Self::Lost => samples(|s| s.status == Status::Lost),

@@ -11,7 +11,7 @@ use crate::{TrackRow, TrackTable};
 mod fixtures;
 
 const SIZE: [u32; 2] = [640, 480];
-const N_FRAMES: u32 = 12;
+const N_FRAMES: u32 = 15;
 
 fn outgoing(tracks: &[ForeignTrack]) -> Outgoing<'_> {
     Outgoing {
@@ -77,19 +77,49 @@ fn sample() -> impl Strategy<Value = Sample> {
     )
 }
 
-/// Up to four tracks without gaps, in order of their numbers.
+/// Up to four tracks, some with a gap, in order of their numbers.
 fn tracks(sample: impl Strategy<Value = Sample>) -> impl Strategy<Value = Vec<ForeignTrack>> {
     let name = proptest::option::of("[a-z]{1,6} [a-z]{3}");
-    let one = (name, 0..6_u32, proptest::collection::vec(sample, 1..7));
+    let gap = proptest::option::of((1..6_usize, 1..4_u32));
+    let one = (name, 0..6_u32, proptest::collection::vec(sample, 1..7), gap);
     let many = proptest::collection::btree_map(0_u32..1000, one, 1..5);
     many.prop_map(|tracks| {
-        let track = |(number, (name, first_frame, samples))| ForeignTrack {
-            number: Some(number),
-            name,
-            spans: vec![Arc::new(Span { first_frame, samples })],
+        let track = |(number, (name, first_frame, samples, gap))| {
+            let spans = in_two(Span { first_frame, samples }, gap).into_iter().map(Arc::new).collect();
+            ForeignTrack { number: Some(number), name, spans }
         };
         tracks.into_iter().map(track).collect()
     })
+}
+
+/// Moves what comes after the first samples some frames on.
+fn in_two(mut span: Span, gap: Option<(usize, u32)>) -> Vec<Span> {
+    let Some((n_first, n_frames)) = gap.filter(|(n_first, _)| *n_first < span.samples.len()) else {
+        return vec![span];
+    };
+    let samples = span.samples.split_off(n_first);
+    let first_frame = span.frames().end + n_frames;
+    vec![span, Span { first_frame, samples }]
+}
+
+/// What CVAT shows of each frame of the first track of its file: not seen, occluded. It takes the key-frames alone
+/// and holds each until the next.
+fn shown_by_cvat(file: &[u8]) -> Vec<(bool, bool)> {
+    let text = std::str::from_utf8(file).unwrap();
+    let mut keys = BTreeMap::new();
+    for line in text.lines().take_while(|line| !line.contains("</track>")) {
+        let word = |name: &str| {
+            line.split_once(&format!(" {name}=\"")).map(|(_, rest)| rest.split('"').next().unwrap())
+        };
+        if line.contains("<points ") && word("keyframe") == Some("1") {
+            let frame: u32 = word("frame").unwrap().parse().unwrap();
+            assert!(frame < N_FRAMES, "the clip has no frame {frame}");
+            let again = keys.insert(frame, (word("outside") == Some("1"), word("occluded") == Some("1")));
+            assert_eq!(again, None, "frame {frame} comes twice");
+        }
+    }
+    let held = |frame| keys.range(..=frame).next_back().map_or((true, false), |(_, &shown)| shown);
+    (0..N_FRAMES).map(held).collect()
 }
 
 /// What the manual promises that is kept of a sample.
@@ -174,13 +204,33 @@ proptest! {
         for format in Format::ALL {
             let what = outgoing(&tracks);
             let back = read_back(format, &written(format, &what)).tracks;
-            let lost = losses(format, &what);
+            let mut lost = losses(format, &what);
+            // These are lost on CVAT, not on us.
+            lost.retain(|loss| loss.what != "samples between key-frames");
             if lost.is_empty() {
                 prop_assert_eq!(&back, &tracks, "{:?}", format);
             } else {
                 prop_assert_eq!(lost.iter().map(|loss| loss.what).collect::<Vec<_>>(), ["track numbers"]);
                 prop_assert!(back.iter().zip(&tracks).all(|(back, track)| back.spans == track.spans), "{:?}", format);
             }
+        }
+    }
+
+    #[test]
+    fn cvat_shows_every_track_where_it_is_seen(tracks in tracks(sample()), every_frame: bool) {
+        for track in &tracks {
+            let what = outgoing(std::slice::from_ref(track));
+            let file = written(Format::Cvat, &Outgoing { every_frame, ..what });
+            let wanted = |frame| track.at(frame).map_or((true, false), |sample| match sample.status {
+                Status::Tracked | Status::Newborn => (false, false),
+                Status::Occluded => (false, true),
+                Status::Lost | Status::Outside | Status::Rejected => (true, false),
+            });
+            prop_assert_eq!(shown_by_cvat(&file), (0..N_FRAMES).map(wanted).collect::<Vec<_>>());
+            let n_left = String::from_utf8(file).unwrap().matches("keyframe=\"0\"").count() as u64;
+            let lost = losses(Format::Cvat, &Outgoing { every_frame, ..what });
+            let between = lost.iter().find(|loss| loss.what == "samples between key-frames");
+            prop_assert_eq!(between.map_or(0, |loss| loss.n), n_left);
         }
     }
 
@@ -256,13 +306,24 @@ fn losses_are_counted() {
             "1 lost samples: become missing",
         ]
     );
-    assert_eq!(lines(Format::Cvat, outgoing(&tracks)), ["1 lost samples: become outside"]);
+    assert_eq!(
+        lines(Format::Cvat, outgoing(&tracks)),
+        ["1 lost samples: become outside"],
+        "samples where it is hidden and lost from are key-frames in CVAT"
+    );
+    let path =
+        Span { first_frame: 0, samples: vec![key, seen([1.0, 2.0], None), seen([1.0, 2.0], None), key] };
+    let path = [ForeignTrack { number: Some(1), name: None, spans: vec![Arc::new(path)] }];
+    assert_eq!(
+        lines(Format::Cvat, outgoing(&path)),
+        ["2 samples between key-frames: CVAT itself draws straight lines there; --every-frame keeps them"]
+    );
     let every_frame = Outgoing { every_frame: true, variable_rate: true, ..outgoing(&tracks) };
     assert_eq!(
         lines(Format::Cvat, every_frame),
         [
             "1 lost samples: become outside",
-            "12 uneven frame times: only frames are counted",
+            "15 uneven frame times: only frames are counted",
             "2 key-frames: cannot be told from the rest: every frame is one",
         ]
     );

@@ -57,6 +57,34 @@ fn cvat_for_video() {
 }
 
 #[test]
+fn cvat_is_told_where_tracks_begin_hide_and_end() {
+    let seen = |x: f32| seen([x, 2.0], None);
+    let span = |first_frame, samples| Arc::new(Span { first_frame, samples });
+    let key = Sample { source: Source::Key, ..seen(1.0) };
+    let hidden = Sample { status: Status::Occluded, ..seen(2.0) };
+    let spans = vec![span(1, vec![seen(0.0), key, hidden]), span(13, vec![seen(3.0), seen(4.0)])];
+    let track = [ForeignTrack { number: Some(7), name: None, spans }];
+    let file = written(Format::Cvat, &outgoing(&track));
+    let text = String::from_utf8(file.clone()).unwrap();
+    let shapes: Vec<&str> = text
+        .lines()
+        .filter_map(|line| line.trim().strip_prefix("<points ")?.split(" z_order=\"0\"").next())
+        .collect();
+    assert_eq!(
+        shapes,
+        [
+            r#"frame="1" keyframe="1" outside="0" occluded="0" points="0.5,2.5""#,
+            r#"frame="2" keyframe="1" outside="0" occluded="0" points="1.5,2.5""#,
+            r#"frame="3" keyframe="1" outside="0" occluded="1" points="2.5,2.5""#,
+            r#"frame="4" keyframe="1" outside="1" occluded="0" points="2.5,2.5""#,
+            r#"frame="13" keyframe="1" outside="0" occluded="0" points="3.5,2.5""#,
+            r#"frame="14" keyframe="0" outside="0" occluded="0" points="4.5,2.5""#,
+        ]
+    );
+    assert_eq!(read_back(Format::Cvat, &file).tracks, track, "what was added for CVAT is left out again");
+}
+
+#[test]
 fn deeplabcut_of_networks_of_people_and_of_several_animals() {
     let network = "scorer,net,net,net,net,net,net\nbodyparts,tip,tip,tip,track_7,track_7,track_7\n\
                    coords,x,y,likelihood,x,y,likelihood\n0,1.5,2.5,0.25,,,\n1,2.5,3.5,1.0,9,8,0.0\n";
