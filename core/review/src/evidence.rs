@@ -138,8 +138,9 @@ impl Evidence {
         let crowd = Crowd::of(spans.chain([(track, after.as_ref())]));
         let mut affected = Vec::new();
         for (&id, row) in &self.rows {
-            let mut neighbours = row.neighbours.clone();
-            if neighbours.moved((track, &changed), (id, &row.subject.span, &row.anchors), &crowd) {
+            if row.neighbours.is_touched((track, &changed), &row.anchors, &crowd) {
+                let mut neighbours = row.neighbours.clone();
+                neighbours.moved((track, &changed), (id, &row.subject.span, &row.anchors), &crowd);
                 affected.push((id, neighbours));
             }
         }

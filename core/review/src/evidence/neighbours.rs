@@ -61,40 +61,43 @@ impl Neighbourhood {
         self.deviation_px.get(at).copied().filter(|px| px.is_finite())
     }
 
-    /// Another track has moved in some frames: measures what that changes, and says whether it was anything.
-    pub(super) fn moved(
-        &mut self,
-        (other, frames): (TrackId, &Range<u32>),
-        (track, span, anchors): (TrackId, &Span, &Anchors),
+    /// Whether it matters here that another track has moved in some frames.
+    pub(super) fn is_touched(
+        &self,
+        moved: (TrackId, &Range<u32>),
+        anchors: &Anchors,
         crowd: &Crowd<'_>,
     ) -> bool {
-        let other_span = crowd.0.get(&other).copied();
+        anchors
+            .as_slice()
+            .iter()
+            .zip(&self.of)
+            .any(|(&anchor, near)| touch(moved, anchor, near, crowd) != Touch::None)
+    }
+
+    /// Another track has moved in some frames: measures anew what that changes.
+    pub(super) fn moved(
+        &mut self,
+        moved: (TrackId, &Range<u32>),
+        (track, span, anchors): (TrackId, &Span, &Anchors),
+        crowd: &Crowd<'_>,
+    ) {
         let mut again: Option<Range<u32>> = None;
-        let mut add = |more: Range<u32>| {
-            let old = again.clone().unwrap_or_else(|| more.clone());
-            again = Some(old.start.min(more.start)..old.end.max(more.end));
-        };
         for (&anchor, near) in anchors.as_slice().iter().zip(&mut self.of) {
-            let was_near = near.iter().any(|(_, id)| *id == other);
-            if frames.contains(&anchor.0) {
-                let now = other_span
-                    .and_then(|span| seen(span, anchor.0))
-                    .map(|at| (distance(at, anchor.1), other));
-                let comes = now.is_some_and(|(px, id)| {
-                    near.len() < N_NEIGHBOURS || near.last().is_some_and(|last| (px, id) < *last)
-                });
-                if was_near || comes {
+            let more = match touch(moved, anchor, near, crowd) {
+                Touch::None => continue,
+                Touch::Circle => {
                     *near = crowd.nearest(track, anchor);
-                    add(span.frames());
+                    span.frames()
                 }
-            } else if was_near && !frames.is_empty() {
-                add(frames.clone());
-            }
+                Touch::Path => moved.1.clone(),
+            };
+            let old = again.unwrap_or_else(|| more.clone());
+            again = Some(old.start.min(more.start)..old.end.max(more.end));
         }
-        if let Some(frames) = &again {
-            self.measure(frames.clone(), span, anchors, crowd);
+        if let Some(frames) = again {
+            self.measure(frames, span, anchors, crowd);
         }
-        again.is_some()
     }
 
     fn measure(&mut self, frames: Range<u32>, span: &Span, anchors: &Anchors, crowd: &Crowd<'_>) {
@@ -115,6 +118,32 @@ impl Neighbourhood {
                 if said.is_empty() { f32::NAN } else { (log_sum / said.len() as f32).exp() - FLOOR_PX };
         }
     }
+}
+
+/// What the movement of another track changes for the neighbours of an anchor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Touch {
+    None,
+    /// Who they are.
+    Circle,
+    /// Where one of them is.
+    Path,
+}
+
+fn touch(
+    (other, frames): (TrackId, &Range<u32>),
+    (frame, at): Anchor,
+    near: &[(f32, TrackId)],
+    crowd: &Crowd<'_>,
+) -> Touch {
+    let was_near = near.iter().any(|(_, id)| *id == other);
+    if !frames.contains(&frame) {
+        return if was_near && !frames.is_empty() { Touch::Path } else { Touch::None };
+    }
+    let now = crowd.0.get(&other).and_then(|span| seen(span, frame)).map(|to| (distance(to, at), other));
+    let comes =
+        now.is_some_and(|now| near.len() < N_NEIGHBOURS || near.last().is_some_and(|last| now < *last));
+    if was_near || comes { Touch::Circle } else { Touch::None }
 }
 
 /// An anchor and its neighbours, with where they are in the anchor's frame.
