@@ -72,7 +72,7 @@ const CASES: &[Case] = &[
     ("import p.honami late.csv --format csv", FAILED, &["late.csv line 1", "track,frame,x,y"]),
     ("import p.honami points.csv --origin middle", USAGE, &["normalised", "middle"]),
     ("import p.honami points.csv --pixel-size 0", USAGE, &["pixel-size"]),
-    ("export p.honami tracks nowhere/out.csv", FAILED, &["nowhere/out.csv"]),
+    ("export p.honami tracks nowhere/out.csv", FAILED, &["nowhere/out.csv", "there is no folder nowhere"]),
     ("export bare.honami tracks out.csv", FAILED, &["no tracks yet", "track features first"]),
     ("export p.honami pictures out.csv", USAGE, &["pictures", "tracks"]),
     ("spectrum p.honami --track 9999", FAILED, &["track 9999"]),
@@ -91,6 +91,8 @@ const CASES: &[Case] = &[
     ("synth out.y4m --wind gale", USAGE, &["gale", "storm"]),
     // Anything else.
     ("trak p.honami", USAGE, &["no command", "\"trak\"", "did you mean track"]),
+    ("plugins", USAGE, &["`honami plugin list`"]),
+    ("new q.honami clip.y4m --fps -3", USAGE, &["frames per second", "above 0", "-3"]),
     ("trak.honami", USAGE, &["there is no file trak.honami"]),
     ("relink p.honami small.y4m", FAILED, &["SHA-256"]),
     ("export bare.honami groups out.csv", FAILED, &["no groups yet"]),

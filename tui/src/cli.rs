@@ -186,6 +186,7 @@ fn open(path: Option<&Path>, log: Option<PathBuf>, common: &Common) -> anyhow::R
         })?;
         return show(None, common);
     };
+    want(path != "plugins" || path.exists(), || "`honami plugin list` lists the plugins".to_owned())?;
     want(path.exists() || path.to_string_lossy().contains(['%', '*', '?']), || {
         format!(
             "there is no file {}: a project, a clip or a command is wanted; see honami --help",

@@ -23,7 +23,12 @@ impl AtomicFile {
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666)); // less the umask
         // Its error names the temporary file, which nobody asked for: what the system said is enough.
-        let plain = |e: std::io::Error| TableError::File { path: path.into(), source: e.kind().into() };
+        let plain = |e: std::io::Error| {
+            let missing =
+                || std::io::Error::new(e.kind(), format!("there is no folder {}", folder.display()));
+            let source = if folder.exists() { e.kind().into() } else { missing() };
+            TableError::File { path: path.into(), source }
+        };
         let file = builder.prefix(".honami-").suffix(".part").tempfile_in(folder).map_err(plain)?;
         Ok(Self { path: path.into(), file: BufWriter::with_capacity(1 << 16, file) })
     }

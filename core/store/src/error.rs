@@ -38,7 +38,7 @@ pub enum StoreError {
     },
     /// Another session writes to it.
     #[error(
-        "the project is open for writing by {}; open it read-only, or close it there: {path}",
+        "the project is open for writing by {}; close it there, or look at it meanwhile with `honami {path}`",
         holder.as_ref().map_or_else(|| "another session".to_owned(), ToString::to_string)
     )]
     Locked {

@@ -193,6 +193,16 @@ pub enum WorkbenchError {
         /// The last.
         last: u32,
     },
+    /// A track was followed up to a key-frame and no further.
+    #[error(
+        "track {track} was followed as far as {frame} and no further: mark a range of frames beyond it first"
+    )]
+    Followed {
+        /// The track.
+        track: TrackId,
+        /// The key-frame's frame.
+        frame: u32,
+    },
     /// The tracker follows a feature into no frame.
     #[error("track {track}: nothing was found from its key-frames, the track stays as it was")]
     LostAtOnce {

@@ -123,7 +123,7 @@ pub fn grant(study: &Arc<Study>, wish: &Wish, progress: &dyn Progress) -> Result
     let Some(way) = wish.model.way() else {
         return Ok(Granted::Ready(Box::new(study.fused(wish.frame, &wish.keys)?)));
     };
-    let job = study.job(study.around(way, wish.frame, wish.keys.clone()))?;
+    let job = study.job(study.around(way, wish.frame, wish.keys.clone(), None))?;
     Ok(Granted::Retracked(Box::new(job.run(progress)?)))
 }
 

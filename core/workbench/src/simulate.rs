@@ -186,9 +186,11 @@ fn correct(
             session.project.commit(correction.transaction)?;
             Ok(true)
         }
-        Err(WorkbenchError::LostAtOnce { .. } | WorkbenchError::NoAnchor { .. }) => {
-            at_once(session, track, frame, to, key_only).map(|_| false)
-        }
+        Err(
+            WorkbenchError::LostAtOnce { .. }
+            | WorkbenchError::NoAnchor { .. }
+            | WorkbenchError::Followed { .. },
+        ) => at_once(session, track, frame, to, key_only).map(|_| false),
         Err(error) => Err(error),
     }
 }

@@ -227,7 +227,7 @@ table! {
     Redraw "redraw" ["Ctrl-l"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label "" History "" Slide "" Start "" Sketch ""] "paint the screen anew"
     Suspend "suspend" ["Ctrl-z"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label "" History "" Slide "" Start "" Sketch ""] "stop honami until `fg`"
     Quit "quit" ["q"] [Review "leave" Place "" Move "" Form "" Dial "" History "" Slide "" Start "leave" Sketch ""] "back; while reviewing, leave honami"
-    Leave "leave" ["Q"] [Review "" Place "" Move "" Form "" Dial "" History "" Slide "" Start "" Sketch ""] "leave honami (everything is kept)"
+    Leave "leave" ["Q"] [Review "" Place "" Move "" Form "" Dial "" History "" Slide "" Start "" Sketch ""] "leave honami (everything is kept; what is open is asked about first)"
 }
 
 impl Action {

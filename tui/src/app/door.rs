@@ -85,6 +85,8 @@ fn go_about(
     // What cannot be opened at first is the command's to say.
     let mut is_first = first.is_some();
     let (mut next, mut typed, mut complaint) = (first, Vec::new(), None);
+    // What its user has left to be opened behind the start screen.
+    let mut aside: Option<(PathBuf, Opening)> = None;
     loop {
         let plan = match next.take() {
             Some(plan) => plan,
@@ -100,9 +102,20 @@ fn go_about(
             LogFile::create(path).with_context(|| format!("no log can be begun at {}", path.display()))
         });
         let log_file = log_file.transpose()?;
-        let opening = Opening::start(plan, screen.waker()).context("no thread for opening")?;
-        let (ready, typed) = match opening.watch(screen, &config.keys, std::mem::take(&mut typed)) {
+        let place = plan.path.clone();
+        // What goes on is opened twice by nobody; anything else chosen instead lets go of it.
+        let opening = match aside.take().filter(|(path, _)| place.as_ref() == Some(path)) {
+            Some((_, opening)) => opening,
+            None => Opening::start(plan, screen.waker()).context("no thread for opening")?,
+        };
+        let has_way_back = !is_first && place.is_some();
+        let before = std::mem::take(&mut typed);
+        let (ready, typed) = match opening.watch(screen, &config.keys, before, has_way_back) {
             Ok(Opened::Ready(ready, typed)) => (ready, typed),
+            Ok(Opened::Aside(opening)) => {
+                aside = place.map(|path| (path, opening));
+                continue;
+            }
             Ok(Opened::Left(end)) => return Ok(end),
             Err(error) if is_first => return Err(error),
             Err(error) => {

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::io::Write as _;
+use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
@@ -158,7 +159,7 @@ impl World {
             Effect::Jump(to) => self.jump(to),
             Effect::Redo(n) => self.travel("redone", n, Project::redo),
             Effect::Track(request) => self.track(&request, now),
-            Effect::Retrack { track, way, frame } => self.retrack(track, way, frame, now),
+            Effect::Retrack { track, way, frame, within } => self.retrack((track, way, frame), within, now),
             Effect::Measure(track) => self.measure(track),
             Effect::Cluster(request) => self.cluster(&request, now),
             Effect::StopJob => {
@@ -326,9 +327,14 @@ impl World {
         self.start(work, &request.plugin, true, now)
     }
 
-    fn retrack(&mut self, track: TrackId, way: Way, frame: u32, now: Duration) -> Facts {
+    fn retrack(
+        &mut self,
+        (track, way, frame): (TrackId, Way, u32),
+        within: Option<Range<u32>>,
+        now: Duration,
+    ) -> Facts {
         let study = Arc::new(retrack::study(&self.session, track)?);
-        let job = study.job(study.around(way, frame, Vec::new()))?;
+        let job = study.job(study.around(way, frame, Vec::new(), within))?;
         self.start(Work::Retrack(Box::new(job)), "re-tracking", false, now)
     }
 

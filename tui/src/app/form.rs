@@ -1,5 +1,7 @@
 //! The form of a plugin, drawn from its parameter schema; a plugin never draws.
 
+use std::ops::Range;
+
 use honami_workbench::plugins::{Entry, Numeric, Param, ParamKind, Value, Values};
 
 /// What a plugin does for the terminal UI.
@@ -41,6 +43,19 @@ pub struct Plugin {
 pub const FEATURES: &str = "@features";
 /// Every how many frames new features are looked for: id of a parameter of ours.
 pub const EVERY: &str = "@every";
+/// The first and the last frame to track: id of a parameter of ours.
+pub const FRAMES: &str = "@frames";
+
+/// What a tracker can be asked to do here.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Wanted<'a> {
+    /// Which features it can follow, the likeliest first.
+    pub features: &'a [Features],
+    /// Through which frames it likely is to follow them.
+    pub frames: Range<u32>,
+    /// Frames of the clip.
+    pub n_frames: u32,
+}
 
 /// Which features a tracker follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,6 +98,7 @@ pub struct Form {
     /// What is being typed into the row.
     pub typed: Option<String>,
     values: Values,
+    n_frames: u32,
 }
 
 /// A row of a form.
@@ -97,17 +113,26 @@ pub enum Row<'a> {
 }
 
 impl Form {
-    /// The form of a task; `None` when no plugin does it. A tracker can follow these features, the first of them
-    /// unless something else is chosen.
+    /// The form of a task; `None` when no plugin does it. A tracker follows the likeliest features through the
+    /// likeliest frames, unless something else is chosen.
     #[must_use]
-    pub fn new(task: Task, plugins: &[Plugin], features: &[Features]) -> Option<Self> {
+    pub fn new(task: Task, plugins: &[Plugin], wanted: &Wanted<'_>) -> Option<Self> {
         let mut plugins: Vec<Plugin> = plugins.iter().filter(|p| p.task == task).cloned().collect();
         for plugin in plugins.iter_mut().filter(|p| p.task == Task::Track) {
-            let ours = own_params(plugin.can_detect, features);
+            let ours = own_params(plugin.can_detect, wanted);
             plugin.params.splice(0..0, ours);
         }
         let values = Values::defaults(&plugins.first()?.params);
-        Some(Self { task, plugins, which: 0, at: 0, unfolded: false, typed: None, values })
+        Some(Self {
+            task,
+            plugins,
+            which: 0,
+            at: 0,
+            unfolded: false,
+            typed: None,
+            values,
+            n_frames: wanted.n_frames,
+        })
     }
 
     /// Chooses a plugin by its name, where it does this task.
@@ -152,6 +177,17 @@ impl Form {
         match self.values.get(EVERY) {
             Some(Value::Int(n)) => u32::try_from(*n).ok().filter(|n| *n > 0),
             _ => None,
+        }
+    }
+
+    /// The frames to track.
+    #[must_use]
+    pub fn frames(&self) -> Range<u32> {
+        let all = 0..self.n_frames;
+        match self.values.get(FRAMES) {
+            // It was checked when it was set.
+            Some(Value::Text(text)) => frames_of(text, self.n_frames).unwrap_or(all),
+            _ => all,
         }
     }
 
@@ -217,6 +253,9 @@ impl Form {
     pub fn take_typed(&mut self) -> Result<(), String> {
         let Some(typed) = self.typed.clone() else { return Ok(()) };
         if let Some(Row::Param(param, _)) = self.rows().get(self.at).copied() {
+            if param.id == FRAMES {
+                frames_of(&typed, self.n_frames)?;
+            }
             let assignment = format!("{}={typed}", param.id);
             let params = self.plugins[self.which].params.clone();
             self.values.set_text(&params, &assignment).map_err(|error| error.to_string())?;
@@ -227,7 +266,7 @@ impl Form {
 }
 
 /// Parameters of every tracking, whatever the plugin.
-fn own_params(can_detect: bool, features: &[Features]) -> Vec<Param> {
+fn own_params(can_detect: bool, wanted: &Wanted<'_>) -> Vec<Param> {
     let param = |id: &str, label: &str, doc: &str, kind| Param {
         id: id.to_owned(),
         label: label.to_owned(),
@@ -239,7 +278,7 @@ fn own_params(can_detect: bool, features: &[Features]) -> Vec<Param> {
         when: std::collections::BTreeMap::new(),
         kind,
     };
-    let features = features.iter().filter(|&&f| can_detect || f != Features::Found);
+    let features = wanted.features.iter().filter(|&&f| can_detect || f != Features::Found);
     let entry = |f: &Features| Entry { id: f.word().to_owned(), label: String::new(), doc: String::new() };
     let entries: Vec<Entry> = features.map(entry).collect();
     let Some(default) = entries.first().map(|first| first.id.clone()) else { return Vec::new() };
@@ -260,7 +299,28 @@ fn own_params(can_detect: bool, features: &[Features]) -> Vec<Param> {
         every.when.insert(FEATURES.to_owned(), Value::Text(Features::Found.word().to_owned()));
         ours.push(every);
     }
+    let default = frames_text(&wanted.frames);
+    let doc = "the first and the last to track";
+    ours.push(param(FRAMES, "frames", doc, ParamKind::String { default }));
     ours
+}
+
+/// Frames as the form shows them: `0-149`, both ends included.
+fn frames_text(frames: &Range<u32>) -> String {
+    format!("{}-{}", frames.start, frames.end.saturating_sub(1))
+}
+
+/// Frames as they are typed.
+fn frames_of(text: &str, n_frames: u32) -> Result<Range<u32>, String> {
+    let number = |word: &str| word.trim().parse::<u32>().ok();
+    text.split_once('-')
+        .and_then(|(first, last)| Some((number(first)?, number(last)?)))
+        .filter(|(first, last)| first <= last && *last < n_frames)
+        .map(|(first, last)| first..last + 1)
+        .ok_or_else(|| {
+            let all = frames_text(&(0..n_frames));
+            format!("frames: wanted the first and the last, of {all}, got {text:?}")
+        })
 }
 
 /// A value so many steps on; `None` for what can only be typed.

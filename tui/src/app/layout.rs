@@ -2,10 +2,15 @@
 
 use ratatui::layout::Rect;
 
+use super::panel::Panel;
 use super::state::State;
 
 /// Width of the column, cells.
 const COLUMN: u16 = 36;
+/// Width of the queue on a screen narrower than [`NARROW`]: what its rows need.
+const NARROW_QUEUE: u16 = 32;
+/// On a screen of fewer columns the picture needs what lists can spare.
+const NARROW: u16 = 100;
 /// With so much left beside it, cells, the picture stands there, smaller.
 const BESIDE_COLUMN: u16 = 40;
 /// With so much left, cells, a part of the picture is still worth seeing.
@@ -41,9 +46,13 @@ impl Layout {
         let n_lines = if rows >= 8 { 3 } else { 1 };
         let below = rows.saturating_sub(n_lines).max(1);
         // Beside the picture where both have room, else over its right part; on the narrowest screens over all of it.
+        let column = match state.panel {
+            Some(Panel::Queue) if columns < NARROW => NARROW_QUEUE,
+            _ => COLUMN,
+        };
         let taken = match state.panel {
             None => 0,
-            Some(_) if columns > COLUMN + OVER_COLUMN && !state.panel_is_wide => COLUMN + 1,
+            Some(_) if columns > COLUMN + OVER_COLUMN && !state.panel_is_wide => column + 1,
             Some(_) => columns,
         };
         let is_beside = columns >= taken + BESIDE_COLUMN;

@@ -36,6 +36,8 @@ pub struct Plan {
     /// What the title calls it meanwhile.
     pub name: String,
     open: Open,
+    /// What is opened, where it is a file: chosen again, what was begun goes on.
+    pub(super) path: Option<PathBuf>,
     /// Whether the tutorial is given on it.
     is_lesson: bool,
     /// Where its log is written while it goes on.
@@ -48,7 +50,7 @@ impl Plan {
         name: impl Into<String>,
         open: impl FnOnce(&Tell<'_>) -> anyhow::Result<Session> + Send + 'static,
     ) -> Self {
-        Self { name: name.into(), open: Box::new(open), is_lesson: false, log: None }
+        Self { name: name.into(), open: Box::new(open), path: None, is_lesson: false, log: None }
     }
 
     /// The same, with the tutorial on it.
@@ -66,8 +68,8 @@ impl Plan {
     /// A project, or the project that belongs to a clip; made where there is none yet.
     #[must_use]
     pub fn of(path: &Path, options: &SessionOptions) -> Self {
-        let (path, options) = (path.to_owned(), options.clone());
-        Self::new(name_of(&path), move |tell| open(&path, &options, tell))
+        let (path, options, place) = (path.to_owned(), options.clone(), Some(path.to_owned()));
+        Self { path: place, ..Self::new(name_of(&path), move |tell| open(&path, &options, tell)) }
     }
 
     /// A new project of a clip, also where the clip has one: `sway-2.honami` beside `sway.honami`.
@@ -155,6 +157,8 @@ pub(super) struct Opening {
 pub(super) enum Opened {
     /// The project is there; these were typed meanwhile.
     Ready(Box<(World, State)>, Vec<Event>),
+    /// Its user has gone back to choose something else; it goes on.
+    Aside(Opening),
     /// Its user, or the terminal, has left.
     Left(Option<End>),
 }
@@ -181,7 +185,8 @@ impl Opening {
         Ok(Self { name, step, ended, thread })
     }
 
-    /// Shows that something is being opened until it is, or until somebody leaves. What was `kept` was typed before.
+    /// Shows that something is being opened until it is, or until somebody leaves, or goes back where `has_way_back`.
+    /// What was `kept` was typed before.
     ///
     /// # Errors
     /// When it cannot be opened.
@@ -190,6 +195,7 @@ impl Opening {
         screen: &mut Screen,
         keys: &KeyMap,
         mut kept: Vec<Event>,
+        has_way_back: bool,
     ) -> anyhow::Result<Opened> {
         // What the screen shows, once it does.
         let mut shown = None;
@@ -197,14 +203,18 @@ impl Opening {
             let what = self.step.lock().unwrap_or_else(PoisonError::into_inner).clone();
             let wanted = (what, screen.size());
             if screen.has_slot() && shown.as_ref() != Some(&wanted) {
-                let frame = view::opening(&self.name, &wanted.0, keys, wanted.1);
+                let frame = view::opening(&self.name, &wanted.0, keys, has_way_back, wanted.1);
                 if screen.paint(&frame, false)? {
                     shown = Some(wanted.clone());
                 }
             }
             let happened = screen.wait(None, shown.as_ref() != Some(&wanted))?;
-            if happened.end.is_some() || happened.events.iter().any(|event| leaves(keys, event)) {
-                return Ok(Opened::Left(happened.end));
+            let asked = happened.events.iter().find_map(|event| leaving(keys, event));
+            match asked {
+                _ if happened.end.is_some() => return Ok(Opened::Left(happened.end)),
+                Some(Action::Back) if has_way_back => return Ok(Opened::Aside(self)),
+                Some(_) => return Ok(Opened::Left(None)),
+                None => {}
             }
             kept.extend(happened.events.into_iter().filter(|event| !matches!(event, Event::Reply(_))));
             kept.truncate(KEPT_MAX);
@@ -221,10 +231,9 @@ impl Opening {
     }
 }
 
-/// Whether something typed while opening leaves at once.
-fn leaves(keys: &KeyMap, event: &Event) -> bool {
-    let Event::Key(key) = event else { return false };
-    let found = keys.find(Context::Review, &[*key]);
-    let leaving = [Action::Quit, Action::Leave, Action::Back].map(Found::Action);
-    leaving.contains(&found)
+/// The action by which something typed while opening leaves at once.
+fn leaving(keys: &KeyMap, event: &Event) -> Option<Action> {
+    let Event::Key(key) = event else { return None };
+    let Found::Action(action) = keys.find(Context::Review, &[*key]) else { return None };
+    [Action::Quit, Action::Leave, Action::Back].contains(&action).then_some(action)
 }

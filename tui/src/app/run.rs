@@ -438,10 +438,13 @@ impl App {
             let unit = 10_f64.powf((x.max(1.0).log10().floor() - 1.0).max(0.0));
             ((x / unit).round() * unit) as u32
         };
+        let is_late = |age: Duration| link.delay().is_some_and(|delay| age > 2 * delay) && !link.is_silent();
+        let late = link.on_its_way(now).filter(|(age, _)| is_late(*age));
         let link = Link {
             delay_ms: link.delay().map(|delay| round(delay.as_secs_f64() * 1e3)),
             rate_kbs: link.goodput().map(|rate| round(rate / 1e3)),
             is_silent: link.is_silent(),
+            late: late.map(|(age, n_bytes)| [round(age.as_secs_f64() * 1e3), round(n_bytes as f64)]),
         };
         update(&mut self.state, Msg::Fact(Fact::Link(link)));
     }

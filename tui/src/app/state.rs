@@ -42,6 +42,8 @@ pub struct State {
     pub frame: u32,
     /// Playing, or not.
     pub play: Option<Play>,
+    /// Whether the last action was to leave, and something unfinished was asked about.
+    pub is_leaving: bool,
     /// Rates of the two ways to play, percent of real time: as it was, and slow.
     pub rates: [u32; 2],
     /// A loop reaches this many frames to both sides.
@@ -241,6 +243,9 @@ pub struct Link {
     pub rate_kbs: Option<u32>,
     /// The terminal does not answer.
     pub is_silent: bool,
+    /// How long pictures take that wait for others on the way, milliseconds, and the bytes of one; `None` while none
+    /// waits longer than another delay.
+    pub late: Option<[u32; 2]>,
 }
 
 impl State {
@@ -259,6 +264,7 @@ impl State {
             clip,
             frame: 0,
             play: None,
+            is_leaving: false,
             rates: [100, 50],
             loop_frames: 8,
             dropped: None,

@@ -1,10 +1,11 @@
 //! Tracks and groups as the screen shows them.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::sync::Arc;
 
 use honami_model::hierarchy::Dendrogram;
-use honami_model::track::{Source, Span, TrackId};
+use honami_model::track::{Sample, Source, Span, TrackId};
 
 /// A track on screen.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,6 +27,16 @@ impl TrackRow {
         let frames = || span.frames().zip(&span.samples);
         let keys = frames().filter(|(_, s)| s.source == Source::Key).map(|(f, _)| f).collect();
         Self { id, name, keys, span }
+    }
+
+    /// From the first to the last frame in which a tracker has followed it, if one has.
+    #[must_use]
+    pub fn tracked(&self) -> Option<Range<u32>> {
+        let is_tracked = |sample: &Sample| sample.source == Source::Tracked;
+        let first = self.span.samples.iter().position(is_tracked)?;
+        let last = self.span.samples.iter().rposition(is_tracked)?;
+        let frame = |at: usize| self.span.first_frame.saturating_add(u32::try_from(at).unwrap_or(u32::MAX));
+        Some(frame(first)..frame(last).saturating_add(1))
     }
 
     /// Where it is in a frame, image pixels.

@@ -17,6 +17,7 @@ mod sketch;
 mod time;
 mod tracks;
 
+use std::ops::Range;
 use std::time::Duration;
 
 use honami_model::edit::Transaction;
@@ -104,6 +105,8 @@ pub enum Effect {
         way: retrack::Way,
         /// Where the cursor is.
         frame: u32,
+        /// The marked range: nothing outside it changes.
+        within: Option<Range<u32>>,
     },
     /// Measure dense motion with the tracker of this track.
     Measure(Option<TrackId>),
@@ -258,6 +261,7 @@ fn call(state: &mut State, action: Action) -> Vec<Effect> {
     let action = queue::meant(state, action);
     logged::action(state, action);
     let effects = actions::act(state, action);
+    state.is_leaving &= action == Action::Leave;
     state.count = None;
     effects
 }

@@ -118,7 +118,7 @@ pub(super) struct New {
     /// Video, image folder or pattern.
     pub(super) clip: PathBuf,
     /// True frame rate, when the file's is wrong or an image sequence has none.
-    #[arg(long, value_name = "F")]
+    #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = frames_per_second)]
     pub(super) fps: Option<f64>,
 }
 
@@ -202,7 +202,7 @@ pub(super) struct Compare {
     #[arg(long = "set", value_name = "K=V")]
     pub(super) set: Vec<String>,
     /// True frame rate of the clip.
-    #[arg(long, value_name = "F")]
+    #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = frames_per_second)]
     pub(super) fps: Option<f64>,
 }
 
@@ -349,6 +349,12 @@ pub(super) enum Plugin {
         /// Short name or full id.
         name: String,
     },
+}
+
+/// A frame rate.
+fn frames_per_second(text: &str) -> Result<f64, String> {
+    let fps = text.parse().ok().filter(|fps: &f64| fps.is_finite() && *fps > 0.0);
+    fps.ok_or_else(|| format!("wanted frames per second, a number above 0, got {text}"))
 }
 
 /// `A..B`, the last one excluded; an open end reaches to the clip's.

@@ -167,6 +167,14 @@ impl Link {
         !self.silent && !self.flights.is_empty()
     }
 
+    /// How long the frame that was sent first of those on their way has been so, and the bytes of the last; `None` when
+    /// none is.
+    #[must_use]
+    pub fn on_its_way(&self, now: Duration) -> Option<(Duration, usize)> {
+        let (oldest, newest) = self.flights.front().zip(self.flights.back())?;
+        Some((now.saturating_sub(oldest.sent), newest.n_bytes))
+    }
+
     /// Whether nothing has been on its way, and nothing has come, for so long.
     fn has_paused(&self, now: Duration, pause: Duration) -> bool {
         let last = self.last_answer.max(self.last_sent);

@@ -41,3 +41,30 @@ fn from_the_start_screen_into_a_clip_and_the_next_time_straight_to_it() {
     assert!(terminal.wait_for_end());
     terminal.assert_restored();
 }
+
+#[test]
+fn esc_goes_back_from_what_is_still_being_opened_and_choosing_it_again_goes_on_with_it() {
+    let folder = folder();
+    // Nobody gets further with a pipe than its writer.
+    let pipe = folder.path().join("slow.y4m");
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let honami = CommandBuilder::new(env!("CARGO_BIN_EXE_honami"));
+    let mut terminal = Terminal::start(honami, folder.path(), (80, 24), true);
+    terminal.wait_for_text("ffmpeg");
+    for _ in 0..2 {
+        terminal.press("gc./slow.y4m\r");
+        terminal.wait_for_text("Esc back  q leave");
+        terminal.press("\x1b");
+        terminal.wait_for_text("measures how plants move");
+    }
+    terminal.press("gc./slow.y4m\r");
+    terminal.wait_for_text("Esc back  q leave");
+    // One reader is there, and has waited for it.
+    std::fs::write(&pipe, "no clip").unwrap();
+    terminal.wait_for("what is wrong with it", |s| {
+        s.contents().contains("slow.y4m") && s.contents().contains("measures how plants move")
+    });
+    terminal.press("q");
+    assert!(terminal.wait_for_end());
+    terminal.assert_restored();
+}

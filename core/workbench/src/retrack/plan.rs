@@ -99,13 +99,13 @@ pub(super) fn stretches(anchors: &Anchors, frames: &RangeInclusive<u32>, way: Wa
 /// The range that a person means who says `way` with the cursor on `frame`.
 ///
 /// Forward: from the last anchor up to the next; backward: from the next anchor down to the last; both: from the
-/// last before to the next after, which are two stretches where the frame is an anchor itself.
-pub(super) fn around(anchors: &Anchors, frame: u32, way: Way, n_frames: u32) -> RangeInclusive<u32> {
+/// last before to the next after, which are two stretches where the frame is an anchor itself. Where no anchor ends
+/// it, it ends with `limits`.
+pub(super) fn around(anchors: &Anchors, frame: u32, way: Way, limits: &Limits) -> RangeInclusive<u32> {
     let up_to = |frame: u32| anchors.range(..=frame).next_back().map(|(&at, _)| at);
     let below = |frame: u32| anchors.range(..frame).next_back().map(|(&at, _)| at);
     let from = |frame: u32| anchors.range(frame..).next().map(|(&at, _)| at);
     let above = |frame: u32| anchors.range(frame + 1..).next().map(|(&at, _)| at);
-    let last = n_frames.saturating_sub(1);
     let (start, end) = match way {
         Way::Forward => {
             let start = up_to(frame);
@@ -117,5 +117,40 @@ pub(super) fn around(anchors: &Anchors, frame: u32, way: Way, n_frames: u32) -> 
         }
         Way::Both => (below(frame), above(frame)),
     };
-    start.unwrap_or(0)..=end.unwrap_or(last)
+    limits.cut(start, end, (from(frame), up_to(frame)))
+}
+
+/// How far a re-tracking goes where no anchor ends it.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Limits {
+    /// A range that was marked: nothing outside it changes, whatever else there is.
+    pub(super) marked: Option<Range<u32>>,
+    /// Frames in which the track was followed before.
+    pub(super) followed: Range<u32>,
+    /// Frames of the clip.
+    pub(super) n_frames: u32,
+}
+
+impl Limits {
+    /// The range between two ends, where there are such; `sides` are the anchors from which a pass leaves the frame,
+    /// back and ahead.
+    fn cut(
+        &self,
+        start: Option<u32>,
+        end: Option<u32>,
+        sides: (Option<u32>, Option<u32>),
+    ) -> RangeInclusive<u32> {
+        if let Some(marked) = &self.marked {
+            // An anchor beside the range is where a pass into it begins.
+            let is_beside = |at: &u32| at.saturating_add(1) >= marked.start && *at <= marked.end;
+            let start = start.filter(is_beside).unwrap_or(marked.start);
+            let end = end.filter(is_beside).unwrap_or(marked.end.saturating_sub(1));
+            return start..=end.min(self.n_frames.saturating_sub(1));
+        }
+        // Who sets a key-frame beyond what was followed wants to go on from there.
+        let is_followed = |at: Option<u32>| at.is_some_and(|at| self.followed.contains(&at));
+        let first = if is_followed(sides.0) { self.followed.start } else { 0 };
+        let end_frame = if is_followed(sides.1) { self.followed.end } else { self.n_frames };
+        start.unwrap_or(first)..=end.unwrap_or(end_frame.saturating_sub(1))
+    }
 }

@@ -1,5 +1,6 @@
 //! A track and its tracker, taken out of the project: tracked again on any thread, as often as one likes.
 
+use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
 
@@ -16,7 +17,7 @@ use honami_review::loko::Placed;
 
 use super::lay::{Runs, Tracked};
 use super::pass::{Found, Meter, Scene};
-use super::plan::{self, Anchors, Pass, Stretch};
+use super::plan::{self, Anchors, Limits, Pass, Stretch};
 use super::{Direction, RetrackJob, RetrackRequest, Way, direction, lay};
 use crate::error::WorkbenchError;
 use crate::ground::Ground;
@@ -63,12 +64,21 @@ impl Study {
     }
 
     /// What a person means who says `way` with the cursor on `frame`: up to the neighbouring key-frames, or where there
-    /// are none to the track's birth and the clip's ends. On a key-frame, both ways are both of its sides.
+    /// are none to the track's birth and as far as it was followed before; from a key-frame outside that, to the clip's
+    /// ends. On a key-frame, both ways are both of its sides. Nothing outside a marked range is changed.
     ///
     /// `keys` are set with it; those that the project has too are moved.
     #[must_use]
-    pub fn around(&self, way: Way, frame: u32, keys: Vec<(u32, Key)>) -> RetrackRequest {
-        let frames = plan::around(&self.anchors(&keys), frame, way, self.media.clip().n_frames());
+    pub fn around(
+        &self,
+        way: Way,
+        frame: u32,
+        keys: Vec<(u32, Key)>,
+        marked: Option<Range<u32>>,
+    ) -> RetrackRequest {
+        let (times, n_frames) = (self.times(), self.media.clip().n_frames());
+        let limits = Limits { marked, followed: self.ground.followed(times), n_frames };
+        let frames = plan::around(&self.anchors(&keys), frame, way, &limits);
         RetrackRequest { track: self.track(), way, frames, keys, with: None }
     }
 
@@ -85,6 +95,9 @@ impl Study {
         }
         let anchors = self.anchors(&request.keys);
         let stretches = plan::stretches(&anchors, &request.frames, request.way);
+        if stretches.is_empty() && first == last && (1..n_frames - 1).contains(&first) {
+            return Err(WorkbenchError::Followed { track: self.track(), frame: first });
+        }
         if stretches.is_empty() {
             return Err(WorkbenchError::NoAnchor { track: self.track(), first, last });
         }
@@ -159,7 +172,9 @@ impl Study {
     /// # Errors
     /// [`WorkbenchError::LostAtOnce`] where some frame was seen by none of them; what the document refuses.
     pub fn fused(&self, frame: u32, keys: &[(u32, Key)]) -> Result<Correction, WorkbenchError> {
-        let frames = plan::around(&self.anchors(keys), frame, Way::Both, self.media.clip().n_frames());
+        let n_frames = self.media.clip().n_frames();
+        let limits = Limits { marked: None, followed: 0..n_frames, n_frames };
+        let frames = plan::around(&self.anchors(keys), frame, Way::Both, &limits);
         let stretches = plan::stretches(&self.anchors(keys), &frames, Way::Both);
         let path = stretches.iter().flat_map(|stretch| self.picked(stretch)).collect::<Vec<_>>();
         let laid = lay::laid(&self.ground, keys, path, self.times())?;

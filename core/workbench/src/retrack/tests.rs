@@ -9,7 +9,7 @@ use proptest::prelude::*;
 use super::Way;
 use super::crop::{Bounds, Crop};
 use super::direction::margin_px;
-use super::plan::{Anchors, Pass, Stretch, around, stretches};
+use super::plan::{Anchors, Limits, Pass, Stretch, around, stretches};
 
 fn clip(width: u32, height: u32) -> Clip {
     Clip { width, height, times: FrameTimes::constant(10, 25.0).unwrap() }
@@ -102,7 +102,39 @@ fn a_word_at_the_cursor_means_up_to_the_neighbouring_key_frames() {
         (5, backward, 0..=5),
         (30, backward, 20..=39),
     ] {
-        assert_eq!(around(&anchors, frame, way, 40), want, "{frame} {way:?}");
+        let limits = Limits { marked: None, followed: 0..0, n_frames: 40 };
+        assert_eq!(around(&anchors, frame, way, &limits), want, "{frame} {way:?}");
+    }
+}
+
+#[test]
+fn what_no_key_frame_ends_goes_no_further_than_the_track_did_or_the_range() {
+    let anchors: Anchors = [(10, Some([1.0; 2])), (20, Some([2.0; 2]))].into();
+    let (forward, backward, both) = (Way::Forward, Way::Backward, Way::Both);
+    for (frame, way, marked, followed, want) in [
+        (25, forward, None, 5..30, 20..=29),
+        (25, both, None, 5..30, 20..=29),
+        (20, both, None, 5..30, 10..=29),
+        (7, backward, None, 5..30, 5..=10),
+        (15, both, None, 5..12, 10..=20),
+        // Key-frames beyond what was followed: as far as the clip.
+        (25, forward, None, 5..15, 20..=39),
+        (7, backward, None, 12..30, 0..=10),
+        // As far as it was followed.
+        (25, forward, None, 5..21, 20..=20),
+        // A marked range holds everything, and may go further.
+        (25, forward, Some(15..35), 5..30, 20..=34),
+        (15, both, Some(12..19), 5..30, 12..=18),
+        (15, both, Some(11..20), 5..30, 10..=20),
+        (25, both, Some(21..99), 5..30, 20..=39),
+        (7, backward, Some(8..30), 5..30, 8..=10),
+        // A cursor outside it.
+        (25, forward, Some(2..8), 5..30, 2..=7),
+        (7, backward, Some(22..30), 5..30, 22..=29),
+    ] {
+        let limits = Limits { marked: marked.clone(), followed: followed.clone(), n_frames: 40 };
+        let came = around(&anchors, frame, way, &limits);
+        assert_eq!(came, want, "{frame} {way:?} marked {marked:?} followed {followed:?}");
     }
 }
 

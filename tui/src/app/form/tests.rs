@@ -3,6 +3,10 @@
 use super::*;
 use crate::app::fixture;
 
+fn wanted(features: &[Features]) -> Wanted<'_> {
+    Wanted { features, frames: 20..60, n_frames: 100 }
+}
+
 #[test]
 fn steps_stay_in_the_range_and_free_of_noise() {
     let state = fixture::state();
@@ -26,14 +30,14 @@ fn steps_stay_in_the_range_and_free_of_noise() {
 fn what_does_not_count_is_not_shown() {
     let state = fixture::state();
     let features = [Features::Here, Features::Selected, Features::Found];
-    let mut form = Form::new(Task::Track, &state.plugins, &features).unwrap();
+    let mut form = Form::new(Task::Track, &state.plugins, &wanted(&features)).unwrap();
     let ids = |form: &Form| {
         let rows = form.rows();
         rows.iter()
             .filter_map(|r| if let Row::Param(p, _) = r { Some(p.id.clone()) } else { None })
             .collect::<Vec<_>>()
     };
-    assert_eq!(ids(&form), ["@features", "radius", "motion", "check", "label"]);
+    assert_eq!(ids(&form), ["@features", "@frames", "radius", "motion", "check", "label"]);
     assert!(form.rows().contains(&Row::Fold(1)));
     form.unfolded = true;
     assert!(ids(&form).contains(&"expire".to_owned()));
@@ -51,9 +55,35 @@ fn what_does_not_count_is_not_shown() {
 #[test]
 fn choices_are_called_what_is_shown() {
     let features = [Features::Here, Features::Selected, Features::Found];
-    let form = |plugin: Plugin| Form::new(Task::Track, &[plugin], &features).unwrap();
+    let form = |plugin: Plugin| Form::new(Task::Track, &[plugin], &wanted(&features)).unwrap();
     let [klt, flow, ..] = &fixture::state().plugins[..] else { panic!("two trackers") };
-    let wanted = |plugin: &Plugin| form(plugin.clone()).plugin().params[0].wanted();
-    assert_eq!(wanted(klt), "one of the tracks here, the selected track, found anew");
-    assert_eq!(wanted(flow), "one of the tracks here, the selected track", "it finds none by itself");
+    let words = |plugin: &Plugin| form(plugin.clone()).plugin().params[0].wanted();
+    assert_eq!(words(klt), "one of the tracks here, the selected track, found anew");
+    assert_eq!(words(flow), "one of the tracks here, the selected track", "it finds none by itself");
+}
+
+#[test]
+fn frames_are_typed_as_their_first_and_last() {
+    let mut form = Form::new(Task::Track, &fixture::state().plugins, &wanted(&[Features::Here])).unwrap();
+    assert_eq!(form.frames(), 20..60);
+    form.at = 2;
+    for (typed, expect) in [
+        ("0-99", Ok(0..100)),
+        (" 7 - 7 ", Ok(7..8)),
+        ("9-8", Err("\"9-8\"")),
+        ("50-100", Err("\"50-100\"")),
+        ("20", Err("\"20\"")),
+        ("-3-5", Err("\"-3-5\"")),
+    ] {
+        form.typed = Some(typed.to_owned());
+        match (form.take_typed(), expect) {
+            (Ok(()), Ok(frames)) => assert_eq!(form.frames(), frames, "{typed}"),
+            (Err(line), Err(got)) => {
+                let wanted = "frames: wanted the first and the last, of 0-99, got ";
+                assert_eq!(line, format!("{wanted}{got}"));
+            }
+            other => panic!("{typed}: {other:?}"),
+        }
+    }
+    assert_eq!(form.frames(), 7..8, "what was wrong changes nothing");
 }

@@ -1,5 +1,6 @@
 //! Actions, each by its place.
 
+use std::ops::Range;
 use std::path::PathBuf;
 
 use super::{
@@ -16,10 +17,11 @@ use super::time::Pace;
 use crate::app::before::Before;
 use crate::app::correcting::nudge_px;
 use crate::app::files::Lead;
-use crate::app::form::{Features, Form, Task};
+use crate::app::form::{Features, Form, Task, Wanted};
 use crate::app::lesson::Lesson;
 use crate::app::menu::Choice;
 use crate::app::panel::Panel;
+use crate::app::tracks::TrackRow;
 
 /// Does an action. The count, if one was typed, is still in the state.
 pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {
@@ -39,7 +41,7 @@ pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {
         Action::Back => return back(state),
         Action::Quit if matches!(state.mode, Mode::Review) => return vec![Effect::Leave],
         Action::Quit => return back(state),
-        Action::Leave => return vec![Effect::Leave],
+        Action::Leave => return leave(state),
         Action::Erase => return erase(state),
         Action::PlayPause => time::play(state, Pace::Real, 1.0),
         Action::PlayBackwards => time::play(state, Pace::Real, -1.0),
@@ -267,8 +269,24 @@ fn run(state: &mut State) -> Vec<Effect> {
         (Features::Found, _) => PointSource::Detect,
     };
     state.corrected = None;
-    let (frames, every, area) = (0..state.clip.n_frames(), form.every(), Area::Whole);
+    let (frames, every, area) = (form.frames(), form.every(), Area::Whole);
     vec![Effect::Track(TrackRequest { plugin, params, points, frames, every, area })]
+}
+
+/// Leaves honami; asks first where something would be lost that is not kept yet.
+fn leave(state: &mut State) -> Vec<Effect> {
+    let open = match &state.mode {
+        Mode::Move(moving) if moving.has_moved() => "a move is not kept: Enter keeps",
+        Mode::Sketch(sketching) if !sketching.strokes.is_empty() => "a sketch is not kept: Enter keeps",
+        Mode::Form(_) => "a form has not been run: Enter runs",
+        _ => return vec![Effect::Leave],
+    };
+    if state.is_leaving {
+        return vec![Effect::Leave];
+    }
+    state.is_leaving = true;
+    complain(state, format!("{open}, Esc drops, Q again leaves"));
+    Vec::new()
 }
 
 /// Leaves what is open; while reviewing, stops what runs: first the clip, then the job; then gives up the range, and
@@ -370,13 +388,24 @@ fn open_form(state: &mut State, task: Task) {
         }
         Some(_) => &[Features::Here, Features::Selected, Features::Found],
     };
-    match Form::new(task, &state.plugins, features) {
+    let wanted = Wanted { features, frames: likely_frames(state), n_frames: state.clip.n_frames() };
+    match Form::new(task, &state.plugins, &wanted) {
         Some(form) => state.mode = Mode::Form(Box::new(form)),
         None => complain(
             state,
             format!("no {} was found; `honami doctor` says where {plugin} is looked for", task.word()),
         ),
     }
+}
+
+/// The frames that a run is likely for: the marked range, else those that were tracked before, else all.
+fn likely_frames(state: &State) -> Range<u32> {
+    if let Some(range) = state.range {
+        return range.frames(state.frame);
+    }
+    let tracked = state.tracks.iter().filter_map(TrackRow::tracked);
+    let all = 0..state.clip.n_frames();
+    tracked.reduce(|a, b| a.start.min(b.start)..a.end.max(b.end)).unwrap_or(all)
 }
 
 /// Shows a panel; the one that is shown goes.

@@ -26,7 +26,7 @@ const REACH: [(Context, &str); 11] = [
 /// Keys that give an action something to do.
 fn prepared(context: Context, action: Action) -> &'static str {
     match (context, action) {
-        (Context::Form, Action::Up | Action::FineLeft | Action::FineRight) => "j j",
+        (Context::Form, Action::Up | Action::FineLeft | Action::FineRight) => "j j j",
         (Context::Menu, Action::Up) => "j Down",
         (Context::Dial, Action::Up) => "j",
         (Context::Menu, Action::Erase) => "x",

@@ -114,7 +114,8 @@ pub(super) fn retrack(state: &mut State, way: Way) -> Vec<Effect> {
         complain(state, running);
         return Vec::new();
     }
-    vec![Effect::Retrack { track: row.id, way, frame: state.frame }]
+    let (frame, within) = (state.frame, state.range.map(|range| range.frames(state.frame)));
+    vec![Effect::Retrack { track: row.id, way, frame, within }]
 }
 
 /// Cuts the hierarchy into so many groups more.

@@ -7,6 +7,7 @@ use honami_workbench::offer::Model;
 
 use super::{Effect, Mode, State, UNDO, complain, edit, say};
 use crate::app::correcting::{Moving, Tool, nudge_px};
+use crate::app::layout::Lens;
 
 /// Begins to move the selected track's sample here to another place.
 pub(super) fn begin(state: &mut State) -> Vec<Effect> {
@@ -33,6 +34,10 @@ pub(super) fn begin_slide(state: &mut State) -> Vec<Effect> {
 fn open(state: &mut State, moving: Moving) -> Vec<Effect> {
     super::time::stop(state);
     let track = moving.track;
+    // What is moved must be seen.
+    if Lens::shown(state).pixel_of(moving.from).is_none() {
+        state.centre = moving.from;
+    }
     state.mode = Mode::Move(Box::new(moving));
     vec![Effect::Study(track)]
 }

@@ -207,7 +207,7 @@ fn what_the_project_refuses_is_not_lost() {
         ("", "a 1 0 h Enter", "place 150 120 | frame 0 track 1"),
         ("", "e n x Enter", "name \"bud-leftx\" | frame 0 track 1"),
         ("frame=20", "e x 7 Enter", "review | frame 20 track 1"),
-        ("", "t r j j 2 5 Enter Enter", "form Track row 2 typed None | frame 0 track 1"),
+        ("", "t r j j j 2 5 Enter Enter", "form Track row 3 typed None | frame 0 track 1"),
         ("", "d d", "review | frame 0 track 1"),
         ("", "n Enter", "review | frame 70 track 1"),
         ("", "n R", "review | frame 70 track 1"),

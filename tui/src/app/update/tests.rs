@@ -88,13 +88,13 @@ pub(super) fn line(state: &State, effects: &[Effect]) -> String {
     );
     words.extend(effects.iter().map(|effect| match effect {
         Effect::Commit(transaction, _) => format!("commit {}", transaction.label),
-        Effect::Track(TrackRequest { plugin, params, points, every, .. }) => {
+        Effect::Track(TrackRequest { plugin, params, points, every, frames, .. }) => {
             let params: Vec<String> = params.iter().map(|(id, value)| format!("{id}={value}")).collect();
             let points = match points {
                 PointSource::Tracks(tracks) => tracks.to_string(),
                 other => format!("{other:?}"),
             };
-            format!("{plugin} follows {points}, every {every:?} {}", params.join(" "))
+            format!("{plugin} follows {points} in {frames:?}, every {every:?} {}", params.join(" "))
         }
         Effect::Judge(Judge { track, frames, verdict, effort, .. }) => {
             let (word, n) = (verdict.word(), effort.keystrokes);
@@ -429,12 +429,15 @@ fn every_edit_is_refused_in_a_locked_project() {
 
 #[test]
 fn tracking_again() {
-    let retrack = |frame: u32, track: u32, way: &str| {
+    let within = |frame: u32, track: u32, way: &str, within: &str| {
         format!(
-            "review | frame {frame} track {track} | Retrack {{ track: TrackId({track}), way: {way}, frame: {frame} }}"
+            "review | frame {frame} track {track} | Retrack {{ track: TrackId({track}), way: {way}, frame: {frame}, within: {within} }}"
         )
     };
+    let retrack = |frame, track, way| within(frame, track, way, "None");
     for (from, keys, expect) in [
+        ("frame=20", "r 3 . r 2 , t t", within(21, 1, "Both", "Some(20..24)")),
+        ("frame=20", "r 3 . t b", within(23, 1, "Backward", "Some(20..24)")),
         ("frame=20", "t t", retrack(20, 1, "Both")),
         ("frame=20", "t f", retrack(20, 1, "Forward")),
         ("frame=20", "t b", retrack(20, 1, "Backward")),
@@ -457,7 +460,7 @@ fn tracking_again() {
 #[test]
 fn forms() {
     let klt = |points: &str, every: &str, params: &str| {
-        format!("review | frame 0 track 1 | klt follows {points}, every {every} {params}")
+        format!("review | frame 0 track 1 | klt follows {points} in 0..100, every {every} {params}")
     };
     let params = "check=true expire=0.55 label=none motion=translation radius=10";
     let with_radius = |px: u32| params.replace("radius=10", &format!("radius={px}"));
@@ -470,17 +473,28 @@ fn forms() {
         ("", "t r j l l Enter", &klt("Detect", "None", params)),
         ("", "t r j h j l l Enter", &klt("Detect", "Some(10)", params)),
         ("empty", "t r Enter", &klt("Detect", "None", params).replace("track 1", "track -")),
-        ("", "t r j j l l Enter", &klt("Existing", "None", &with_radius(12))),
-        ("", "t r j j 2 5 Enter Enter", &klt("Existing", "None", &with_radius(25))),
-        ("", "t r j j j j l k l l Enter", &klt("Existing", "None", &unchecked)),
-        ("", "t r j j j j j j j j j k", "form Track row 5 typed None | frame 0 track 1"),
+        ("", "t r j j j l l Enter", &klt("Existing", "None", &with_radius(12))),
+        ("", "t r j j j 2 5 Enter Enter", &klt("Existing", "None", &with_radius(25))),
+        ("", "t r j j j j j l k l l Enter", &klt("Existing", "None", &unchecked)),
+        ("", "t r j j j j j j j j j k", "form Track row 6 typed None | frame 0 track 1"),
         (
             "",
-            "t r j j 9 9 Enter",
-            "form Track row 2 typed Some(\"99\") | frame 0 track 1 | error radius: wanted a whole number, 2 to 50 (px), got \"99\"",
+            "t r j j j 9 9 Enter",
+            "form Track row 3 typed Some(\"99\") | frame 0 track 1 | error radius: wanted a whole number, 2 to 50 (px), got \"99\"",
         ),
-        ("", "t r j j 9 9 Esc Esc", "review | frame 0 track 1"),
-        ("", "t r l Enter", "review | frame 0 track 1 | flow follows Existing, every None "),
+        ("", "t r j j j 9 9 Esc Esc", "review | frame 0 track 1"),
+        ("", "t r l Enter", "review | frame 0 track 1 | flow follows Existing in 0..100, every None "),
+        (
+            "",
+            "t r j j 3 0 - 1 2 0 Enter",
+            "form Track row 2 typed Some(\"30-120\") | frame 0 track 1 | error frames: wanted the first and the last, of 0-99, got \"30-120\"",
+        ),
+        ("", "t r j j 3 0 - 4 0 Enter Enter", &klt("Existing", "None", params).replace("0..100", "30..41")),
+        (
+            "frame=8",
+            "r 9 . r t r Enter",
+            &klt("Existing", "None", params).replace("0..100", "8..18").replace("frame 0", "frame 17"),
+        ),
         ("", "c Enter", "review | frame 0 track 1 | movement groups"),
         (
             "job",
@@ -524,7 +538,7 @@ fn a_run_after_work_by_hand_is_for_that_track() {
 #[test]
 fn a_text_is_typed_with_every_letter() {
     let mut state = start("");
-    press(&mut state, "t r j j j j j");
+    press(&mut state, "t r j j j j j j");
     press(&mut state, "l Backspace Backspace Backspace Backspace q h j k l Enter");
     let effects = press(&mut state, "Enter");
     assert!(line(&state, &effects).contains("label=qhjkl"), "{}", line(&state, &effects));
@@ -629,6 +643,27 @@ fn going_about_in_the_undo_tree() {
 fn leaving_and_stopping() {
     check("", "q", "review | frame 0 track 1 | Leave");
     check("", "Q", "review | frame 0 track 1 | Leave");
+    for (keys, place, asks) in [
+        ("m l", "move 1 0", "a move is not kept: Enter keeps, Esc drops, Q again leaves"),
+        ("s .", "sketch 1", "a sketch is not kept: Enter keeps, Esc drops, Q again leaves"),
+        (
+            "t r",
+            "form Track row 0 typed None",
+            "a form has not been run: Enter runs, Esc drops, Q again leaves",
+        ),
+    ] {
+        let press = |more: &str| {
+            let mut state = start("");
+            let effects = press(&mut state, &format!("{keys} {more}"));
+            let [place, said] = [line(&state, &[]), state.notice.map_or_else(String::new, |n| n.text)];
+            (place.split(" | ").next().unwrap().to_owned(), said, effects == [Effect::Leave])
+        };
+        let asked = (place.to_owned(), asks.to_owned(), false);
+        assert_eq!(press("Q"), asked, "{keys}");
+        assert_eq!(press("Q Q"), (place.to_owned(), String::new(), true), "{keys}");
+        assert_eq!(press("Q Ctrl-l Q"), asked, "{keys}: something else was done between");
+    }
+    check("", "m Q", "move 0 0 | frame 0 track 1 | Leave");
     check("", "t r q", "review | frame 0 track 1");
     check("job", "Esc Esc", "review | frame 0 track 1 | StopJob");
     check("", "Ctrl-l Ctrl-z", "review | frame 0 track 1 | Redraw | Suspend");

@@ -26,6 +26,11 @@ const BARS: [&str; 8] = ["▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"]
 
 /// What the title says, each with how soon it is left out where there is no room, the highest first.
 fn facts(state: &State, nth: usize) -> Vec<(u8, String)> {
+    if let Mode::Move(moving) = &state.mode
+        && let Tool::Place { to, .. } = moving.tool
+    {
+        return ways_of_moving(state, to);
+    }
     let counted = |n: usize, one: &str| if n == 1 { format!("1 {one}") } else { format!("{n} {one}s") };
     let mut facts = vec![(0, counted(state.tracks.len(), "track"))];
     facts.extend(state.tracker.clone().map(|tracker| (5, tracker)));
@@ -45,6 +50,23 @@ fn facts(state: &State, nth: usize) -> Vec<(u8, String)> {
     facts
 }
 
+/// Where a sample is put, and by what it is moved from there.
+fn ways_of_moving(state: &State, [x, y]: [f32; 2]) -> Vec<(u8, String)> {
+    let hints = state.keys.hints(Context::Move);
+    let keys = |word: &str| {
+        let (keys, _) = hints.iter().find(|(_, other)| *other == word)?;
+        Some(format!("{keys} {}", scaled(word, Context::Move, state.zoom)))
+    };
+    let digits = if state.zoom > 0 { 2 } else { 1 };
+    let mut ways = vec![(0, format!("{x:.digits$}, {y:.digits$}"))];
+    ways.extend(keys("1 px").map(|keys| (1, format!("{keys} a step"))));
+    ways.extend(keys(".25").map(|keys| (4, keys)));
+    ways.extend(state.mouse.then(|| (2, "click places".to_owned())));
+    let closer = state.keys.keys_of(Context::Move, Action::ZoomIn);
+    ways.extend(closer.map(|key| (3, format!("{key} closer"))));
+    ways
+}
+
 /// The title; in the picture every `nth` track is marked.
 pub(super) fn title(state: &State, area: Rect, nth: usize, frame: &mut Frame) {
     let name = fitted(&state.name, width(&state.name).min(usize::from(area.width) / 2));
@@ -62,11 +84,16 @@ pub(super) fn title(state: &State, area: Rect, nth: usize, frame: &mut Frame) {
         Span::styled(line(&facts), style::DIM),
     ]);
     put(frame, area, 0, &left);
-    let link = match (state.link.is_silent, state.link.delay_ms, state.link.rate_kbs) {
-        (true, ..) => "no answers: 64 kB/s".to_owned(),
-        (_, Some(ms), Some(rate)) => format!("{ms} ms {rate} kB/s"),
-        (_, Some(ms), None) => format!("{ms} ms"),
-        (_, None, _) => String::new(),
+    // Nothing is late where nothing moves: what was is not looked at again then.
+    let late = state.link.late.filter(|_| state.play.is_some());
+    let link = match (late, state.link.delay_ms, state.link.rate_kbs) {
+        _ if state.link.is_silent => "no answers: 64 kB/s".to_owned(),
+        (Some([ms, n_bytes]), ..) => {
+            format!("{ms} ms late, {:.1} kB", f64::from(n_bytes) / 1e3)
+        }
+        (None, Some(ms), Some(rate)) => format!("{ms} ms {rate} kB/s"),
+        (None, Some(ms), None) => format!("{ms} ms"),
+        (None, None, _) => String::new(),
     };
     put_right(frame, area, &Line::styled(link, style::DIM), left.width());
 }
@@ -386,8 +413,10 @@ fn hint_line(state: &State, room: usize) -> Line<'static> {
     // What is open can be kept, and what is marked worked on: that must be seen on the narrowest screen.
     hints.sort_by_key(|(_, word)| match word.as_str() {
         "keep" => 0,
+        "model" if context == Context::Move => 1,
+        "back" if context == Context::Move => 2,
         "end" | "lost" | "occluded" | "take away" | "average" => 1,
-        _ => 2,
+        _ => 3,
     });
     let cells = |(keys, word): &(String, String)| width(keys) + 1 + width(word) + 2;
     let help = hints.iter().position(|(_, word)| word == "help").map(|at| hints.remove(at));

@@ -3,9 +3,10 @@
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 
-use super::{fill, padded, panel, put, style};
+use super::lines::wrapped;
+use super::{fill, padded, panel, put, style, width};
 use crate::app::keymap::shown;
-use crate::app::menu::Menu;
+use crate::app::menu::{Menu, Row};
 use crate::app::state::State;
 use crate::term::encode::Frame;
 
@@ -18,22 +19,68 @@ const KEYS: usize = 14;
 /// Cells of what a row does, least: fewer say nothing.
 const DETAIL: usize = 16;
 
-/// Rows of the panel: the head, and the list.
-fn n_rows(menu: &Menu) -> u16 {
-    u16::try_from(menu.rows().len()).unwrap_or(u16::MAX).max(1).saturating_add(1)
+/// Cells of the keys' column: none in a list without keys.
+fn keys_width(menu: &Menu) -> usize {
+    if menu.rows().any(|row| !row.keys.is_empty()) { KEYS } else { 0 }
+}
+
+/// The rows of the list that stand in so many lines of so many cells, the chosen one among them: each with its place,
+/// and what it does in the lines that this takes.
+fn listed(menu: &Menu, columns: usize, n_lines: usize) -> Vec<(usize, Vec<String>)> {
+    let rows: Vec<&Row> = menu.rows().collect();
+    let room = columns.saturating_sub(LABEL + keys_width(menu) + 2);
+    let lines = |at: usize| match rows[at].detail.as_str() {
+        _ if room < DETAIL => vec![String::new()],
+        detail if width(detail) <= room => vec![detail.to_owned()],
+        detail => wrapped(detail, room),
+    };
+    let mut shown = Vec::new();
+    let mut free = n_lines;
+    for at in (0..rows.len().min(menu.at + 1)).rev() {
+        let lines = lines(at);
+        // The chosen row is seen as far as there is room.
+        if lines.len() > free && !shown.is_empty() {
+            break;
+        }
+        free = free.saturating_sub(lines.len());
+        shown.insert(0, (at, lines));
+    }
+    for at in menu.at + 1..rows.len() {
+        if free == 0 {
+            break;
+        }
+        let lines = lines(at);
+        free = free.saturating_sub(lines.len());
+        shown.push((at, lines));
+    }
+    shown
+}
+
+/// Cells of a line of the list.
+fn inner_width(area: Rect) -> usize {
+    usize::from(area.width.min(WIDTH).saturating_sub(2))
+}
+
+/// Lines of the panel: the head, and the list.
+fn n_lines(menu: &Menu, area: Rect) -> u16 {
+    let room = usize::from(area.height.saturating_sub(1));
+    let listed = listed(menu, inner_width(area), room);
+    let n: usize = listed.iter().map(|(_, lines)| lines.len()).sum();
+    u16::try_from(n.clamp(1, room.max(1))).unwrap_or(u16::MAX).saturating_add(1)
 }
 
 /// The row of the list that lies in a row of the screen.
 pub(super) fn row_at(menu: &Menu, area: Rect, row: u16) -> Option<usize> {
-    let height = n_rows(menu).min(area.height);
-    let y = row.checked_sub(area.bottom() - height)?.checked_sub(1)?;
-    let first = menu.at.saturating_sub(usize::from(height.saturating_sub(1)).max(1) - 1);
-    Some(first + usize::from(y)).filter(|at| row < area.bottom() && *at < menu.rows().len())
+    let height = n_lines(menu, area).min(area.height);
+    let y = usize::from(row.checked_sub(area.bottom() - height)?.checked_sub(1)?);
+    let listed = listed(menu, inner_width(area), usize::from(height.saturating_sub(1)));
+    let mut places = listed.iter().flat_map(|(at, lines)| lines.iter().map(move |_| *at));
+    places.nth(y).filter(|_| row < area.bottom())
 }
 
 pub(super) fn draw(menu: &Menu, area: Rect, frame: &mut Frame) {
-    let inside = panel(frame, area, WIDTH, n_rows(menu));
-    // What the chosen row does, in full; before anything is chosen by typing, what the list is.
+    let inside = panel(frame, area, WIDTH, n_lines(menu, area));
+    // What the chosen row does; before anything is chosen by typing, what the list is.
     let about = match menu.chosen().filter(|_| !menu.typed.is_empty() || menu.at > 0) {
         Some(row) => row.detail.clone(),
         None => format!("{}: type a part of a name", menu.title),
@@ -44,23 +91,27 @@ pub(super) fn draw(menu: &Menu, area: Rect, frame: &mut Frame) {
         Span::styled(format!("  {about}"), style::DIM),
     ]);
     put(frame, inside, 0, &head);
-    let n_listed = usize::from(inside.height.saturating_sub(1)).max(1);
-    let first = menu.at.saturating_sub(n_listed - 1);
-    let keys_width = if menu.rows().any(|row| !row.keys.is_empty()) { KEYS } else { 0 };
-    let is_detailed = usize::from(inside.width) >= LABEL + keys_width + DETAIL;
-    for (y, (i, row)) in (1..inside.height).zip(menu.rows().enumerate().skip(first).take(n_listed)) {
+    let room = usize::from(inside.height.saturating_sub(1));
+    let keys_width = keys_width(menu);
+    let rows = listed(menu, usize::from(inside.width), room);
+    let lines = rows.iter().flat_map(|(at, lines)| (0..).zip(lines).map(move |(nth, line)| (*at, nth, line)));
+    for (y, (at, nth, detail)) in (1..inside.height).zip(lines) {
+        let (label, keys) = match menu.rows().nth(at).filter(|_| nth == 0) {
+            Some(row) => (row.label.as_str(), row.keys.as_str()),
+            None => ("", ""),
+        };
         let line = Line::from(vec![
-            Span::raw(format!("{} ", padded(&row.label, LABEL))),
-            Span::styled(padded(&row.keys, keys_width + 1), style::ACCENT),
-            Span::styled(if is_detailed { row.detail.as_str() } else { "" }, style::DIM),
+            Span::raw(format!("{} ", padded(label, LABEL))),
+            Span::styled(padded(keys, keys_width + 1), style::ACCENT),
+            Span::styled(detail.as_str(), style::DIM),
         ]);
         put(frame, inside, y, &line);
-        if i == menu.at {
+        if at == menu.at {
             let bar = Rect { x: inside.x, y: inside.y + y, width: inside.width, height: 1 };
             frame.cells.set_style(bar, style::CHOSEN);
         }
     }
-    if menu.rows().len() == 0 {
+    if rows.is_empty() {
         put(frame, inside, 1, &Line::styled("nothing matches; Backspace takes letters back", style::DIM));
     }
 }

@@ -8,16 +8,26 @@ use crate::app::action::{Action, Context};
 use crate::app::keymap::KeyMap;
 use crate::term::encode::Frame;
 
-/// The screen while something is opened: what, how far it is, and how to leave.
+/// The screen while something is opened: what, how far it is, and how to go back, where that leads somewhere, or leave.
 #[must_use]
-pub fn opening(name: &str, what: &str, keys: &KeyMap, (columns, rows): (u16, u16)) -> Frame {
+pub fn opening(
+    name: &str,
+    what: &str,
+    keys: &KeyMap,
+    has_way_back: bool,
+    (columns, rows): (u16, u16),
+) -> Frame {
     let mut frame = Frame::new(columns, rows);
     let all = Rect::new(0, 0, columns, rows);
     let title = vec![Span::styled(name.to_owned(), style::BOLD), Span::styled("  opening …", style::DIM)];
     put(&mut frame, all, 0, &Line::from(title));
     put(&mut frame, all, rows / 2, &Line::styled(what.to_owned(), style::DIM).centered());
-    let leave = keys.keys_of(Context::Review, Action::Quit).unwrap_or_default();
-    let hint = vec![Span::styled(leave, style::ACCENT), Span::styled(" leave", style::DIM)];
+    let hint = [(Action::Back, " back  ", has_way_back), (Action::Quit, " leave", true)];
+    let hint = hint.into_iter().filter(|(.., is_there)| *is_there).flat_map(|(action, word, _)| {
+        let keys = keys.keys_of(Context::Review, action).unwrap_or_default();
+        [Span::styled(keys, style::ACCENT), Span::styled(word, style::DIM)]
+    });
+    let hint: Vec<Span<'_>> = hint.collect();
     put(&mut frame, all, rows.saturating_sub(1), &Line::from(hint).right_aligned());
     frame
 }

@@ -66,7 +66,7 @@ fn words(fg: Color, bg: Color, modifier: Modifier) -> String {
 fn check(name: &str, size: (u16, u16), keys: &str, change: impl FnOnce(&mut State)) {
     let mut state = fixture::state();
     state.size = size;
-    state.link = Link { delay_ms: Some(84), rate_kbs: Some(230), is_silent: false };
+    state.link = Link { delay_ms: Some(84), rate_kbs: Some(230), is_silent: false, late: None };
     state.frame = 40;
     change(&mut state);
     fixture::press(&mut state, keys);
@@ -109,6 +109,8 @@ fn screens() {
     check("queue_120x40", large, "P q n n", |_| {});
     check("queue_80x24", small, "P q", fixture::crowd);
     check("playing_80x24", small, "space", |_| {});
+    check("late_80x24", small, "space", |state| state.link.late = Some([410, 3900]));
+    check("moving_80x24", small, "m l k", |state| state.zoom = 2);
     check("loop_80x24", small, "", |state| {
         fixture::press(state, "; b");
         state.dropped = Some([5, 13]);
@@ -123,12 +125,12 @@ fn screens() {
     });
     check("move_80x24", small, "m 3 l", |_| {});
     check("place_80x24", small, "a", |_| {});
-    check("form_80x24", small, "t r j j", |_| {});
-    check("form_120x40", large, "t r j j", |_| {});
+    check("form_80x24", small, "t r j j j", |_| {});
+    check("form_120x40", large, "t r j j j", |_| {});
     check("features_80x24", small, "t r j h", |_| {});
     check("doubt_80x24", small, "S Tab w", |_| {});
     check("crowded_80x24", small, "", fixture::crowd);
-    check("typing_80x24", small, "t r j j 2 5", |_| {});
+    check("typing_80x24", small, "t r j j j 2 5", |_| {});
     check("prefix_80x24", small, "g", |_| {});
     check("history_120x40", large, "U j", |_| {});
     check("labels_80x24", small, "g l", fixture::crowd);

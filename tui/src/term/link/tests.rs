@@ -198,3 +198,17 @@ fn a_frame_is_not_sent_into_the_queue_of_the_one_before() {
     let slot = link.next_slot(now).map(|slot| slot - now);
     assert!(slot.is_some_and(|slot| slot >= Duration::from_millis(30)), "{slot:?}");
 }
+
+#[test]
+fn what_is_on_its_way_is_as_old_as_the_first_and_as_large_as_the_last() {
+    let ms = Duration::from_millis;
+    let mut link = Link::default();
+    assert_eq!(link.on_its_way(ms(5)), None);
+    link.sent(ms(10), 4000);
+    link.sent(ms(30), 900);
+    assert_eq!(link.on_its_way(ms(100)), Some((ms(90), 900)));
+    link.answered(ms(110));
+    assert_eq!(link.on_its_way(ms(110)), Some((ms(80), 900)));
+    link.answered(ms(120));
+    assert_eq!(link.on_its_way(ms(130)), None);
+}
