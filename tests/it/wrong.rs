@@ -21,7 +21,7 @@ const CASES: &[Case] = &[
     ("new q.honami cut.y4m", FAILED, &["cut.y4m"]),
     ("new p.honami clip.y4m", FAILED, &["exists already", "choose another name", "p.honami"]),
     ("new nowhere/q.honami clip.y4m", FAILED, &["nowhere/q.honami", "No such file"]),
-    ("new q.honami clip.y4m --fps 0", FAILED, &["frame rate", "positive", "0"]),
+    ("new q.honami clip.y4m --fps 0", USAGE, &["frames per second", "above 0"]),
     ("new q.honami", USAGE, &["<CLIP>"]),
     ("new q.txt clip.y4m", USAGE, &[".honami", "q.txt"]),
     ("log missing.honami", FAILED, &["there is no project missing.honami", "honami new"]),

@@ -62,11 +62,6 @@ impl Seat {
     /// Takes the user there, as far as it still exists.
     pub(super) fn take(&self, state: &mut State) {
         state.frame = self.frame.min(state.last_frame());
-        // Where no track reaches there is nothing to go on with.
-        let reach = state.tracks.iter().map(|row| row.span.frames()).filter(|frames| !frames.is_empty());
-        if let Some(reach) = reach.reduce(|a, b| a.start.min(b.start)..a.end.max(b.end)) {
-            state.frame = state.frame.clamp(reach.start, reach.end - 1);
-        }
         state.selected = self.selected.map(TrackId).filter(|&track| state.row(track).is_some());
         state.by_doubt = self.by_doubt;
         state.marks_all = !self.marks_one;

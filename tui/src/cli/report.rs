@@ -1,6 +1,6 @@
 //! What a command says while it works: a progress bar on a terminal, nothing elsewhere.
 
-use std::io::IsTerminal as _;
+use std::io::{IsTerminal as _, Write as _};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -55,10 +55,9 @@ impl Progress for Bar {
     }
 }
 
-/// One line on standard error.
-#[expect(clippy::print_stderr, reason = "the command line speaks to a person here, and only here")]
+/// One line on standard error; where that is gone with the terminal, nobody is left to hear it.
 pub(super) fn say(line: &str) {
-    eprintln!("{line}");
+    writeln!(std::io::stderr(), "{line}").ok();
 }
 
 /// What went wrong, the whole chain in one line.

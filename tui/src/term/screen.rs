@@ -41,6 +41,8 @@ pub struct Screen {
     mouse: bool,
     /// What is unfinished, and until when more may come of it.
     unfinished: Option<(Unfinished, Duration)>,
+    /// The terminal has refused bytes.
+    is_gone: bool,
     start: Instant,
 }
 
@@ -97,6 +99,7 @@ impl Screen {
             esc_delay: ESC_DELAY[usize::from(var("SSH_CONNECTION").is_some())],
             mouse: true,
             unfinished: None,
+            is_gone: false,
             start: Instant::now(),
         };
         screen.enter()?;
@@ -117,10 +120,11 @@ impl Screen {
     pub fn set_mouse(&mut self, ours: bool) -> io::Result<()> {
         let changed = ours != self.mouse || !ours;
         self.mouse = ours;
-        match &self.tty {
+        let sent = match &self.tty {
             Some(tty) if changed => self.writer.send(tty, if ours { tty::MOUSE_ON } else { tty::MOUSE_OFF }),
             _ => Ok(()),
-        }
+        };
+        self.unless_gone(sent, ())
     }
 
     /// Time since the session began.
@@ -189,9 +193,18 @@ impl Screen {
     /// When the terminal is gone.
     pub fn paint(&mut self, frame: &Frame, moving: bool) -> io::Result<bool> {
         let now = self.now();
-        match &self.tty {
-            Some(tty) => Ok(self.writer.paint(tty, frame, moving, now)? == 0),
-            None => Ok(true),
+        let painted = self.tty.as_ref().map_or(Ok(0), |tty| self.writer.paint(tty, frame, moving, now));
+        self.unless_gone(painted.map(|n_wrong| n_wrong == 0), true)
+    }
+
+    /// A terminal that is gone takes no bytes: that is no fault, [`wait`](Self::wait) tells of it.
+    fn unless_gone<T>(&mut self, sent: io::Result<T>, instead: T) -> io::Result<T> {
+        match sent {
+            Err(error) if error.raw_os_error() == Some(Errno::IO.raw_os_error()) => {
+                self.is_gone = true;
+                Ok(instead)
+            }
+            sent => sent,
         }
     }
 
@@ -223,10 +236,8 @@ impl Screen {
     /// When the terminal is gone.
     pub fn send_still(&mut self) -> io::Result<()> {
         let now = self.now();
-        match &self.tty {
-            Some(tty) => self.writer.send_still(tty, now),
-            None => Ok(()),
-        }
+        let sent = self.tty.as_ref().map_or(Ok(()), |tty| self.writer.send_still(tty, now));
+        self.unless_gone(sent, ())
     }
 
     /// Waits until something happens: input, a signal, a wake-up, the time `until`, or (with `for_slot`) a free
@@ -235,6 +246,9 @@ impl Screen {
     /// # Errors
     /// When the system cannot wait; a terminal that is gone is [`End::Hangup`].
     pub fn wait(&mut self, until: Option<Duration>, for_slot: bool) -> io::Result<Happened> {
+        if self.is_gone {
+            return Ok(Happened { end: Some(End::Hangup), ..Happened::default() });
+        }
         let now = self.now();
         let slot = if for_slot { self.writer.next_slot(now) } else { None };
         let deadline = self.writer.check(now);

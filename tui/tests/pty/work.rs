@@ -169,15 +169,16 @@ fn the_tutorial_begins_anew_each_time_and_is_never_a_project_opened_lately() {
     let (folder, plugins) = (super::folder(), plugins());
     for _ in 0..2 {
         let mut terminal = open("tutorial", folder.path(), &plugins);
-        terminal.wait_for_text("1/12");
+        terminal.wait_for_text("1/16");
         terminal.press(" ");
-        terminal.wait_for_text("2/12");
-        terminal.press(" .jwm");
-        terminal.wait_for_text("6/12");
-        terminal.press("l\r");
-        terminal.wait_for_text("7/12");
+        terminal.wait_for_text("2/16");
+        terminal.press(" .j");
+        terminal.wait_for_text("5/16");
+        terminal.wait_for_text("to review, 0 done");
+        terminal.press("n");
+        terminal.wait_for_text("6/16");
         terminal.press("g?");
-        terminal.wait_for_text("1/12");
+        terminal.wait_for_text("1/16");
         terminal.press("Q");
         assert!(terminal.wait_for_end());
         terminal.assert_restored();

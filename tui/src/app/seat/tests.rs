@@ -36,15 +36,3 @@ fn a_seat_that_is_out_of_date_does_no_harm() {
         assert!(state.loop_frames > 0 && state.motion.full_px_s.is_none(), "{json}");
     }
 }
-
-#[test]
-fn one_sits_down_where_there_are_tracks() {
-    for (tracks, left, found) in
-        [(0..3, 80, 80), (1..2, 80, 59), (1..2, 12, 12), (2..3, 5, 20), (2..3, 400, 99), (0..0, 80, 80)]
-    {
-        let mut state = fixture::state();
-        state.tracks = state.tracks[tracks.clone()].to_vec();
-        Seat { frame: left, ..Seat::default() }.take(&mut state);
-        assert_eq!(state.frame, found, "left at {left}, tracks {tracks:?}");
-    }
-}

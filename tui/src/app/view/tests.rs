@@ -110,7 +110,6 @@ fn screens() {
     check("queue_80x24", small, "P q", fixture::crowd);
     check("playing_80x24", small, "space", |_| {});
     check("late_80x24", small, "space", |state| state.link.late = Some([410, 3900]));
-    check("moving_80x24", small, "m l k", |state| state.zoom = 2);
     check("loop_80x24", small, "", |state| {
         fixture::press(state, "; b");
         state.dropped = Some([5, 13]);
@@ -123,7 +122,6 @@ fn screens() {
         state.tracker = None;
         state.n_ready = 60;
     });
-    check("move_80x24", small, "m 3 l", |_| {});
     check("place_80x24", small, "a", |_| {});
     check("form_80x24", small, "t r j j j", |_| {});
     check("form_120x40", large, "t r j j j", |_| {});
@@ -165,6 +163,8 @@ fn screens() {
 
 #[test]
 fn screens_of_corrections() {
+    check("move_80x24", (80, 24), "m 3 l", |_| {});
+    check("moving_80x24", (80, 24), "m l k", |state| state.zoom = 2);
     check("slide_80x24", (80, 24), "T 2 l L", |_| {});
     check("ghost_80x24", (80, 24), "z z m 3 0 l 4 j . . 2 ( *", |_| {});
     check("sketch_80x24", (80, 24), "z s 4 l . 3 l k . 3 l k . 2 l . + +", |_| {});
