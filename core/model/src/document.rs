@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::judgement::Judgement;
 use crate::over::Over;
-use crate::track::{Status, TrackId, TrackSet};
+use crate::track::{Sample, Status, TrackId, TrackSet};
 
 /// Number of a run: one use of a tracker. Runs never change once they have ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -77,6 +77,18 @@ impl Key {
     #[must_use]
     pub fn confirmed(x: f32, y: f32) -> Self {
         Self { made: Made::Confirmed, ..Self::set(x, y) }
+    }
+
+    /// A person finds this sample right: a hidden feature stays hidden. `None` where it is lost, outside or rejected,
+    /// for no place was found there.
+    #[must_use]
+    pub fn confirming(shown: &Sample) -> Option<Self> {
+        let status = match shown.status {
+            Status::Tracked | Status::Newborn => Status::Tracked,
+            Status::Occluded => Status::Occluded,
+            _ => return None,
+        };
+        Some(Self { status, ..Self::confirmed(shown.x, shown.y) })
     }
 
     /// Whether its position says where the feature is.

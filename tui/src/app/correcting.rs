@@ -48,8 +48,8 @@ pub struct Moving {
     pub from: [f32; 2],
     /// How it is moved.
     pub tool: Tool,
-    /// Frames that are made key-frames with it, as they are: the correction ends there. Image pixels.
-    pub pins: BTreeMap<u32, [f32; 2]>,
+    /// Frames that are made key-frames with it, as they are: the correction ends there.
+    pub pins: BTreeMap<u32, Key>,
     /// The frame walked to along the path, while the picture stays.
     pub walked: Option<u32>,
     /// The track and what lies below, once known.
@@ -135,11 +135,7 @@ impl Moving {
         if self.pins.is_empty() {
             return correct(shown, self.frame, to);
         }
-        let key = |(&frame, &[x, y]): (&u32, &[f32; 2])| Edit::SetKey {
-            track: self.track,
-            frame,
-            key: Key::confirmed(x, y),
-        };
+        let key = |(&frame, &key): (&u32, &Key)| Edit::SetKey { track: self.track, frame, key };
         let pins = shown.correct(self.pins.iter().map(key).collect(), "")?;
         shown.then(&pins, |shown| correct(shown, self.frame, to), "corrected")
     }

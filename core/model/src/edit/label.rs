@@ -4,7 +4,7 @@ use super::{Edit, Transaction};
 use crate::correct::Refused;
 use crate::document::{ClusteringId, Key, RunId, ShownClustering};
 use crate::judgement::Judgement;
-use crate::track::{Sample, Status, TrackId, TrackSet};
+use crate::track::{Sample, TrackId, TrackSet};
 
 impl Transaction {
     /// One edit under a line.
@@ -41,12 +41,8 @@ impl Transaction {
     /// # Errors
     /// [`Refused::Unseen`] where the feature is lost, outside or rejected: no place was found there.
     pub fn confirm_key(track: TrackId, frame: u32, shown: &Sample) -> Result<Self, Refused> {
-        let status = match shown.status {
-            Status::Tracked | Status::Newborn => Status::Tracked,
-            Status::Occluded => Status::Occluded,
-            status => return Err(Refused::Unseen { track, frame, status }),
-        };
-        let key = Key { status, ..Key::confirmed(shown.x, shown.y) };
+        let unseen = Refused::Unseen { track, frame, status: shown.status };
+        let key = Key::confirming(shown).ok_or(unseen)?;
         Ok(Self::new(
             format!("track {track}: key-frame at {frame} (confirmed)"),
             vec![Edit::SetKey { track, frame, key }],

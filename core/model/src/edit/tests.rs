@@ -193,6 +193,23 @@ fn hiding_a_run_keeps_hand_work_on_its_tracks() {
 }
 
 #[test]
+fn a_confirmed_sample_keeps_what_is_seen_of_it() {
+    for (status, becomes) in [
+        (Status::Tracked, Some(Status::Tracked)),
+        (Status::Newborn, Some(Status::Tracked)),
+        (Status::Occluded, Some(Status::Occluded)),
+        (Status::Lost, None),
+        (Status::Outside, None),
+        (Status::Rejected, None),
+    ] {
+        let shown = Sample { x: 5.0, y: 4.0, status, source: Source::Tracked, quality: Quality::default() };
+        let key = Key::confirming(&shown);
+        assert_eq!(key.map(|key| key.status), becomes, "{status:?}");
+        assert!(key.is_none_or(|key| (key.x, key.y, key.made) == (5.0, 4.0, Made::Confirmed)));
+    }
+}
+
+#[test]
 fn lines_say_what_happened() {
     let (status, source, quality) = (Status::Tracked, Source::Tracked, Quality::default());
     let seen = Sample { x: 5.0, y: 4.0, status, source, quality };

@@ -92,7 +92,7 @@ impl Moving {
         if model.at_once().is_some() {
             return None;
         }
-        let keys = self.pins.iter().map(|(&frame, &[x, y])| (frame, Key::confirmed(x, y)));
+        let keys = self.pins.iter().map(|(&frame, &key)| (frame, key));
         let keys = keys.chain([(self.frame, Key::set(to[0], to[1]))]).collect();
         Some(Wish { track: layers.id, frame: self.frame, model: *model, keys })
     }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use honami_model::correct::Layers;
+use honami_model::document::Key;
 use honami_workbench::offer::Model;
 
 use super::{Effect, Mode, State, UNDO, complain, edit, say};
@@ -105,19 +106,21 @@ pub(super) fn pin(state: &mut State) {
     let frame = moving.walked.unwrap_or(here);
     let known = moving.layers.as_ref().map(|layers| {
         let shown = layers.shown(&clip.times);
-        (shown.span().get(frame).map(|sample| [sample.x, sample.y]), shown.track().keys.contains_key(&frame))
+        (shown.span().get(frame).copied(), shown.track().keys.contains_key(&frame))
     });
     let line = match known {
         _ if frame == moving.frame => {
             "( and ) walk to another sample of the path; * makes it a key-frame".to_owned()
         }
         Some((_, true)) => format!("frame {frame} is a key-frame already: corrections end there"),
-        Some((Some(at), false)) => {
-            let word = if moving.pins.remove(&frame).is_some() {
-                "is no key-frame any more"
-            } else {
-                moving.pins.insert(frame, at);
-                "becomes a key-frame as it is: the correction ends there"
+        Some((Some(sample), false)) => {
+            let word = match Key::confirming(&sample) {
+                None => "shows the feature nowhere: what is not seen is no key-frame",
+                Some(_) if moving.pins.remove(&frame).is_some() => "is no key-frame any more",
+                Some(key) => {
+                    moving.pins.insert(frame, key);
+                    "becomes a key-frame as it is: the correction ends there"
+                }
             };
             moving.preview(&clip.times);
             format!("frame {frame} {word}")

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use honami_model::track::Status;
 use honami_workbench::offer::{Errors, LeftOut, Model, Wish};
 
 use super::tests::start;
@@ -163,4 +164,26 @@ fn press_and_find(state: &State, wish: &Wish) -> Arc<honami_model::correct::Corr
     other.held.clear();
     fixture::answer(&mut other, Effect::Offer(Ask::Ghost(Some(wish.clone()))));
     Arc::new(moving(&other).correction().unwrap().clone())
+}
+
+#[test]
+fn a_pinned_sample_stays_as_it_is_seen_and_one_that_is_not_seen_is_none() {
+    for (status, pinned) in [
+        (Status::Tracked, Some(Status::Tracked)),
+        (Status::Occluded, Some(Status::Occluded)),
+        (Status::Lost, None),
+    ] {
+        // Beyond the last key-frame: between two, the curve would be seen.
+        let mut state = start("frame=50");
+        press(&mut state, "m");
+        let Mode::Move(moving) = &mut state.mode else { panic!("{:?}", state.mode) };
+        let mut layers = moving.layers.as_deref().unwrap().clone();
+        for (_, span) in &mut layers.runs {
+            span.samples.iter_mut().for_each(|sample| sample.status = status);
+        }
+        moving.layers = Some(Arc::new(layers));
+        press(&mut state, "5 ) *");
+        let Mode::Move(moving) = &state.mode else { panic!("{:?}", state.mode) };
+        assert_eq!(moving.pins.values().map(|key| key.status).next(), pinned, "{status:?}");
+    }
 }

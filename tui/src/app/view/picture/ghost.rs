@@ -37,8 +37,8 @@ impl Canvas<'_> {
                 self.mark([sample.x, sample.y], &RING, GHOST, '@');
             }
         }
-        for (_, at) in moving.pins.iter().filter(|(f, _)| near(**f)) {
-            self.mark(*at, &[(0, 0)], KEY, '*');
+        for (_, key) in moving.pins.iter().filter(|(f, _)| near(**f)) {
+            self.mark([key.x, key.y], &[(0, 0)], KEY, '*');
         }
         if let Some(at) = moving.walked.and_then(|f| row?.at(f)) {
             self.mark(at, &RING, DARK, ' ');
