@@ -125,6 +125,36 @@ pub fn assign<T: ParamType>(field: &mut T, id: &str, value: Value<'_>) -> Result
     Ok(())
 }
 
+/// Parameters of a struct and of those it takes in.
+#[doc(hidden)]
+#[must_use]
+pub const fn joined_len(parts: &[&[Param]]) -> usize {
+    let (mut i, mut n) = (0, 0);
+    while i < parts.len() {
+        n += parts[i].len();
+        i += 1;
+    }
+    n
+}
+
+/// All of them in one list; `N` is [`joined_len`].
+#[doc(hidden)]
+#[must_use]
+pub const fn joined<const N: usize>(parts: &[&[Param]]) -> [Param; N] {
+    const BLANK: Param = Param { id: "", kind: "", doc: &[], default: "", attributes: &[], entries: &[] };
+    let mut all = [BLANK; N];
+    let (mut i, mut n) = (0, 0);
+    while i < parts.len() {
+        let mut k = 0;
+        while k < parts[i].len() {
+            all[n] = parts[i][k];
+            (k, n) = (k + 1, n + 1);
+        }
+        i += 1;
+    }
+    all
+}
+
 /// Declares parameters: a struct with `Default`, and its [`Params`].
 ///
 /// Doc comments become the parameters' descriptions. The default comes first, then `=> { … }` with what there is to say
@@ -146,36 +176,73 @@ pub fn assign<T: ParamType>(field: &mut T, id: &str, value: Value<'_>) -> Result
 /// }
 /// assert_eq!(Matching::default().radius, 10);
 /// ```
+///
+/// What several plugins share is a struct of its own, taken in after the others by `..field: Struct`. The host sees one
+/// flat list:
+///
+/// ```
+/// # use honami_plugin::Params;
+/// honami_plugin::params! {
+///     /// Where points are looked for.
+///     pub struct Looking {
+///         /// The most points.
+///         most: i64 = 100 => {},
+///     }
+/// }
+/// honami_plugin::params! {
+///     pub struct Settings {
+///         /// Radius of the window.
+///         radius: i64 = 10 => {},
+///         ..looking: Looking,
+///     }
+/// }
+/// assert_eq!(Settings::SCHEMA.iter().map(|p| p.id).collect::<Vec<_>>(), ["radius", "most"]);
+/// assert_eq!(Settings::default().looking.most, 100);
+/// ```
 #[macro_export]
 macro_rules! params {
-    ($(#[doc = $struct_doc:expr])* $vis:vis struct $name:ident { $(
-        $(#[doc = $doc:expr])* $id:ident : $ty:ty = $default:expr => { $($attributes:tt)* }
-    ),* $(,)? }) => {
+    ($(#[doc = $struct_doc:expr])* $vis:vis struct $name:ident {
+        $( $(#[doc = $doc:expr])* $id:ident : $ty:ty = $default:expr => { $($attributes:tt)* } ),* $(,)?
+        $( .. $shared:ident : $shared_ty:ty , )*
+    }) => {
         $(#[doc = $struct_doc])*
         #[derive(Clone, Debug, PartialEq)]
-        $vis struct $name { $( $(#[doc = $doc])* pub $id: $ty, )* }
+        $vis struct $name {
+            $( $(#[doc = $doc])* pub $id: $ty, )*
+            $( #[doc = concat!("See [`", stringify!($shared_ty), "`].")] pub $shared: $shared_ty, )*
+        }
 
         impl ::core::default::Default for $name {
             fn default() -> Self {
-                Self { $( $id: <$ty as $crate::ParamType>::from_literal($default), )* }
+                Self {
+                    $( $id: <$ty as $crate::ParamType>::from_literal($default), )*
+                    $( $shared: ::core::default::Default::default(), )*
+                }
             }
         }
 
         impl $crate::Params for $name {
-            const SCHEMA: &'static [$crate::Param] = &[ $( $crate::Param {
-                id: stringify!($id),
-                kind: <$ty as $crate::ParamType>::KIND,
-                doc: &[$($doc),*],
-                default: stringify!($default),
-                attributes: $crate::__attributes!([] $($attributes)*),
-                entries: <$ty as $crate::ParamType>::ENTRIES,
-            }, )* ];
+            const SCHEMA: &'static [$crate::Param] = {
+                const PARTS: &[&[$crate::Param]] = &[
+                    &[ $( $crate::Param {
+                        id: stringify!($id),
+                        kind: <$ty as $crate::ParamType>::KIND,
+                        doc: &[$($doc),*],
+                        default: stringify!($default),
+                        attributes: $crate::__attributes!([] $($attributes)*),
+                        entries: <$ty as $crate::ParamType>::ENTRIES,
+                    }, )* ],
+                    $( <$shared_ty as $crate::Params>::SCHEMA, )*
+                ];
+                &$crate::params::joined::<{ $crate::params::joined_len(PARTS) }>(PARTS)
+            };
 
             fn set(&mut self, id: &str, value: $crate::Value<'_>) -> $crate::Result<()> {
                 match id {
-                    $( stringify!($id) => $crate::params::assign(&mut self.$id, id, value), )*
-                    _ => Ok(()),
+                    $( stringify!($id) => $crate::params::assign(&mut self.$id, id, value)?, )*
+                    _ => { $( $crate::Params::set(&mut self.$shared, id, value)?; )* }
                 }
+                Ok(())
             }
         }
     };

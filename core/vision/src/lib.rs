@@ -8,6 +8,7 @@
 //! any number of threads and at every SIMD level.
 
 pub mod detect;
+pub mod field;
 pub mod klt;
 pub mod ncc;
 pub mod pyramid;
