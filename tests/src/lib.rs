@@ -28,7 +28,7 @@ pub fn program() -> &'static Path {
 
 fn build() -> Option<PathBuf> {
     let output = Command::new(env!("CARGO"))
-        .args(["build", "--workspace", "--message-format=json", "--quiet"])
+        .args(["build", "--message-format=json", "--quiet"])
         .current_dir(root())
         .stderr(Stdio::inherit())
         .output()

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use anyhow::Context as _;
 
+use crate::BUILD;
 use crate::shell::{Step, built, cargo, target_dir};
-use crate::{BUILD, SHIPPED};
 
 /// Name, what it measures, and how to run it.
 type Bench = (&'static str, &'static str, fn(&[&str]) -> anyhow::Result<()>);
@@ -52,7 +52,7 @@ fn trackers(args: &[&str]) -> anyhow::Result<()> {
 
 /// The same clip and points for both, at the three levels; the baseline that tracks nothing is in each table.
 fn accuracy(args: &[&str]) -> anyhow::Result<()> {
-    cargo(BUILD).args(SHIPPED).run()?;
+    cargo(BUILD).run()?;
     let seed = args.first().copied().unwrap_or("1");
     let folder = target_dir()?.join("bench").join(format!("accuracy-{seed}"));
     if folder.exists() {
@@ -121,7 +121,7 @@ fn review(args: &[&str]) -> anyhow::Result<()> {
 
 /// An example that works in projects in a folder of its own, with the shipped plugins.
 fn on_project(name: &str, args: &[&str]) -> anyhow::Result<()> {
-    cargo(BUILD).args(SHIPPED).run()?;
+    cargo(BUILD).run()?;
     let folder = target_dir()?.join("bench").join(name);
     fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
     let plugins = target_dir()?.join("release");

@@ -22,8 +22,8 @@ cargo xtask <command>
 /// How they are built to be used.
 const BUILD: &[&str] = &["build", "--release"];
 
-/// The packages of a working installation: the program and the plugins it ships.
-const SHIPPED: [&str; 6] = ["-p", "honami", "-p", "honami-tracker-klt", "-p", "honami-clusterer-movement"];
+/// The packages of a working installation: the program and what the demo uses of the plugins.
+const DEMO: [&str; 6] = ["-p", "honami", "-p", "honami-tracker-klt", "-p", "honami-clusterer-movement"];
 
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();
@@ -55,7 +55,7 @@ fn main() -> ExitCode {
 /// Builds the program and its plugins and runs the demo.
 fn demo(args: &[&str]) -> anyhow::Result<()> {
     system::need_compiler()?;
-    cargo(BUILD).args(SHIPPED).run()?;
+    cargo(BUILD).args(DEMO).run()?;
     shell::built("release", "honami")?.arg("demo").args(args).run()
 }
 
@@ -64,15 +64,13 @@ fn test(args: &[&str]) -> anyhow::Result<()> {
     system::need_compiler()?;
     system::want_ffmpeg();
     // The end-to-end tests run the real program with the real plugins: build them first.
-    cargo(&["build", "--workspace"]).run()?;
-    cargo(&["test", "--workspace"]).args(args.iter().copied()).run()
+    cargo(&["build"]).run()?;
+    cargo(&["test"]).args(args.iter().copied()).run()
 }
 
 /// Everything that a reviewer should not have to say.
 fn lint() -> anyhow::Result<()> {
     cargo(&["fmt", "--all", "--check"]).run()?;
-    cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]).run()?;
-    cargo(&["doc", "--workspace", "--no-deps", "--document-private-items"])
-        .env("RUSTDOCFLAGS", "-D warnings")
-        .run()
+    cargo(&["clippy", "--all-targets", "--", "-D", "warnings"]).run()?;
+    cargo(&["doc", "--no-deps", "--document-private-items"]).env("RUSTDOCFLAGS", "-D warnings").run()
 }

@@ -1,5 +1,9 @@
 //! Runs plugins without a host, for the tests of their crates.
 
+mod suite;
+
+pub use suite::suite;
+
 use crate::clusterer::{Clusterer, Clustering, Tracks};
 use crate::tracker::{Frame, Point, Points, Seed, Stream, Tracker};
 use crate::{Cx, Listener, Result};

@@ -74,7 +74,7 @@ impl Tracker for Klt {
         }
     }
 
-    fn push(&mut self, frame: &Frame<'_>, out: &mut Points, _: &Cx<'_>) -> Result<()> {
+    fn push(&mut self, frame: &Frame<'_>, out: &mut Points, cx: &Cx<'_>) -> Result<()> {
         let gray = picture(frame);
         let Some([last, spare]) = &mut self.pyramids else {
             let first = Pyramid::new(&gray, self.params.levels, self.params.radius_px);
@@ -94,40 +94,48 @@ impl Tracker for Klt {
         }
         std::mem::swap(last, spare);
         last.fill(&gray);
-        self.follow(out);
-        Ok(())
+        self.follow(out, cx)
     }
 }
 
+/// Points that are followed between two looks at whether to go on: some ten milliseconds.
+const POINTS_A_LOOK: usize = 2048;
+
 impl Klt {
     /// Adds a row for every point, in the order of their ids.
-    fn follow(&mut self, out: &mut Points) {
-        let Some([now, before]) = &self.pyramids else { return };
-        let seen = |p: &Live| p.status == Status::Tracked;
-        let from: Vec<_> = self.points.values().filter(|p| seen(p)).map(|p| p.at).collect();
-        let there = klt::track(before, now, &from, None, &self.params, self.n_threads);
-        let to: Vec<_> = there.iter().map(|flow| flow.to).collect();
-        let back = klt::track(now, before, &to, None, &self.params, self.n_threads);
-        let mut steps = there.iter().zip(&back);
-        for (&id, point) in &mut self.points {
-            let mut row = Point::new(id, point.at[0], point.at[1], point.status);
-            if seen(point)
-                && let Some((there, back)) = steps.next()
-            {
-                if there.state == State::Tracked {
-                    let error = (back.to[0] - row.x).hypot(back.to[1] - row.y);
-                    row.fb = (back.state == State::Tracked).then_some(error);
-                    row.ncc = self.ncc.compare(&before.picture(), point.at, &now.picture(), there.to);
+    fn follow(&mut self, out: &mut Points, cx: &Cx<'_>) -> Result<()> {
+        let Some([now, before]) = &self.pyramids else { return Ok(()) };
+        let mut live: Vec<_> = self.points.iter_mut().collect();
+        let n = live.len();
+        for (k, part) in live.chunks_mut(POINTS_A_LOOK).enumerate() {
+            cx.progress((k * POINTS_A_LOOK) as f64 / n as f64, "following points")?;
+            let seen = |p: &Live| p.status == Status::Tracked;
+            let from: Vec<_> = part.iter().filter(|(_, p)| seen(p)).map(|(_, p)| p.at).collect();
+            let there = klt::track(before, now, &from, None, &self.params, self.n_threads);
+            let to: Vec<_> = there.iter().map(|flow| flow.to).collect();
+            let back = klt::track(now, before, &to, None, &self.params, self.n_threads);
+            let mut steps = there.iter().zip(&back);
+            for (id, point) in part {
+                let mut row = Point::new(**id, point.at[0], point.at[1], point.status);
+                if seen(point)
+                    && let Some((there, back)) = steps.next()
+                {
+                    if there.state == State::Tracked {
+                        let error = (back.to[0] - row.x).hypot(back.to[1] - row.y);
+                        row.fb = (back.state == State::Tracked).then_some(error);
+                        row.ncc = self.ncc.compare(&before.picture(), point.at, &now.picture(), there.to);
+                    }
+                    row.status = self.settings.judge(there.state, row.fb, row.ncc);
+                    point.status = row.status;
+                    if row.status == Status::Tracked {
+                        point.at = there.to;
+                        [row.x, row.y] = there.to;
+                    }
                 }
-                row.status = self.settings.judge(there.state, row.fb, row.ncc);
-                point.status = row.status;
-                if row.status == Status::Tracked {
-                    point.at = there.to;
-                    [row.x, row.y] = there.to;
-                }
+                out.add(row);
             }
-            out.add(row);
         }
+        Ok(())
     }
 }
 

@@ -42,6 +42,11 @@ fn truth(from: &Seed, t: usize) -> [f32; 2] {
 }
 
 #[test]
+fn bad_input_is_borne() {
+    testing::suite::<Klt>(&Settings::default());
+}
+
+#[test]
 fn points_are_followed_measured_lost_and_left() {
     let clip = clip(8);
     let seeds = [seed(4, 150.2, 100.8), seed(9, 57.0, 62.0), seed(7, 232.0, 90.0)];
