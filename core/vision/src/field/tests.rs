@@ -19,7 +19,7 @@ fn a_grid_is_as_far_from_either_edge() {
         let grid = Grid::over(width, height, step);
         assert_eq!((grid.origin, grid.nx, grid.ny), want, "{width}x{height} every {step}");
         let last = grid.node(grid.nx - 1, grid.ny - 1);
-        assert_eq!(last, [width as f32 - 1.0 - want.0[0], height as f32 - 1.0 - want.0[1]]);
+        assert_eq!((width as f32 - 1.0 - last[0], height as f32 - 1.0 - last[1]), want.0.into());
         assert_eq!(grid.nodes().count(), grid.len());
     }
 }

@@ -1,0 +1,38 @@
+//! What tracker plugins share: parameters that mean the same in all of them, the detector, and points that follow
+//! dense motion.
+//!
+//! A parameter group is taken in by `params!` with `..detection: Detection,`. A plugin that measures dense motion
+//! gives a [`Motion`] and exports [`Particles`] of it; one that follows points by itself uses the pieces.
+
+mod detection;
+mod losing;
+mod particles;
+
+pub use detection::{Corners, Detection};
+pub use losing::Losing;
+pub use particles::{Motion, Particles, Trust};
+
+use honami_plugin::{Error, Frame, Result};
+use honami_vision::Gray;
+
+/// The picture of a frame, as the algorithms take it.
+#[must_use]
+pub fn picture<'a>(frame: &Frame<'a>) -> Gray<'a> {
+    let honami_plugin::Gray { data, width, height, stride } = frame.gray;
+    Gray { data, width, height, stride }
+}
+
+/// Refuses a frame of another size than those before, `(width, height)`.
+///
+/// # Errors
+/// When its size is another.
+pub fn check_size(frame: &Frame<'_>, before: (u32, u32)) -> Result<()> {
+    let (width, height) = (frame.gray.width, frame.gray.height);
+    if (width, height) == before {
+        return Ok(());
+    }
+    Err(Error::data(format!(
+        "frame {} is {width}x{height}, those before were {}x{}: split the clip where its size changes",
+        frame.index, before.0, before.1
+    )))
+}
