@@ -22,7 +22,8 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("honami-motion", &["honami-model"]),
     ("honami-review", &["honami-model", "honami-vision"]),
     ("honami-synth", &["honami-model"]),
-    ("honami-tracker-*", &["honami-plugin", "honami-vision"]),
+    ("honami-follow", &["honami-plugin", "honami-vision"]),
+    ("honami-tracker-*", &["honami-plugin", "honami-vision", "honami-follow"]),
     ("honami-clusterer-*", &["honami-plugin", "honami-motion"]),
     (
         "honami-workbench",

@@ -1,10 +1,11 @@
 //! Dense motion: the tracker's own search from the nodes of a grid, there and back.
 
+use honami_follow::picture;
 use honami_plugin::{Cx, Field, Frame, Result};
+use honami_vision::field::Grid;
 use honami_vision::klt::{self, State};
 use honami_vision::pyramid::Pyramid;
 
-use crate::picture;
 use crate::settings::Settings;
 
 /// Nodes are a radius apart, so that windows overlap by half: closer ones would mostly see the same. At least, pixels:
@@ -23,13 +24,8 @@ pub(crate) fn field(
     let params = settings.tracking();
     let [from, to] = [from, to].map(picture);
     let step = params.radius_px.max(STEP_PX);
-    let n = [from.width, from.height].map(|size| size.div_ceil(step));
-    // As far from one edge as from the other.
-    let origin =
-        [0, 1].map(|axis| ([from.width, from.height][axis] - 1) as f32 - ((n[axis] - 1) * step) as f32);
-    let origin = origin.map(|rest| rest / 2.0);
-    let node = |i: u32, axis: usize| origin[axis] + (i * step) as f32;
-    let nodes: Vec<_> = (0..n[1]).flat_map(|y| (0..n[0]).map(move |x| [node(x, 0), node(y, 1)])).collect();
+    let grid = Grid::over(from.width, from.height, step);
+    let nodes: Vec<_> = grid.nodes().collect();
 
     let [from, to] = [from, to].map(|gray| Pyramid::new(&gray, params.levels, params.radius_px));
     let there = klt::track(&from, &to, &nodes, None, &params, max_threads as usize);
@@ -42,5 +38,5 @@ pub(crate) fn field(
         if is_found && is_back { (there.to[0] - at[0], there.to[1] - at[1]) } else { (0.0, 0.0) }
     };
     let (u, v) = nodes.iter().zip(&there).zip(&back).map(moved).unzip();
-    Ok(Field { origin, step: step as f32, nx: n[0], ny: n[1], u, v })
+    Ok(Field { origin: grid.origin, step: grid.step_px, nx: grid.nx, ny: grid.ny, u, v })
 }

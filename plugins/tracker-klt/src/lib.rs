@@ -7,14 +7,13 @@ mod tests;
 
 use std::collections::BTreeMap;
 
+use honami_follow::{check_size, picture};
 use honami_plugin::{
-    Cx, Detect, DetectFn, Error, Feature, FieldFn, Frame, Info, Point, Points, Result, Seed, Status, Stream,
-    Tracker, export,
+    Cx, DetectFn, FieldFn, Frame, Info, Point, Points, Result, Seed, Status, Stream, Tracker, export,
 };
 use honami_vision::klt::{self, State};
 use honami_vision::ncc::Ncc;
 use honami_vision::pyramid::Pyramid;
-use honami_vision::{Gray, detect};
 use settings::Settings;
 
 /// Follows each point from frame to frame, then back again to see whether it returns.
@@ -48,7 +47,8 @@ impl Tracker for Klt {
         cite: &["Lucas, Kanade 1981", "Bouguet 2000", "Shi, Tomasi 1994", "Kalal, Mikolajczyk, Matas 2010"],
         ..Info::NEW
     };
-    const DETECT: Option<DetectFn<Settings>> = Some(features);
+    const DETECT: Option<DetectFn<Settings>> =
+        Some(|settings, wanted, _| settings.detection.features(wanted));
     const FIELD: Option<FieldFn<Settings>> = Some(dense::field);
 
     fn begin(settings: &Settings, stream: &Stream, _: &Cx<'_>) -> Result<Self> {
@@ -82,16 +82,8 @@ impl Tracker for Klt {
             self.points.iter().for_each(|(&id, p)| out.add(Point::new(id, p.at[0], p.at[1], p.status)));
             return Ok(());
         };
-        if (gray.width, gray.height) != (last.picture().width, last.picture().height) {
-            return Err(Error::data(format!(
-                "frame {} is {}x{}, those before were {}x{}: split the clip where its size changes",
-                frame.index,
-                gray.width,
-                gray.height,
-                last.picture().width,
-                last.picture().height
-            )));
-        }
+        let before = last.picture();
+        check_size(frame, (before.width, before.height))?;
         std::mem::swap(last, spare);
         last.fill(&gray);
         self.follow(out, cx)
@@ -137,21 +129,6 @@ impl Klt {
         }
         Ok(())
     }
-}
-
-fn picture<'a>(frame: &Frame<'a>) -> Gray<'a> {
-    let honami_plugin::Gray { data, width, height, stride } = frame.gray;
-    Gray { data, width, height, stride }
-}
-
-/// Corners of a frame, strongest first.
-fn features(settings: &Settings, wanted: &Detect<'_>, _: &Cx<'_>) -> Result<Vec<Feature>> {
-    let gray = picture(&wanted.frame);
-    let mask = wanted.mask.map(|m| (0..m.height).flat_map(|y| m.row(y)).copied().collect::<Vec<u8>>());
-    let occupied: Vec<_> = wanted.points.iter().map(|p| [p.x, p.y]).collect();
-    let corners =
-        detect::corners(&gray, mask.as_deref(), &occupied, &settings.detection(wanted.max_features));
-    Ok(corners.iter().map(|c| Feature { x: c.at[0], y: c.at[1], score: c.score }).collect())
 }
 
 export! {

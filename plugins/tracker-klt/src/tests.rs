@@ -1,6 +1,7 @@
 //! The plugin as a host drives it, on pictures whose motion is known.
 
-use honami_plugin::{Gray, testing};
+use honami_follow::{Detection, Losing};
+use honami_plugin::{Detect, Gray, testing};
 use honami_vision::texture;
 
 use super::*;
@@ -37,6 +38,10 @@ fn seed(id: u32, x: f32, y: f32) -> Seed {
     Seed { id, x, y }
 }
 
+fn losing(lose_fb: f64, lose_ncc: f64) -> Settings {
+    Settings { losing: Losing { lose_fb, lose_ncc }, ..Settings::default() }
+}
+
 fn truth(from: &Seed, t: usize) -> [f32; 2] {
     [from.x + (STEP[0] * t as f64) as f32, from.y + (STEP[1] * t as f64) as f32]
 }
@@ -50,7 +55,7 @@ fn bad_input_is_borne() {
 fn points_are_followed_measured_lost_and_left() {
     let clip = clip(8);
     let seeds = [seed(4, 150.2, 100.8), seed(9, 57.0, 62.0), seed(7, 232.0, 90.0)];
-    let strict = Settings { lose_fb: 2.0, ..Settings::default() };
+    let strict = losing(2.0, 0.0);
     let stream = testing::stream(WIDTH, HEIGHT);
     let rows = testing::track::<Klt>(&strict, &stream, &seeds, frames(&clip)).unwrap();
     for (t, rows) in rows[..8].iter().enumerate() {
@@ -108,9 +113,9 @@ fn limits_lose_points() {
         rows[1].iter().filter(|r| r.status == Status::Tracked).count()
     };
     assert_eq!(tracked(&Settings::default()), 40);
-    assert_eq!(tracked(&Settings { lose_fb: 0.5, lose_ncc: 0.9, ..Settings::default() }), 40);
-    assert!(tracked(&Settings { lose_fb: 1e-4, ..Settings::default() }) < 20);
-    assert!(tracked(&Settings { lose_ncc: 1.0, ..Settings::default() }) < 20);
+    assert_eq!(tracked(&losing(0.5, 0.9)), 40);
+    assert!(tracked(&losing(1e-4, 0.0)) < 20);
+    assert!(tracked(&losing(0.0, 1.0)) < 20);
 }
 
 #[test]
@@ -135,13 +140,13 @@ fn detection_minds_mask_points_and_both_maxima() {
     let there = [seed(0, 60.0, 90.0)];
     let wanted =
         Detect { frame, max_features: 500, mask: Some(mask), points: &there, max_threads: 1, seed: 0 };
-    let settings = Settings { distance: 10.0, quality: 0.001, ..Settings::default() };
-    let found = features(&settings, &wanted, &testing::cx()).unwrap();
+    let detection = Detection { distance: 10.0, quality: 0.001, ..Detection::default() };
+    let found = detection.features(&wanted).unwrap();
     assert!(found.len() > 20 && found.is_sorted_by(|a, b| a.score >= b.score));
     assert!(found.iter().all(|f| f.x < 120.0 && (f.x - 60.0).hypot(f.y - 90.0) >= 10.0));
-    let few = Settings { max_features: 7, ..settings };
-    assert_eq!(features(&few, &wanted, &testing::cx()).unwrap(), found[..7]);
-    assert_eq!(features(&few, &Detect { max_features: 3, ..wanted }, &testing::cx()).unwrap(), found[..3]);
+    let few = Detection { max_features: 7, ..detection };
+    assert_eq!(few.features(&wanted).unwrap(), found[..7]);
+    assert_eq!(few.features(&Detect { max_features: 3, ..wanted }).unwrap(), found[..3]);
 }
 
 #[test]

@@ -1,5 +1,4 @@
 //! Points through motion that is given, not measured: what the tracker makes of it.
-#![expect(clippy::unwrap_used, reason = "what fails here is the test")]
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -22,7 +21,8 @@ params! {
 }
 
 impl Motion for Given {
-    const INFO: Info = Info { id: "org.example.given", name: "Given", doc: "u = brightness / 10", ..Info::NEW };
+    const INFO: Info =
+        Info { id: "org.example.given", name: "Given", doc: "u = brightness / 10", ..Info::NEW };
     type Kept = Vec<u8>;
 
     fn keep(&self, picture: &Gray<'_>) -> Vec<u8> {
