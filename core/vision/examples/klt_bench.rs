@@ -10,6 +10,8 @@
 mod frames;
 #[path = "klt_bench/peer.rs"]
 mod peer;
+#[path = "klt_bench/two_way.rs"]
+mod two_way;
 
 use std::time::Instant;
 
@@ -69,6 +71,7 @@ fn main() -> Result<(), Failure> {
     let ours = bench.positions();
     let theirs = peer.as_mut().map(Peer::positions).transpose()?;
     report["positions"] = positions(&frames, &points, &ours, theirs.as_deref());
+    report["there_and_back"] = two_way::two_way(&options.params, options.repeats);
     println!("{report:#}");
     Ok(())
 }
