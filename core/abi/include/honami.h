@@ -1,4 +1,4 @@
-/* honami.h - the contract between honami and its plugins, ABI 1.0.
+/* honami.h - the contract between honami and its plugins, ABI 1.1.
  *
  * A plugin is a shared library that exports ONE function, honami_library_v1, and carries its manifest (JSON: names,
  * kinds, parameters) as an ELF note, so that it can be listed and its form drawn without running any of its code.
@@ -44,7 +44,7 @@ extern "C" {
 #endif
 
 #define HONAMI_ABI_MAJOR 1
-#define HONAMI_ABI_MINOR 0
+#define HONAMI_ABI_MINOR 1
 
 /* Size of struct T up to and including field f: what a maker who knew f, but nothing after it, writes to struct_size. */
 #define HONAMI_SIZE_TO(T, f) ((uint32_t)(offsetof(T, f) + sizeof(((T *)0)->f)))
@@ -260,6 +260,9 @@ typedef const honami_library *(*honami_library_v1_fn)(const honami_host_info *ho
 
 #define HONAMI_GRAY8 1  /* a byte a pixel: luma as coded */
 
+#define HONAMI_RANGE_LIMITED 1  /* 16 is black and 235 white, chroma reaches from 16 to 240 */
+#define HONAMI_RANGE_FULL 2     /* 0 is black and 255 white, chroma reaches over the whole byte */
+
 /* A picture. Row y begins at data + y * stride. Not to be kept after the call. */
 typedef struct honami_frame {
   uint32_t struct_size;
@@ -270,6 +273,18 @@ typedef struct honami_frame {
   const uint8_t *data;
   int64_t index;   /* frame number in the clip, from 0 */
   double time_s;   /* presentation time, seconds */
+
+  /* From here on since 1.1: HONAMI_HAS(frame, honami_frame, chroma_height).
+   * Blue and red difference as coded, a byte a sample, 128 is none; both NULL where the clip has no colour. Row j begins
+   * at cb + j * chroma_stride; pixel (x, y) has the sample (x * chroma_width / width, y * chroma_height / height), both
+   * rounded down. */
+  const uint8_t *cb;
+  const uint8_t *cr;
+  int64_t chroma_stride;  /* bytes from a row to the next of either plane, at least a row of samples */
+  uint32_t range;         /* what the bytes mean: HONAMI_RANGE_LIMITED ..., or 0 where that is not known */
+  uint32_t reserved;
+  uint32_t chroma_width;  /* samples, at most the frame's pixels; today half of them, rounded up (4:2:0) */
+  uint32_t chroma_height;
 } honami_frame;
 
 /* What is known of a stream before its first frame. Frames may be left out, but their order is the direction's. */

@@ -82,8 +82,9 @@ layout! {
         crate::Library = "honami_library", 32, 8 {
             struct_size 0 4, abi_minor 4 4, manifest 8 8, manifest_len 16 8, create 24 8,
         }
-        crate::Frame = "honami_frame", 48, 8 {
+        crate::Frame = "honami_frame", 88, 8 {
             struct_size 0 4, pixel 4 4, width 8 4, height 12 4, stride 16 8, data 24 8, index 32 8, time_s 40 8,
+            cb 48 8, cr 56 8, chroma_stride 64 8, range 72 4, reserved 76 4, chroma_width 80 4, chroma_height 84 4,
         }
         crate::StreamInfo = "honami_stream_info", 56, 8 {
             struct_size 0 4, pixel 4 4, width 8 4, height 12 4, fps 16 8, nframes 24 8, direction 32 4,
@@ -158,6 +159,8 @@ pub const NUMBERS: &[(&str, i64)] = &[
     ("HONAMI_RECT", crate::kind::RECT as i64),
     ("HONAMI_SEED", crate::kind::SEED as i64),
     ("HONAMI_GRAY8", crate::GRAY8 as i64),
+    ("HONAMI_RANGE_LIMITED", crate::range::LIMITED as i64),
+    ("HONAMI_RANGE_FULL", crate::range::FULL as i64),
     ("HONAMI_LATENCY_ALL", crate::LATENCY_ALL as i64),
 ];
 

@@ -20,7 +20,7 @@ use core::ffi::CStr;
 /// The major version: a different one is a different exported symbol.
 pub const ABI_MAJOR: u32 = 1;
 /// The newest minor of it that this mirror knows.
-pub const ABI_MINOR: u32 = 0;
+pub const ABI_MINOR: u32 = 1;
 /// The one symbol that a plugin library exports.
 pub const LIBRARY_SYMBOL: &CStr = c"honami_library_v1";
 /// Section of the ELF note with the manifest.
@@ -128,6 +128,14 @@ pub mod interface {
 
 /// A byte a pixel, luma as coded.
 pub const GRAY8: u32 = 1;
+
+/// Which bytes mean black and white.
+pub mod range {
+    #![allow(missing_docs, reason = "documented in honami.h, where their meaning is normative")]
+    pub const LIMITED: u32 = 1;
+    pub const FULL: u32 = 2;
+}
+
 /// `latency` of a tracker whose results all come in `end`.
 pub const LATENCY_ALL: u32 = u32::MAX;
 /// `fb` where the forward-backward error was not measured.

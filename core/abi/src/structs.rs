@@ -1,4 +1,4 @@
-//! The structs of ABI 1.0, field by field as in `honami.h`; function pointers may be null there, so they are `Option`s.
+//! The structs of ABI 1.1, field by field as in `honami.h`; function pointers may be null there, so they are `Option`s.
 #![allow(missing_docs, reason = "documented in honami.h, where their meaning is normative")]
 
 use crate::Code;
@@ -93,6 +93,13 @@ pub struct Frame {
     pub data: *const u8,
     pub index: i64,
     pub time_s: f64,
+    pub cb: *const u8,
+    pub cr: *const u8,
+    pub chroma_stride: i64,
+    pub range: u32,
+    pub reserved: u32,
+    pub chroma_width: u32,
+    pub chroma_height: u32,
 }
 
 #[repr(C)]

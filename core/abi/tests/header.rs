@@ -4,13 +4,16 @@
 
 use honami_abi::layout::{DRAFT, FLOATS, IDS, NUMBERS, STABLE, Struct};
 use sha2::{Digest, Sha256};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Of `abi/1.0/honami.h`. It never changes: what grows is `include/honami.h`, under another minor.
-const FROZEN_1_0_SHA256: &str = "2c2dc1eeb9df65b2b1c5c85af35a0948c4073109a9adac9846e97de6a1e3f8d3";
+/// Of `abi/1.n/honami.h`, by minor. They never change: what grows is `include/honami.h`, under another minor.
+const FROZEN_SHA256: [&str; 2] = [
+    "2c2dc1eeb9df65b2b1c5c85af35a0948c4073109a9adac9846e97de6a1e3f8d3",
+    "775abf6d6ce64236071ea75385a48076d4c6ed2d9a8fdd97c8d63fc3646c155c",
+];
 
 fn root(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
@@ -116,16 +119,42 @@ fn the_table_has_every_struct_number_and_id_of_the_headers() {
 }
 
 #[test]
-fn the_frozen_header_is_the_one_that_was_frozen() {
-    let frozen = read("abi/1.0/honami.h");
-    let hash: String = Sha256::digest(&frozen).iter().map(|byte| format!("{byte:02x}")).collect();
-    assert_eq!(
-        hash, FROZEN_1_0_SHA256,
-        "abi/1.0/honami.h is frozen: bring it back, and grow include/honami.h"
-    );
-    if honami_abi::ABI_MINOR == 0 {
-        assert_eq!(read("include/honami.h"), frozen, "at minor 0 both are the same");
+fn the_frozen_headers_are_those_that_were_frozen() {
+    for (minor, wanted) in FROZEN_SHA256.iter().enumerate() {
+        let path = format!("abi/1.{minor}/honami.h");
+        let hash: String = Sha256::digest(read(&path)).iter().map(|byte| format!("{byte:02x}")).collect();
+        assert_eq!(hash, *wanted, "{path} is frozen: bring it back, and grow include/honami.h");
     }
+    let newest = format!("abi/1.{}/honami.h", honami_abi::ABI_MINOR);
+    assert_eq!(honami_abi::ABI_MINOR as usize, FROZEN_SHA256.len() - 1, "every minor is frozen");
+    assert_eq!(read("include/honami.h"), read(&newest), "the header of today is that of the newest minor");
+}
+
+/// Old structs are the first part of new ones: nothing in a frozen header may be taken away or turned.
+#[test]
+fn a_newer_header_has_all_fields_of_an_older_one_in_the_same_places() {
+    for minor in 0..FROZEN_SHA256.len() {
+        let (older, newer) = (read(&format!("abi/1.{minor}/honami.h")), read("include/honami.h"));
+        for (name, fields) in structs(&older) {
+            let now = structs(&newer).remove(&name).unwrap();
+            assert_eq!(now[..fields.len()], fields, "{name} of 1.{minor}");
+        }
+    }
+}
+
+/// The declarations of every struct of a header, in order, without comments.
+fn structs(header: &str) -> BTreeMap<String, Vec<String>> {
+    let pieces = header.split("/*").enumerate();
+    let code: String =
+        pieces.map(|(k, piece)| if k == 0 { piece } else { piece.split_once("*/").unwrap().1 }).collect();
+    let bodies = code.split("struct ").filter_map(|part| {
+        let (name, rest) = part.split_once(" {")?;
+        let (body, _) = rest.split_once('}')?;
+        let one_line = |field: &str| field.split_whitespace().collect::<Vec<_>>().join(" ");
+        let fields = body.split(';').map(one_line).filter(|field| !field.is_empty()).collect();
+        name.starts_with("honami_").then(|| (name.to_owned(), fields))
+    });
+    bodies.collect()
 }
 
 #[test]

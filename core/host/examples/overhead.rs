@@ -76,7 +76,7 @@ fn push_ns(registry: &Registry, plugin: &str, n_points: u32) -> Result<f64, Box<
     let start = Instant::now();
     for n in 0..PUSHES {
         let index = i64::from(n);
-        tracker.push(&FrameView { gray, index, time_s: f64::from(n) }, &cx)?;
+        tracker.push(&FrameView { gray, chroma: None, range: None, index, time_s: f64::from(n) }, &cx)?;
     }
     Ok(start.elapsed().as_nanos() as f64 / f64::from(PUSHES))
 }

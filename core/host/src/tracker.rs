@@ -172,7 +172,7 @@ impl Tracker {
         let gray = wanted.frame.gray;
         let mask_fits =
             |mask: &Gray<'_>| mask.is_whole() && (mask.width, mask.height) == (gray.width, gray.height);
-        if !gray.is_whole() || !wanted.mask.as_ref().is_none_or(mask_fits) {
+        if !wanted.frame.is_whole() || !wanted.mask.as_ref().is_none_or(mask_fits) {
             return Err(self.handle.usage("the frame is not whole, or the mask has another size"));
         }
         let asked = self.handle.ask(&Request::Detect(wanted), cx, &mut self.reply);
@@ -194,7 +194,7 @@ impl Tracker {
         cx: &CallContext<'_>,
     ) -> Result<Field, HostError> {
         let (a, b) = (from.gray, to.gray);
-        if !a.is_whole() || !b.is_whole() || (a.width, a.height) != (b.width, b.height) {
+        if !from.is_whole() || !to.is_whole() || (a.width, a.height) != (b.width, b.height) {
             return Err(self.handle.usage("the frames are not whole, or differ in size"));
         }
         let asked = self.handle.ask(&Request::Field { from, to, max_threads }, cx, &mut self.reply);
@@ -211,7 +211,7 @@ impl Stream {
     /// Why a frame cannot come now.
     fn misfit(&self, frame: &FrameView<'_>) -> Option<String> {
         let (width, height) = (frame.gray.width, frame.gray.height);
-        if !frame.gray.is_whole() || (width, height) != (self.info.width, self.info.height) {
+        if !frame.is_whole() || (width, height) != (self.info.width, self.info.height) {
             let wanted = (self.info.width, self.info.height);
             return Some(format!(
                 "frame {} is {width}x{height} or not whole, wanted {wanted:?}",

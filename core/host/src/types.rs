@@ -1,7 +1,7 @@
 //! What goes to plugins and comes back from them, in Rust's own types.
 
 use honami_model::hierarchy::Dendrogram;
-use honami_model::picture::Gray;
+use honami_model::picture::{Chroma, Gray, Range};
 use honami_model::track::Status;
 
 /// A frame on its way to a plugin.
@@ -9,10 +9,22 @@ use honami_model::track::Status;
 pub struct FrameView<'a> {
     /// The picture.
     pub gray: Gray<'a>,
+    /// Its colour, where the clip has it.
+    pub chroma: Option<Chroma<'a>>,
+    /// Meaning of the bytes, if known.
+    pub range: Option<Range>,
     /// Frame number in the clip.
     pub index: i64,
     /// Presentation time, seconds.
     pub time_s: f64,
+}
+
+impl FrameView<'_> {
+    /// Whether all pixels are there that its numbers promise.
+    pub(crate) fn is_whole(&self) -> bool {
+        let Gray { width, height, .. } = self.gray;
+        self.gray.is_whole() && self.chroma.is_none_or(|chroma| chroma.fits(width, height))
+    }
 }
 
 /// What is known of a stream before its first frame.

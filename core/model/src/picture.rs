@@ -49,6 +49,25 @@ impl<'a> Gray<'a> {
     }
 }
 
+/// Borrowed 8-bit chroma planes, as coded: 128 is no colour.
+#[derive(Clone, Copy, Debug)]
+pub struct Chroma<'a> {
+    /// Blue difference.
+    pub cb: Gray<'a>,
+    /// Red difference, of the same size.
+    pub cr: Gray<'a>,
+}
+
+impl Chroma<'_> {
+    /// Whether both planes are whole, laid out alike, and not larger than a picture of this many pixels.
+    #[must_use]
+    pub fn fits(&self, width: u32, height: u32) -> bool {
+        let layout = |plane: &Gray<'_>| (plane.width, plane.height, plane.stride);
+        let small = self.cb.width <= width && self.cb.height <= height;
+        self.cb.is_whole() && self.cr.is_whole() && small && layout(&self.cb) == layout(&self.cr)
+    }
+}
+
 /// Which bytes mean black and white in the luma plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -71,7 +90,15 @@ pub struct Planes<'a> {
     pub range: Range,
 }
 
-impl Planes<'_> {
+impl<'a> Planes<'a> {
+    /// The chroma planes with their size, where there is colour.
+    #[must_use]
+    pub fn chroma(&self) -> Option<Chroma<'a>> {
+        let (width, height) = (self.y.width.div_ceil(2), self.y.height.div_ceil(2));
+        let plane = |data| Gray { data, width, height, stride: width as usize };
+        self.uv.map(|(cb, cr)| Chroma { cb: plane(cb), cr: plane(cr) })
+    }
+
     /// Colour of a pixel as RGB (BT.601, the convention of SD video and JPEG).
     ///
     /// # Panics

@@ -85,5 +85,6 @@ pub use honami_abi as abi;
 pub use info::{Info, Library};
 pub use params::{Entry, Param, ParamType, Params, Value};
 pub use tracker::{
-    Detect, DetectFn, Feature, Field, FieldFn, Frame, Gray, Point, Points, Seed, Status, Stream, Tracker,
+    Chroma, Detect, DetectFn, Feature, Field, FieldFn, Frame, Gray, Point, Points, Range, Seed, Status,
+    Stream, Tracker,
 };

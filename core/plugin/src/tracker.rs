@@ -2,7 +2,6 @@
 
 use crate::{Cx, Info, Params, Result};
 use honami_abi as abi;
-use std::ops::Range;
 
 /// Follows points through a stream of frames.
 ///
@@ -77,7 +76,7 @@ pub struct Stream {
     /// Seed of every random choice.
     pub seed: u64,
     /// Ids that the tracker may give to points of its own making (status [`Status::Newborn`]); often empty.
-    pub births: Range<u32>,
+    pub births: std::ops::Range<u32>,
 }
 
 /// An 8-bit luma picture; rows are `stride` bytes apart.
@@ -118,15 +117,63 @@ impl<'a> Gray<'a> {
     }
 }
 
+/// The colour of a picture: chroma planes as the clip has them, nothing converted.
+#[derive(Clone, Copy, Debug)]
+pub struct Chroma<'a> {
+    /// Blue difference, 128 is none.
+    pub cb: Gray<'a>,
+    /// Red difference, 128 is none; laid out as `cb`.
+    pub cr: Gray<'a>,
+}
+
+/// Which bytes mean black and white.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Range {
+    /// 16 is black, 235 white (most video).
+    Limited = abi::range::LIMITED,
+    /// 0 is black, 255 white (images).
+    Full = abi::range::FULL,
+}
+
 /// A frame of the stream. Its pixels are the host's: copy what the next frame will need.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame<'a> {
     /// The picture.
     pub gray: Gray<'a>,
+    /// Its colour; `None` where the clip has none, and from hosts of ABI 1.0.
+    pub chroma: Option<Chroma<'a>>,
+    /// Meaning of the bytes, if known.
+    pub range: Option<Range>,
     /// Frame number in the clip.
     pub index: i64,
     /// Presentation time, seconds.
     pub time_s: f64,
+}
+
+impl<'a> Frame<'a> {
+    /// A frame without colour.
+    #[must_use]
+    pub fn new(gray: Gray<'a>, index: i64, time_s: f64) -> Self {
+        Self { gray, chroma: None, range: None, index, time_s }
+    }
+
+    /// Blue and red difference of a pixel; `None` without colour.
+    ///
+    /// # Panics
+    /// When (x, y) lies outside the picture.
+    #[must_use]
+    #[track_caller]
+    pub fn chroma_at(&self, x: u32, y: u32) -> Option<[u8; 2]> {
+        let Gray { width, height, .. } = self.gray;
+        assert!(x < width && y < height, "pixel ({x}, {y}) of {width}x{height}");
+        let of =
+            |pixel: u32, n: u32, samples: u32| (u64::from(pixel) * u64::from(samples) / u64::from(n)) as u32;
+        self.chroma.map(|Chroma { cb, cr }| {
+            let (i, j) = (of(x, width, cb.width) as usize, of(y, height, cb.height));
+            [cb.row(j)[i], cr.row(j)[i]]
+        })
+    }
 }
 
 /// A point to follow. (0,0) is the centre of the top-left pixel, y points down.

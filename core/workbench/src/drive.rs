@@ -237,7 +237,9 @@ impl Ride<'_> {
 /// A frame of a clip as plugins are given it.
 pub(crate) fn view<'a>(media: &Media, picture: &'a FrameRef, frame: u32) -> FrameView<'a> {
     let time_s = media.clip().times.get(frame).unwrap_or_default();
-    FrameView { gray: picture.planes().y, index: i64::from(frame), time_s }
+    let planes = picture.planes();
+    let (chroma, range) = (planes.chroma(), Some(planes.range));
+    FrameView { gray: planes.y, chroma, range, index: i64::from(frame), time_s }
 }
 
 fn frame_of(view: &FrameView<'_>) -> u32 {

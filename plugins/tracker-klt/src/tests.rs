@@ -26,12 +26,11 @@ fn clip(n: usize) -> Vec<Vec<u8>> {
     (0..n).map(frame).collect()
 }
 
-fn frames(clip: &[Vec<u8>]) -> impl Iterator<Item = Frame<'_>> {
-    clip.iter().enumerate().map(|(t, data)| Frame {
-        gray: Gray::packed(data, WIDTH, HEIGHT),
-        index: t as i64,
-        time_s: t as f64 / 25.0,
-    })
+fn frames<'a>(clip: &'a [Vec<u8>]) -> impl Iterator<Item = Frame<'a>> {
+    let frame = |(t, data): (usize, &'a Vec<u8>)| {
+        Frame::new(Gray::packed(data, WIDTH, HEIGHT), t as i64, t as f64 / 25.0)
+    };
+    clip.iter().enumerate().map(frame)
 }
 
 fn seed(id: u32, x: f32, y: f32) -> Seed {

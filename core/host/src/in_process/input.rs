@@ -3,6 +3,7 @@
 use crate::draft::{Gust, Node};
 use crate::types::{DetectRequest, FrameView, Point, StreamInfo, Tracks};
 use honami_abi::{self as abi, draft, dtype, schema};
+use honami_model::picture::Range;
 use std::ffi::CStr;
 use std::ptr::null;
 
@@ -133,6 +134,17 @@ pub(super) fn frame(view: &FrameView<'_>) -> abi::Frame {
         data: view.gray.data.as_ptr(),
         index: view.index,
         time_s: view.time_s,
+        cb: view.chroma.map_or(null(), |chroma| chroma.cb.data.as_ptr()),
+        cr: view.chroma.map_or(null(), |chroma| chroma.cr.data.as_ptr()),
+        chroma_stride: view.chroma.map_or(0, |chroma| chroma.cb.stride as i64),
+        range: match view.range {
+            None => 0,
+            Some(Range::Limited) => abi::range::LIMITED,
+            Some(Range::Full) => abi::range::FULL,
+        },
+        reserved: 0,
+        chroma_width: view.chroma.map_or(0, |chroma| chroma.cb.width),
+        chroma_height: view.chroma.map_or(0, |chroma| chroma.cb.height),
     }
 }
 

@@ -62,7 +62,9 @@ fn its_source_still_compiles_against_the_frozen_and_the_present_header() {
     if !has_cc() {
         return;
     }
-    for (name, include) in [("null-1.0", "../abi/abi/1.0"), ("null-now", "../abi/include")] {
+    for (name, include) in
+        [("null-1.0", "../abi/abi/1.0"), ("null-1.1", "../abi/abi/1.1"), ("null-now", "../abi/include")]
+    {
         assert_eq!(story(&compile("../abi/examples/null_tracker.c", name, include, &[])), GOLDEN, "{name}");
     }
 }

@@ -115,7 +115,7 @@ pub(crate) fn pixels(n: i64) -> Vec<u8> {
 
 pub(crate) fn view(pixels: &[u8], index: i64) -> FrameView<'_> {
     let gray = Gray { data: pixels, width: WIDTH, height: HEIGHT, stride: WIDTH as usize };
-    FrameView { gray, index, time_s: index as f64 / 25.0 }
+    FrameView { gray, chroma: None, range: None, index, time_s: index as f64 / 25.0 }
 }
 
 pub(crate) fn point(id: u32, x: f32, y: f32) -> Point {

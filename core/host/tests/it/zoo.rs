@@ -6,10 +6,11 @@ mod drift;
 use crate::tools::{HEIGHT, WIDTH, host, ids, of_zoo, pixels, point, push, start, stream, view};
 use honami_host::draft::Gust;
 use honami_host::{
-    CallContext, DetectRequest, Flow, HostError, Kind, Level, ParamKind, StreamInfo, Tracks, Value, Values,
+    CallContext, DetectRequest, Flow, FrameView, HostError, Kind, Level, ParamKind, StreamInfo, Tracks,
+    Value, Values,
 };
 use honami_model::hierarchy::Merge;
-use honami_model::picture::Gray;
+use honami_model::picture::{Chroma, Gray, Range};
 use honami_model::track::Status;
 use honami_plugin::{Frame, Seed, testing};
 use std::sync::Mutex;
@@ -24,8 +25,7 @@ fn through_the_abi_is_bit_for_bit_native() {
     let frames: Vec<Vec<u8>> = (0..6).map(pixels).collect();
     let seeds_native: Vec<Seed> = seeds.iter().map(|&(id, x, y)| Seed { id, x, y }).collect();
     let views = frames.iter().zip(0..).map(|(data, index)| {
-        let gray = honami_plugin::Gray::packed(data, WIDTH, HEIGHT);
-        Frame { gray, index, time_s: index as f64 / 25.0 }
+        Frame::new(honami_plugin::Gray::packed(data, WIDTH, HEIGHT), index, index as f64 / 25.0)
     });
     let settings = drift::Settings { speed: 0.3, ..drift::Settings::default() };
     let native_rows =
@@ -350,4 +350,38 @@ fn the_manifest_says_what_the_source_says() {
     assert!(!values.is_active(note));
     values.set_text(&info.params, "way = down").unwrap();
     assert!(values.is_active(note));
+}
+
+/// Chroma of the stream's frames, 4 x 2 in rows of 6 bytes, of which the last two are the host's own business.
+fn chroma(first: u8) -> Vec<u8> {
+    (0..2).flat_map(|j| [0, 1, 2, 3, 77, 77].map(|i| if i < 77 { first + 10 * j + i } else { i })).collect()
+}
+
+#[test]
+fn colour_reaches_the_plugin_as_the_clip_has_it() {
+    let cx = CallContext::silent();
+    let mut tracker = start(&of_zoo(Kind::Tracker, "tint"), &[]).unwrap();
+    tracker.begin(stream(), &cx).unwrap();
+    tracker.seed(&[point(0, 0.0, 0.0), point(1, 7.0, 1.0), point(2, 3.0, 3.0)], &cx).unwrap();
+    let (luma, cb, cr) = (pixels(0), chroma(100), chroma(200));
+    let plane = |data| Gray { data, width: WIDTH / 2, height: HEIGHT / 2, stride: 6 };
+    let coloured = FrameView {
+        chroma: Some(Chroma { cb: plane(&cb), cr: plane(&cr) }),
+        range: Some(Range::Limited),
+        ..view(&luma, 0)
+    };
+    let rows = |points: Vec<honami_host::Points>| -> Vec<_> {
+        points[0].rows.iter().map(|row| (row.x as u8, row.y as u8, row.fb.map(|fb| fb as u32))).collect()
+    };
+    let answer = rows(tracker.push(&coloured, &cx).unwrap());
+    assert_eq!(answer, [(100, 200, Some(1)), (103, 203, Some(1)), (111, 211, Some(1))]);
+    let grey = rows(tracker.push(&view(&luma, 1), &cx).unwrap());
+    assert_eq!(grey, [(0, 0, None); 3], "a clip without colour");
+
+    let cut = Gray { height: 3, ..plane(&cb) };
+    for (cb, cr) in [(cut, cut), (plane(&cb), Gray { width: 3, ..plane(&cr) })] {
+        let torn = FrameView { chroma: Some(Chroma { cb, cr }), ..view(&luma, 2) };
+        let refused = tracker.push(&torn, &cx).expect_err("planes that are not whole").to_string();
+        assert!(refused.contains("not whole"), "{refused}");
+    }
 }

@@ -157,3 +157,83 @@ fn a_panic_is_reported_where_it_is_caught() {
     });
     assert_eq!(panics::report(&"four".to_owned()), "panicked at a place: four");
 }
+
+/// Says in its failure what colour a frame came with.
+struct Painter;
+
+impl Tracker for Painter {
+    type Params = ();
+    const INFO: Info = Info { id: "org.example.painter", name: "Painter", ..Info::NEW };
+    fn begin((): &(), _: &Stream, _: &Cx<'_>) -> Result<Self> {
+        Ok(Self)
+    }
+    fn seed(&mut self, _: &[Seed], _: &Cx<'_>) -> Result<()> {
+        Ok(())
+    }
+    fn retire(&mut self, _: &[u32]) {}
+    fn push(&mut self, frame: &Frame<'_>, _: &mut Points, _: &Cx<'_>) -> Result<()> {
+        let corner = frame.chroma_at(frame.gray.width - 1, frame.gray.height - 1);
+        Err(Error::data(format!("{corner:?} {:?}", frame.range)))
+    }
+}
+
+/// Pushes one frame to a painter; what it says.
+fn painted(frame: &honami_abi::Frame) -> (Code, String) {
+    thread_local! { static SAID: std::cell::RefCell<String> = const { std::cell::RefCell::new(String::new()) }; }
+    unsafe extern "C" fn hear(_: *const Call, code: Code, text: *const c_char) -> Code {
+        // SAFETY: the plugin gives a string.
+        SAID.set(unsafe { CStr::from_ptr(text) }.to_str().unwrap().to_owned());
+        code
+    }
+    let call = Call { fail: Some(hear), ..BARE };
+    let painter = (tracker::<Painter>().create)();
+    // SAFETY: just made; the table is a constant; the frame and what it points to are alive.
+    unsafe {
+        let table = ((*painter).get_interface.unwrap())(painter, interface::TRACKER.as_ptr());
+        let table = &*table.cast::<TrackerV1>();
+        assert_eq!((table.begin.unwrap())(painter, &call, &gray(frame.width)), code::OK);
+        let code = (table.push.unwrap())(painter, &call, frame);
+        ((*painter).destroy.unwrap())(painter);
+        (code, SAID.take())
+    }
+}
+
+#[test]
+fn a_host_that_knew_no_colour_gives_none_whatever_lies_behind_its_frame() {
+    let (luma, plane) = ([7_u8; 5], [10_u8, 20, 30]);
+    let frame = honami_abi::Frame {
+        struct_size: size_of::<honami_abi::Frame>() as u32,
+        pixel: honami_abi::GRAY8,
+        width: 5,
+        height: 1,
+        stride: 5,
+        data: luma.as_ptr(),
+        index: 0,
+        time_s: 0.0,
+        cb: plane.as_ptr(),
+        cr: plane.as_ptr(),
+        chroma_stride: 3,
+        range: 2,
+        reserved: 0,
+        chroma_width: 3,
+        chroma_height: 1,
+    };
+    assert_eq!(painted(&frame), (code::DATA, "Some([30, 30]) Some(Full)".into()));
+    let none = honami_abi::Frame { cb: null(), cr: null(), range: 9, ..frame };
+    assert_eq!(painted(&none), (code::DATA, "None None".into()));
+
+    // What a host of 1.0 does not know is not its own: addresses that nobody may read.
+    let nowhere = std::ptr::without_provenance(1);
+    let known = std::mem::offset_of!(honami_abi::Frame, cb) as u32;
+    for struct_size in known..size_of::<honami_abi::Frame>() as u32 {
+        let old = honami_abi::Frame { struct_size, cb: nowhere, cr: nowhere, ..frame };
+        assert_eq!(painted(&old), (code::DATA, "None None".into()), "a frame of {struct_size} bytes");
+    }
+    for torn in [
+        honami_abi::Frame { cr: null(), ..frame },
+        honami_abi::Frame { chroma_stride: 2, ..frame },
+        honami_abi::Frame { chroma_width: 0, ..frame },
+    ] {
+        assert_eq!(painted(&torn).0, code::ARGUMENT);
+    }
+}

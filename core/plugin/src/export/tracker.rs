@@ -2,7 +2,7 @@
 
 use super::table::{Reserved, column, given, slice};
 use super::{Descriptor, HostCall, State, door, new_instance};
-use crate::tracker::{Detect, Frame, Gray, Points, Seed, Stream, Tracker};
+use crate::tracker::{Chroma, Detect, Frame, Gray, Points, Range, Seed, Stream, Tracker};
 use crate::{Cx, Error, Params, Result};
 use honami_abi::{self as abi, Call, Code, Instance, code, dtype, interface, schema};
 use std::ffi::{CStr, c_void};
@@ -209,7 +209,32 @@ unsafe fn read_frame<'a>(frame: *const abi::Frame) -> Result<Frame<'a>> {
     unsafe {
         let frame = given(frame)?;
         let gray = read_gray(frame.data, frame.width, frame.height, frame.stride)?;
-        Ok(Frame { gray, index: frame.index, time_s: frame.time_s })
+        let (chroma, range) = match abi::has!(frame, abi::Frame, chroma_height) {
+            true => (read_chroma(&frame)?, read_range(frame.range)),
+            false => (None, None),
+        };
+        Ok(Frame { gray, chroma, range, index: frame.index, time_s: frame.time_s })
+    }
+}
+
+/// # Safety
+/// As [`read_gray`], for both chroma planes of the frame.
+unsafe fn read_chroma<'a>(frame: &abi::Frame) -> Result<Option<Chroma<'a>>> {
+    if frame.cb.is_null() && frame.cr.is_null() {
+        return Ok(None);
+    }
+    let (width, height, stride) = (frame.chroma_width, frame.chroma_height, frame.chroma_stride);
+    // SAFETY: the caller's promise.
+    let (cb, cr) =
+        unsafe { (read_gray(frame.cb, width, height, stride)?, read_gray(frame.cr, width, height, stride)?) };
+    Ok(Some(Chroma { cb, cr }))
+}
+
+fn read_range(range: u32) -> Option<Range> {
+    match range {
+        abi::range::LIMITED => Some(Range::Limited),
+        abi::range::FULL => Some(Range::Full),
+        _ => None,
     }
 }
 

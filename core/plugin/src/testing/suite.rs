@@ -78,7 +78,7 @@ impl Picture {
 
     fn frame(&self, index: usize) -> Frame<'_> {
         let gray = Gray::packed(&self.data, self.width, self.height);
-        Frame { gray, index: index as i64, time_s: index as f64 / 25.0 }
+        Frame::new(gray, index as i64, index as f64 / 25.0)
     }
 }
 

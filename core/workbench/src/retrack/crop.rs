@@ -1,10 +1,10 @@
 //! The part of the picture that a tracker is given: what lies round the path that a feature is known to take.
 
 use honami_model::clip::Clip;
-use honami_model::picture::Gray;
+use honami_model::picture::{Chroma, Gray};
 
 /// Corners of crops lie on multiples of this: the coarser levels of a crop's pyramid (up to the seventh) are then
-/// made of the same pixels as those of the whole picture.
+/// made of the same pixels as those of the whole picture, and so are its chroma samples.
 const GRID_PX: u32 = 64;
 
 /// The smallest and largest coordinates of some points, pixels.
@@ -59,6 +59,16 @@ impl Crop {
         let ([x, y], [width, height]) = (self.origin, self.size);
         let data = &picture.data[y as usize * picture.stride + x as usize..];
         Gray { data, width, height, stride: picture.stride }
+    }
+
+    /// The chroma of this part, from that of a picture of the clip: half its size (4:2:0).
+    pub(super) fn of_chroma<'a>(&self, chroma: &Chroma<'a>) -> Chroma<'a> {
+        let half = Self {
+            origin: self.origin.map(|px| px / 2),
+            size: self.size.map(|px| px.div_ceil(2)),
+            clip: self.clip.map(|px| px.div_ceil(2)),
+        };
+        Chroma { cb: half.of(chroma.cb), cr: half.of(chroma.cr) }
     }
 
     /// Where a point of the clip lies in it.

@@ -147,7 +147,11 @@ impl Rider<'_> {
     ) -> Result<Vec<Points>, WorkbenchError> {
         let picture = self.scene.media.frame(frame)?;
         let whole = view(self.scene.media, &picture, frame);
-        let part = FrameView { gray: crop.of(whole.gray), ..whole };
+        let part = FrameView {
+            gray: crop.of(whole.gray),
+            chroma: whole.chroma.map(|c| crop.of_chroma(&c)),
+            ..whole
+        };
         self.tracker.push(&part, call).map_err(stopped)
     }
 }

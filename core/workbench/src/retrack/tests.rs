@@ -2,7 +2,7 @@
 
 use honami_host::Values;
 use honami_model::clip::{Clip, FrameTimes};
-use honami_model::picture::Gray;
+use honami_model::picture::{Chroma, Gray};
 use honami_model::provenance::Value;
 use proptest::prelude::*;
 
@@ -51,6 +51,11 @@ fn a_crop_is_a_window_on_the_same_pixels() {
     let part = crop.of(Gray::packed(&data, 300, 200));
     assert!(part.is_whole() && !crop.is_whole());
     assert_eq!(part.row(7), &data[(135 * 300 + 128)..][..93]);
+    let plane = Gray::packed(&data[..150 * 100], 150, 100);
+    let chroma = crop.of_chroma(&Chroma { cb: plane, cr: plane });
+    assert!(chroma.fits(93, 72));
+    assert_eq!((chroma.cr.width, chroma.cr.height), (47, 36), "half the crop, rounded up");
+    assert_eq!(chroma.cr.row(3), &data[(67 * 150 + 64)..][..47]);
     assert!(crop.is_cut_near([140.0, 190.0], 20) && crop.is_cut_near([215.0, 190.0], 20));
     assert!(!crop.is_cut_near([200.0, 195.0], 20), "below is the picture's own edge");
 }

@@ -17,7 +17,7 @@ fn turned(angle: f64) -> Vec<u8> {
 }
 
 fn field(pictures: [&[u8]; 2], max_threads: u32) -> honami_plugin::Field {
-    let frame = |data, index| Frame { gray: Gray::packed(data, WIDTH, HEIGHT), index, time_s: index as f64 };
+    let frame = |data, index| Frame::new(Gray::packed(data, WIDTH, HEIGHT), index, index as f64);
     let [from, to] = [frame(pictures[0], 0), frame(pictures[1], 1)];
     dense::field(&Settings::default(), &from, &to, max_threads, &testing::cx()).unwrap()
 }
@@ -89,7 +89,7 @@ fn time_turned_round_turns_the_motion_and_threads_change_nothing() {
 
 #[test]
 fn a_picture_smaller_than_a_window_has_one_node() {
-    let frame = Frame { gray: Gray::packed(&[7; 6], 3, 2), index: 0, time_s: 0.0 };
+    let frame = Frame::new(Gray::packed(&[7; 6], 3, 2), 0, 0.0);
     let field = dense::field(&Settings::default(), &frame, &frame, 1, &testing::cx()).unwrap();
     assert_eq!(
         (field.nx, field.ny, field.origin, field.u, field.v),
