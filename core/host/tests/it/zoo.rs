@@ -277,7 +277,7 @@ fn clusterings_come_checked_with_their_frame_notes() {
     let (mut clusterer, origin) = host().clusterer(&info, &Values::default(), &cx).unwrap();
     assert_eq!(
         (origin.plugin_id.as_str(), origin.abi, origin.sandbox),
-        ("org.honami.zoo.chain", (1, 0), "in process")
+        ("org.honami.zoo.chain", (1, 1), "in process")
     );
     assert_eq!(origin.plugin_sha256, info.sha256().unwrap());
     let mut tracks = Tracks::new(WIDTH, HEIGHT, 10, vec![0.5, 1.0, 1.75]);
