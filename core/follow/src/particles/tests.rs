@@ -53,11 +53,8 @@ impl Motion for Given {
 /// Rows of each frame, without those of the end; frame t has brightness 10 (t + 1).
 fn rows(given: &Given, seeds: &[(f32, f32)], n: u8) -> Vec<Vec<Point>> {
     let data: Vec<Vec<u8>> = (1..=n).map(|t| vec![10 * t; (WIDTH * HEIGHT) as usize]).collect();
-    let frames = data.iter().enumerate().map(|(t, data)| Frame {
-        gray: Luma::packed(data, WIDTH, HEIGHT),
-        index: t as i64,
-        time_s: t as f64,
-    });
+    let frames = data.iter().enumerate();
+    let frames = frames.map(|(t, data)| Frame::new(Luma::packed(data, WIDTH, HEIGHT), t as i64, t as f64));
     let seeds: Vec<Seed> = (0..).zip(seeds).map(|(id, &(x, y))| Seed { id, x, y }).collect();
     let mut rows = testing::track::<Particles<Given>>(given, &testing::stream(WIDTH, HEIGHT), &seeds, frames);
     rows.as_mut().unwrap().pop();
@@ -101,7 +98,7 @@ fn a_cancel_comes_out_of_the_measurement() {
     let stop = Stop(AtomicBool::new(false));
     let cx = Cx::new(&stop);
     let data = vec![9; (WIDTH * HEIGHT) as usize];
-    let frame = Frame { gray: Luma::packed(&data, WIDTH, HEIGHT), index: 0, time_s: 0.0 };
+    let frame = Frame::new(Luma::packed(&data, WIDTH, HEIGHT), 0, 0.0);
     let mut tracker =
         Particles::<Given>::begin(&Given::default(), &testing::stream(WIDTH, HEIGHT), &cx).unwrap();
     tracker.seed(&[Seed { id: 1, x: 3.0, y: 3.0 }], &cx).unwrap();

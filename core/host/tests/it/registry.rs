@@ -70,7 +70,10 @@ fn plugins_are_found_by_short_name_or_id_and_kind() {
         |name| registry.find(Kind::Tracker, name).map(|plugin| plugin.id.clone()).map_err(|e| e.to_string());
     assert_eq!(id("drift").unwrap(), "org.honami.zoo.drift");
     assert_eq!(id("org.honami.zoo.drift").unwrap(), "org.honami.zoo.drift");
-    assert_eq!(id("chain").unwrap_err(), "there is no tracker \"chain\"; there are: drift, delayed, panics, tint");
+    assert_eq!(
+        id("chain").unwrap_err(),
+        "there is no tracker \"chain\"; there are: drift, delayed, panics, tint"
+    );
     let wrong_kind = registry.find(Kind::Clusterer, "drift").unwrap_err();
     assert!(matches!(wrong_kind, HostError::NotFound { .. }));
 }
