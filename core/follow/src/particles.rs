@@ -23,7 +23,7 @@ pub trait Motion: Params + Clone {
     type Kept: Send + 'static;
 
     /// Prepares a frame.
-    fn keep(&self, picture: &Gray<'_>) -> Self::Kept;
+    fn keep(&self, picture: &Gray<'_>, n_threads: usize) -> Self::Kept;
 
     /// The picture that was kept.
     fn kept(kept: &Self::Kept) -> Gray<'_>;
@@ -108,7 +108,7 @@ impl<M: Motion> Tracker for Particles<M> {
             let before = M::kept(last);
             check_size(frame, (before.width, before.height))?;
         }
-        let now = self.motion.keep(&picture(frame));
+        let now = self.motion.keep(&picture(frame), self.n_threads);
         let followed = self.points.values().any(|point| point.status == Status::Tracked);
         // Where there is nobody to follow it, motion is not measured.
         let step = match &self.last {
@@ -197,9 +197,10 @@ fn field<M: Motion>(
     cx: &Cx<'_>,
 ) -> Result<honami_plugin::Field> {
     check_size(to, (from.gray.width, from.gray.height))?;
-    let [from, to] = [from, to].map(|frame| motion.keep(&picture(frame)));
+    let n_threads = max_threads as usize;
+    let [from, to] = [from, to].map(|frame| motion.keep(&picture(frame), n_threads));
     let go_on = |done: f64| cx.progress(done, MEASURING).is_ok();
     let Field { grid, u, v, .. } =
-        motion.measure(&from, &to, max_threads as usize, &go_on).ok_or_else(Error::cancelled)?;
+        motion.measure(&from, &to, n_threads, &go_on).ok_or_else(Error::cancelled)?;
     Ok(honami_plugin::Field { origin: grid.origin, step: grid.step_px, nx: grid.nx, ny: grid.ny, u, v })
 }

@@ -9,8 +9,11 @@
 
 pub mod detect;
 pub mod field;
+pub mod horn_schunck;
 pub mod klt;
+pub mod lucas_kanade;
 pub mod ncc;
+pub mod plane;
 pub mod pyramid;
 pub mod sample;
 pub mod simd;
@@ -21,6 +24,9 @@ pub use honami_model::picture::Gray;
 
 /// A position in a picture, `[x, y]`, pixels.
 pub type Point = [f32; 2];
+
+#[cfg(test)]
+mod middlebury;
 
 /// Property tests draw the same cases in every run.
 #[cfg(test)]

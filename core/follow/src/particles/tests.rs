@@ -25,7 +25,7 @@ impl Motion for Given {
         Info { id: "org.example.given", name: "Given", doc: "u = brightness / 10", ..Info::NEW };
     type Kept = Vec<u8>;
 
-    fn keep(&self, picture: &Gray<'_>) -> Vec<u8> {
+    fn keep(&self, picture: &Gray<'_>, _: usize) -> Vec<u8> {
         (0..picture.height).flat_map(|y| picture.row(y)).copied().collect()
     }
 
