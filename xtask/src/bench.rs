@@ -11,7 +11,7 @@ use crate::shell::{Step, built, cargo, target_dir};
 /// Name, what it measures, and how to run it.
 type Bench = (&'static str, &'static str, fn(&[&str]) -> anyhow::Result<()>);
 
-const BENCHES: [Bench; 11] = [
+const BENCHES: [Bench; 12] = [
     ("encode", "the encoder's time, bytes and likeness: `bench encode [BYTES] [CLIP…]`", encode),
     ("trackers", "KLT against OpenCV's calcOpticalFlowPyrLK, same frames, alternating", trackers),
     ("accuracy", "δavg of KLT and of OpenCV's on calm, wind and storm: `bench accuracy [SEED]`", accuracy),
@@ -26,6 +26,7 @@ const BENCHES: [Bench; 11] = [
         review,
     ),
     ("correct", "what a correction on a track of 300 frames takes, a row a model", correct),
+    ("robust", "mean, median and mode of displacements of which a part moves another way", robust),
     ("plugins", "cost of a plugin call, in process", plugins),
 ];
 
@@ -133,6 +134,10 @@ fn on_project(name: &str, args: &[&str]) -> anyhow::Result<()> {
 /// The real corrections, committed.
 fn correct(args: &[&str]) -> anyhow::Result<()> {
     on_project("correct", args)
+}
+
+fn robust(args: &[&str]) -> anyhow::Result<()> {
+    example("honami-vision", "robust_bench", args).run()
 }
 
 fn plugins(args: &[&str]) -> anyhow::Result<()> {

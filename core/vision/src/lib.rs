@@ -15,6 +15,7 @@ pub mod lucas_kanade;
 pub mod ncc;
 pub mod plane;
 pub mod pyramid;
+pub mod robust;
 pub mod sample;
 pub mod simd;
 pub mod texture;
