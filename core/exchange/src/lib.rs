@@ -1,5 +1,5 @@
 //! Tables in and out: tracks, points and truth as CSV with a header line, one row a sample; and tracks of other
-//! programs in [`foreign`].
+//! programs in [`foreign`]; and dense motion in [`flo`].
 //!
 //! Columns are found by name, in any order; unknown ones are ignored. Numbers are written in the shortest
 //! form that reads back to the same bits. A table is written beside its place and renamed when complete, so
@@ -19,6 +19,7 @@
 //! ```
 
 mod atomic;
+pub mod flo;
 pub mod foreign;
 pub mod origin;
 mod parquet;
