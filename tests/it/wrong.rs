@@ -78,7 +78,6 @@ const CASES: &[Case] = &[
     ("spectrum p.honami --track 9999", FAILED, &["track 9999"]),
     ("spectrum points.csv", FAILED, &["points.csv", "`track` is missing"]),
     ("spectrum bare.honami", FAILED, &["no tracks yet"]),
-    ("compare clip.y4m", USAGE, &["no points", "--truth or --points"]),
     ("compare clip.y4m --truth missing.csv", FAILED, &["missing.csv"]),
     ("compare clip.y4m --truth points.csv", FAILED, &["points.csv line 1"]),
     ("compare p.honami --with klt --set foo=1", USAGE, &["no parameter \"foo\""]),

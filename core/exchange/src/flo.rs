@@ -38,9 +38,7 @@ impl Flow {
         let vector = |x: usize, y: usize| self.vectors.get(y * self.width as usize + x).copied().flatten();
         let (a, b) = (vector(left, top)?, vector(right, top)?);
         let (c, d) = (vector(left, bottom)?, vector(right, bottom)?);
-        let mix = |k: usize| {
-            (1.0 - t) * ((1.0 - s) * a[k] + s * b[k]) + t * ((1.0 - s) * c[k] + s * d[k])
-        };
+        let mix = |k: usize| (1.0 - t) * ((1.0 - s) * a[k] + s * b[k]) + t * ((1.0 - s) * c[k] + s * d[k]);
         Some([mix(0), mix(1)])
     }
 }

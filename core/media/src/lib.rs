@@ -23,7 +23,7 @@ pub mod write;
 pub use error::{MediaError, Size};
 pub use hash::sha256_of_file;
 pub use media::{FrameRef, Media};
-pub use open::{Decoder, OpenOptions, Step, cache_folder, open, open_with};
+pub use open::{Decoder, OpenOptions, Step, cache_folder, open, open_images, open_with};
 pub use programs::ffmpeg_version;
 pub use scale::Rect;
 

@@ -74,17 +74,36 @@ pub fn open_with(
     options: &OpenOptions,
     on_step: &mut dyn FnMut(Step),
 ) -> Result<Media, MediaError> {
+    let kind = kind_of(path)?;
+    let images = if kind == Kind::Images { Some(sequence::list(path)?) } else { None };
+    open_kind(path, (kind, images), options, on_step)
+}
+
+/// Opens image files, in this order, as one clip.
+///
+/// # Errors
+/// As [`open`].
+pub fn open_images(files: &[PathBuf], options: &OpenOptions) -> Result<Media, MediaError> {
+    let path = files.first().map_or(Path::new(""), PathBuf::as_path);
+    open_kind(path, (Kind::Images, Some((files.to_vec(), Vec::new()))), options, &mut |_| {})
+}
+
+/// Images in order, and notes on what was left out.
+type Images = Option<(Vec<PathBuf>, Vec<String>)>;
+
+fn open_kind(
+    path: &Path,
+    (kind, images): (Kind, Images),
+    options: &OpenOptions,
+    on_step: &mut dyn FnMut(Step),
+) -> Result<Media, MediaError> {
     if let Some(fps) = options.fps.filter(|fps| !(fps.is_finite() && *fps > 0.0)) {
         return Err(MediaError::Rate { fps });
     }
-    let kind = kind_of(path)?;
     on_step(Step::Hashing);
-    let (sha256, images) = match kind {
-        Kind::Images => {
-            let (files, notes) = sequence::list(path)?;
-            (hash::sha256_of_sequence(&files)?, Some((files, notes)))
-        }
-        _ => (hash::sha256_of_file(path)?, None),
+    let sha256 = match &images {
+        Some((files, _)) => hash::sha256_of_sequence(files)?,
+        None => hash::sha256_of_file(path)?,
     };
     let folder = Folder::find(options.cache_dir.as_deref(), options.cache_bytes);
     let miscounted = folder.as_ref().map(|folder| folder.mark_of(&sha256));

@@ -1,89 +1,64 @@
-//! Trackers side by side on the same clip and the same points.
+//! Trackers side by side on the same clip and the same points: one measure for all of them.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::ops::Range;
+use std::path::PathBuf;
 
-use honami_exchange::{PointRow, TruthRow};
-use honami_host::{CallContext, Kind, Registry, Values};
+use honami_exchange::flo::Flow;
+use honami_host::{CallContext, Host, Kind, Registry, Tracker, Values};
 use honami_media::Media;
 use honami_model::track::{Quality, Sample, Source, Span, Status, TrackId};
-use honami_motion::accuracy::{TruePath, accuracy};
+use honami_motion::accuracy::{Pair, TruePath, accuracy, drift, histogram};
 
-pub use honami_motion::accuracy::Accuracy;
+pub use field::FieldError;
+pub use honami_motion::accuracy::{Accuracy, Drift, Histogram, THRESHOLDS_PX};
+pub use keys::{KeyPaths, LeftOut, key_paths};
+pub use meter::Time;
+pub use points::{detect, points_of, read_points};
+pub use there_and_back::Back;
+pub use truth::{Truth, check_truth, read_flow, read_truth, truth_of_flow};
 
 use crate::drive::{self, Plan, Rows, Seed};
 use crate::error::WorkbenchError;
 use crate::progress::Progress;
+use meter::Memory;
+
+mod field;
+mod keys;
+mod meter;
+mod points;
+mod there_and_back;
+mod truth;
 
 /// The name of the row that tracks nothing: every point stays where it was given.
 pub const STATIC: &str = "static";
 
-/// True positions of points, by their number.
-pub type Truth = BTreeMap<TrackId, TruePath>;
-
 /// How one tracker did.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Row {
     /// Short name of the tracker, or [`STATIC`].
     pub tracker: String,
     /// Against the truth, where there is one.
     pub accuracy: Option<Accuracy>,
+    /// How errors grow with time; empty without a truth.
+    pub drift: Vec<Drift>,
+    /// How errors are distributed, where there is a truth.
+    pub errors: Option<Histogram>,
+    /// Dense motion against a true flow, where the tracker measures it.
+    pub field: Option<FieldError>,
     /// Share of the points that are seen in every frame after theirs.
     pub kept: f64,
-    /// Time in the tracker, milliseconds a frame; decoding is not in it.
-    pub ms_per_frame: Option<f64>,
-}
-
-/// Reads a table of true positions of a clip of `n_frames` frames, its rows in any order.
-///
-/// A frame between a point's first and last that has no row is one in which it is hidden, where it was before.
-/// Of two rows for the same point and frame the later one counts.
-///
-/// # Errors
-/// [`WorkbenchError::TruthFrame`] for a row beyond the clip; what the table says of its lines.
-pub fn read_truth(path: &Path, n_frames: u32) -> Result<Truth, WorkbenchError> {
-    let mut rows = BTreeMap::<TrackId, BTreeMap<u32, (f64, f64, bool)>>::new();
-    for row in honami_exchange::read::<TruthRow>(path)? {
-        let TruthRow { track, frame, x, y, visible, .. } = row?;
-        if frame >= n_frames {
-            return Err(WorkbenchError::TruthFrame { track, frame, n_frames });
-        }
-        rows.entry(TrackId(track)).or_default().insert(frame, (f64::from(x), f64::from(y), visible));
-    }
-    Ok(rows.into_iter().filter_map(|(track, rows)| Some((track, path_of(&rows)?))).collect())
-}
-
-fn path_of(rows: &BTreeMap<u32, (f64, f64, bool)>) -> Option<TruePath> {
-    let (&first_frame, &first) = rows.first_key_value()?;
-    let (&last_frame, _) = rows.last_key_value()?;
-    let mut at = first;
-    let positions = (first_frame..=last_frame).map(|frame| {
-        at = rows.get(&frame).copied().unwrap_or((at.0, at.1, false));
-        at
-    });
-    Some(TruePath { first_frame, positions: positions.collect() })
-}
-
-/// Points to track from a table.
-///
-/// # Errors
-/// What the table says of its lines.
-pub fn read_points(path: &Path) -> Result<Vec<Seed>, WorkbenchError> {
-    let seed =
-        |row: PointRow| Seed { frame: row.frame.unwrap_or(0), track: TrackId(row.id), x: row.x, y: row.y };
-    let rows = honami_exchange::read::<PointRow>(path)?;
-    Ok(rows.map(|row| row.map(seed)).collect::<Result<_, _>>()?)
-}
-
-/// The points of a truth where they can first be seen.
-#[must_use]
-pub fn points_of(truth: &Truth) -> Vec<Seed> {
-    let first_seen = |(&track, path): (&TrackId, &TruePath)| {
-        let (frame, &(x, y, _)) =
-            (path.first_frame..).zip(&path.positions).find(|(_, position)| position.2)?;
-        Some(Seed { frame, track, x: x as f32, y: y as f32 })
-    };
-    truth.iter().filter_map(first_seen).collect()
+    /// How near the points come to where they were given when they are tracked back.
+    pub back: Option<Back>,
+    /// How well key-frames are found from the ones before, where there are such.
+    pub left_out: Option<LeftOut>,
+    /// Time in the tracker, one thread; decoding is not in it.
+    pub time: Option<Time>,
+    /// By how much memory has grown at most while the tracker was at work, bytes; where the system tells.
+    ///
+    /// Memory that an earlier tracker of the same comparison gave back only to this program does not grow again: to be
+    /// exact a tracker is compared alone.
+    pub peak_bytes: Option<u64>,
 }
 
 /// Who is compared.
@@ -94,7 +69,24 @@ pub enum Contestant {
     Foreign(String, PathBuf),
 }
 
-/// Runs each tracker over the whole clip; the last row is the baseline that tracks nothing.
+/// What they are given, and what is known of the answer.
+#[derive(Clone, Debug)]
+pub struct Question {
+    /// The points; those given outside the frames are left out.
+    pub points: Vec<Seed>,
+    /// The frames.
+    pub frames: Range<u32>,
+    /// Where the points truly are.
+    pub truth: Option<Truth>,
+    /// Where every pixel of the first frame truly is in the second.
+    pub flow: Option<Flow>,
+    /// Key-frames, each of which is left out in turn.
+    pub keys: KeyPaths,
+    /// Whether the points are tracked back, too, and key-frames left out: both take passes of their own.
+    pub passes: bool,
+}
+
+/// Runs each tracker over the frames; the last row is the baseline that tracks nothing.
 ///
 /// # Errors
 /// [`WorkbenchError::NoFeatures`], [`WorkbenchError::NoTruth`], [`WorkbenchError::Stopped`], and what the clip
@@ -103,54 +95,125 @@ pub fn compare(
     media: &Media,
     registry: &Registry,
     contestants: &[Contestant],
-    points: &[Seed],
-    truth: Option<&Truth>,
+    mut question: Question,
     progress: &dyn Progress,
 ) -> Result<Vec<Row>, WorkbenchError> {
-    drive::check_seeds(points, media.clip())?;
-    let n_frames = media.clip().n_frames();
+    drive::check_seeds(&question.points, media.clip())?;
+    question.points.retain(|seed| question.frames.contains(&seed.frame));
+    if question.points.is_empty() {
+        return Err(WorkbenchError::NoFeatures);
+    }
+    if let Some(truth) = &mut question.truth {
+        truth::cut(truth, question.frames.end);
+    }
+    meter::warm(media, question.frames.clone(), progress)?;
+    let bench = Bench { media, question: &question, progress };
     let mut rows = Vec::new();
     for contestant in contestants {
-        let (name, spans, ms_per_frame) = match contestant {
-            Contestant::Tracker(name, params) => {
-                let (spans, secs) = follow(media, registry, (name, params), points, progress)?;
-                (name, spans, Some(1e3 * secs / f64::from(n_frames)))
-            }
+        rows.push(match contestant {
+            Contestant::Tracker(name, params) => bench.tracker(registry, name, params)?,
             Contestant::Foreign(name, path) => {
-                (name, honami_exchange::spans(honami_exchange::read(path)?, n_frames)?, None)
+                let n_frames = media.clip().n_frames();
+                bench.judge(name, &honami_exchange::spans(honami_exchange::read(path)?, n_frames)?)?
             }
-        };
-        rows.push(judge(name.clone(), points, n_frames, (&spans, truth), ms_per_frame)?);
+        });
     }
-    let still = points.iter().map(|seed| (seed.track, standing(seed, n_frames))).collect();
-    rows.push(judge(STATIC.to_owned(), points, n_frames, (&still, truth), None)?);
+    let end = question.frames.end;
+    let still = question.points.iter().map(|seed| (seed.track, standing(seed, end))).collect();
+    let left_out = (question.passes && !question.keys.is_empty())
+        .then(|| keys::standing(&question.keys, &question.frames))
+        .flatten();
+    rows.push(Row { left_out, ..bench.judge(STATIC, &still)? });
     Ok(rows)
 }
 
-/// Runs a tracker over the whole clip; its spans, and the seconds spent in it.
-fn follow(
-    media: &Media,
-    registry: &Registry,
-    (name, params): (&str, &Values),
-    points: &[Seed],
-    progress: &dyn Progress,
-) -> Result<(BTreeMap<TrackId, Span>, f64), WorkbenchError> {
-    let n_frames = media.clip().n_frames();
-    let plugin = registry.find(Kind::Tracker, name)?;
-    let (mut tracker, _) = honami_host::Host::new().tracker(plugin, params, &CallContext::silent())?;
-    // One thread, so that the times of trackers can be compared.
-    let plan = Plan { frames: 0..n_frames, seeds: points.to_vec(), detect: None, max_threads: 1 };
-    let mut spans = BTreeMap::new();
-    let mut collect = |frame: u32, rows: &Rows| {
-        gather(&mut spans, frame, rows);
-        Ok(())
-    };
-    let mut numbers = |_| Ok(0..0);
-    let driven = drive::drive(media, &mut tracker, plan, &mut numbers, &mut collect, progress)?;
-    if driven.end < n_frames {
-        return Err(WorkbenchError::Stopped);
+/// What all contestants meet.
+struct Bench<'a> {
+    media: &'a Media,
+    question: &'a Question,
+    progress: &'a dyn Progress,
+}
+
+impl Bench<'_> {
+    fn tracker(&self, registry: &Registry, name: &str, params: &Values) -> Result<Row, WorkbenchError> {
+        let plugin = registry.find(Kind::Tracker, name)?;
+        let memory = Memory::begin();
+        let (mut tracker, _) = Host::new().tracker(plugin, params, &CallContext::silent())?;
+        let (spans, time) = self.follow(&mut tracker)?;
+        let peak_bytes = memory.and_then(Memory::peak_bytes);
+        let row = Row { time, peak_bytes, ..self.judge(name, &spans)? };
+        let field = match &self.question.flow {
+            Some(flow) if plugin.offers("honami.field/1") => {
+                Some(field::measure(self.media, &mut tracker, flow, self.question.frames.start)?)
+            }
+            _ => None,
+        };
+        if !self.question.passes {
+            return Ok(Row { field, ..row });
+        }
+        let back = Some(self.there_and_back(&mut tracker, &spans)?);
+        let left_out = keys::measure(self, &mut tracker)?;
+        Ok(Row { field, back, left_out, ..row })
     }
-    Ok((spans, driven.tracker_secs))
+
+    /// Runs a tracker over the frames: what it made of the points, and the time it took.
+    fn follow(
+        &self,
+        tracker: &mut Tracker,
+    ) -> Result<(BTreeMap<TrackId, Span>, Option<Time>), WorkbenchError> {
+        let (seeds, frames) = (self.question.points.clone(), self.question.frames.clone());
+        let mut spans = BTreeMap::new();
+        let step_secs =
+            self.drive(tracker, seeds, frames, &mut |frame, rows| gather(&mut spans, frame, rows))?;
+        Ok((spans, Time::of(&step_secs)))
+    }
+
+    /// Drives a tracker over all of these frames; the seconds that each took.
+    fn drive(
+        &self,
+        tracker: &mut Tracker,
+        seeds: Vec<Seed>,
+        frames: Range<u32>,
+        take: &mut dyn FnMut(u32, &Rows),
+    ) -> Result<Vec<f64>, WorkbenchError> {
+        // One thread, so that the times of trackers can be compared.
+        let plan = Plan { frames: frames.clone(), seeds, detect: None, max_threads: 1 };
+        let mut collect = |frame: u32, rows: &Rows| {
+            take(frame, rows);
+            Ok(())
+        };
+        let mut numbers = |_| Ok(0..0);
+        let driven = drive::drive(self.media, tracker, plan, &mut numbers, &mut collect, self.progress)?;
+        if driven.end < frames.end {
+            return Err(WorkbenchError::Stopped);
+        }
+        Ok(driven.step_secs)
+    }
+
+    fn judge(&self, tracker: &str, spans: &BTreeMap<TrackId, Span>) -> Result<Row, WorkbenchError> {
+        let nothing = Span::default();
+        let span = |track| spans.get(&track).unwrap_or(&nothing);
+        let points = &self.question.points;
+        let kept = |seed: &&Seed| {
+            let span = span(seed.track);
+            (seed.frame..self.question.frames.end)
+                .all(|frame| span.get(frame).is_some_and(|sample| sample.status.is_seen()))
+        };
+        let kept = points.iter().filter(kept).count() as f64 / points.len() as f64;
+        let row = Row { tracker: tracker.to_owned(), kept, ..Row::default() };
+        let Some(truth) = &self.question.truth else { return Ok(row) };
+        let pair = |seed: &Seed| -> Option<Pair<'_>> {
+            let path: &TruePath = truth.get(&seed.track)?;
+            Some((path, seed.frame, span(seed.track)))
+        };
+        let pairs: Vec<Pair<'_>> = points.iter().filter_map(pair).collect();
+        Ok(Row {
+            accuracy: Some(accuracy(pairs.iter().copied()).ok_or(WorkbenchError::NoTruth)?),
+            drift: drift(pairs.iter().copied()),
+            errors: histogram(pairs),
+            ..row
+        })
+    }
 }
 
 /// Appends a frame's rows to the spans of their tracks; a frame that a tracker left out is lost.
@@ -166,7 +229,7 @@ fn gather(spans: &mut BTreeMap<TrackId, Span>, frame: u32, rows: &Rows) {
 }
 
 /// A point that stays where it was given.
-fn standing(seed: &Seed, n_frames: u32) -> Span {
+fn standing(seed: &Seed, end: u32) -> Span {
     let sample = Sample {
         x: seed.x,
         y: seed.y,
@@ -174,29 +237,8 @@ fn standing(seed: &Seed, n_frames: u32) -> Span {
         source: Source::Tracked,
         quality: Quality::default(),
     };
-    Span { first_frame: seed.frame, samples: vec![sample; (n_frames - seed.frame) as usize] }
+    Span { first_frame: seed.frame, samples: vec![sample; (end - seed.frame) as usize] }
 }
 
-fn judge(
-    tracker: String,
-    points: &[Seed],
-    n_frames: u32,
-    (spans, truth): (&BTreeMap<TrackId, Span>, Option<&Truth>),
-    ms_per_frame: Option<f64>,
-) -> Result<Row, WorkbenchError> {
-    let nothing = Span::default();
-    let span = |track| spans.get(&track).unwrap_or(&nothing);
-    let kept = |seed: &&Seed| {
-        let span = span(seed.track);
-        (seed.frame..n_frames).all(|frame| span.get(frame).is_some_and(|sample| sample.status.is_seen()))
-    };
-    let accuracy = match truth {
-        None => None,
-        Some(truth) => {
-            let pairs = points.iter().filter_map(|s| Some((truth.get(&s.track)?, s.frame, span(s.track))));
-            Some(accuracy(pairs).ok_or(WorkbenchError::NoTruth)?)
-        }
-    };
-    let kept = points.iter().filter(kept).count() as f64 / points.len().max(1) as f64;
-    Ok(Row { tracker, accuracy, kept, ms_per_frame })
-}
+#[cfg(test)]
+mod tests;

@@ -17,7 +17,7 @@ use crate::progress::{Flow, Progress};
 use crate::stamp::SEED;
 
 /// More features than any tracker finds in a frame; a tracker's own parameter sets the real limit.
-const MAX_FEATURES: u32 = 100_000;
+pub(crate) const MAX_FEATURES: u32 = 100_000;
 
 /// A feature given to a tracker in one frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,8 +70,9 @@ pub type Sink<'a> = &'a mut dyn FnMut(u32, &Rows) -> Result<(), WorkbenchError>;
 pub struct Driven {
     /// The first frame that was not tracked.
     pub end: u32,
-    /// Time spent in the tracker, decoding and keeping aside.
-    pub tracker_secs: f64,
+    /// Time spent in the tracker on each frame, seconds, decoding and keeping aside; what the end of the stream took is
+    /// with the last.
+    pub step_secs: Vec<f64>,
     /// What the tracker warned of.
     pub warnings: Vec<String>,
 }
@@ -110,7 +111,7 @@ pub fn drive(
     plan.seeds.sort_by_key(|seed| (seed.frame, seed.track));
     let (first, total) = (plan.frames.start, u64::from(plan.frames.end - plan.frames.start));
     let ear = Ear::new(progress);
-    let mut ride = Ride { media, tracker, plan: &plan, board: Board::new(first), tracker_secs: 0.0 };
+    let mut ride = Ride { media, tracker, plan: &plan, board: Board::new(first), step_secs: Vec::new() };
     let mut stopped = ear.call(0, total, |call| ride.begin(call));
     for frame in plan.frames.clone() {
         let done = u64::from(frame - first);
@@ -133,7 +134,7 @@ pub fn drive(
         Ok(()) | Err(WorkbenchError::Stopped | WorkbenchError::Plugin(HostError::Cancelled { .. })) => {}
         Err(error) => return Err(error),
     }
-    Ok(Driven { end: ride.board.end, tracker_secs: ride.tracker_secs, warnings: ear.warnings() })
+    Ok(Driven { end: ride.board.end, step_secs: ride.step_secs, warnings: ear.warnings() })
 }
 
 /// A tracker on its way through the clip.
@@ -142,7 +143,7 @@ struct Ride<'a> {
     tracker: &'a mut Tracker,
     plan: &'a Plan,
     board: Board,
-    tracker_secs: f64,
+    step_secs: Vec<f64>,
 }
 
 impl Ride<'_> {
@@ -193,7 +194,7 @@ impl Ride<'_> {
         } else {
             self.board.place(frame, &new);
         }
-        self.tracker_secs += begun.elapsed().as_secs_f64();
+        self.step_secs.push(begun.elapsed().as_secs_f64());
         Ok(())
     }
 
@@ -229,7 +230,8 @@ impl Ride<'_> {
     fn end(&mut self, call: &CallContext<'_>) -> Result<(), WorkbenchError> {
         let begun = Instant::now();
         self.board.take(self.tracker.end(call)?);
-        self.tracker_secs += begun.elapsed().as_secs_f64();
+        let secs = begun.elapsed().as_secs_f64();
+        self.step_secs.last_mut().into_iter().for_each(|last| *last += secs);
         Ok(())
     }
 }

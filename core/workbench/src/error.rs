@@ -23,6 +23,30 @@ pub enum WorkbenchError {
     /// A file of another program could not be read or written.
     #[error(transparent)]
     Foreign(#[from] honami_exchange::foreign::ForeignError),
+    /// A flow could not be read.
+    #[error(transparent)]
+    Flow(#[from] honami_exchange::flo::FlowError),
+    /// A flow is not as large as the clip.
+    #[error(
+        "the flow is of {}x{} pixels, the clip of {}x{}: is it another pair's? {}",
+        came[0], came[1], wanted[0], wanted[1], path.display()
+    )]
+    FlowSize {
+        /// The file.
+        path: PathBuf,
+        /// Its width and height.
+        came: [u32; 2],
+        /// Width and height of the clip.
+        wanted: [u32; 2],
+    },
+    /// A flow says nothing of more than two frames.
+    #[error(
+        "a flow goes from one picture to the next, but there are {n_frames} frames: give two pictures, or --frames A..A+2"
+    )]
+    FlowFrames {
+        /// Frames to compare on.
+        n_frames: u32,
+    },
     /// A file was made on pictures of another size.
     #[error(
         "{}: made on pictures of {}x{} pixels, the clip has {}x{}: is it another clip's? \
@@ -177,6 +201,25 @@ pub enum WorkbenchError {
         frame: u32,
         /// Frames of the clip.
         n_frames: u32,
+    },
+    /// A true position lies outside the picture.
+    #[error(
+        "the truth shows point {track} at ({x}, {y}) in frame {frame}, but the clip has {width}x{height} pixels: \
+         is it another clip's?"
+    )]
+    TruthPoint {
+        /// The point.
+        track: u32,
+        /// The frame.
+        frame: u32,
+        /// Pixels, right.
+        x: f64,
+        /// Pixels, down.
+        y: f64,
+        /// Width of the clip.
+        width: u32,
+        /// Height of the clip.
+        height: u32,
     },
     /// The truth names no point that was tracked.
     #[error("the truth shows none of the tracked points after their first frame")]

@@ -1,6 +1,7 @@
 //! What was measured, for other programs.
 
 use std::collections::BTreeSet;
+use std::io::Write as _;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -49,6 +50,17 @@ pub struct Exported {
     pub n_samples: u64,
     /// What the format could not keep.
     pub losses: Vec<Loss>,
+}
+
+/// Writes a file of text, whole or not at all.
+///
+/// # Errors
+/// What the disk met.
+pub fn text(out: &Path, text: &str) -> Result<(), WorkbenchError> {
+    let mut file = AtomicFile::create(out)?;
+    let full = |source| WorkbenchError::Io { what: "cannot write", source, path: out.to_owned() };
+    file.write_all(text.as_bytes()).map_err(full)?;
+    Ok(file.finish()?)
 }
 
 /// Writes the shown tracks, corrections included; nothing is left behind when it fails.

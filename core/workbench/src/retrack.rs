@@ -31,6 +31,8 @@ use crate::session::Session;
 pub(crate) use direction::usual;
 pub use study::{Study, study};
 
+pub(crate) use plan::Anchors;
+
 use direction::{Direction, Made};
 use lay::{Runs, Tracked};
 use pass::{Found, Meter, Scene};
@@ -100,6 +102,12 @@ pub struct RetrackOutcome {
 /// When there is no such track; as [`Study::job`].
 pub fn prepare(session: &Session, request: &RetrackRequest) -> Result<RetrackJob, WorkbenchError> {
     Arc::new(study(session, request.track)?).job(request.clone())
+}
+
+/// Where a person, or the track's birth, says where the feature is.
+pub(crate) fn anchors(session: &Session, track: TrackId) -> Result<Anchors, WorkbenchError> {
+    let ground = Ground::of(&session.project, track)?;
+    Ok(lay::anchors(&ground, &[], &session.media.clip().times))
 }
 
 impl RetrackJob {

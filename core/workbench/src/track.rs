@@ -186,7 +186,7 @@ impl TrackJob {
         let reached = kept.first_frame;
         let (driven, error) = match driven {
             Ok(driven) => (driven, None),
-            Err(error) => (Driven { end: reached, tracker_secs: 0.0, warnings: Vec::new() }, Some(error)),
+            Err(error) => (Driven { end: reached, step_secs: Vec::new(), warnings: Vec::new() }, Some(error)),
         };
         match &error {
             Some(error) => kept.writer.abandon(&error.to_string())?,
@@ -268,8 +268,8 @@ pub fn finish(session: &mut Session, done: TrackDone) -> Result<TrackOutcome, Wo
     if let Some(error) = &error {
         line = format!("{plugin} failed at frame {}, {kept}: {error}", driven.end);
     }
-    let Driven { tracker_secs, warnings, .. } = driven;
-    let frames = reached;
+    let Driven { step_secs, warnings, .. } = driven;
+    let (frames, tracker_secs) = (reached, step_secs.iter().sum());
     Ok(TrackOutcome { run, n_tracks, n_lost, frames, stopped, seconds, tracker_secs, error, warnings, line })
 }
 

@@ -408,7 +408,7 @@ impl World {
         let before = self.session.project.revision();
         let (mut text, is_error) = match running.join() {
             Some(Done::Track(done)) => {
-                let outcome = track::finish(&mut self.session, done?)?;
+                let outcome = track::finish(&mut self.session, (*done)?)?;
                 (outcome.line, outcome.error.is_some())
             }
             Some(Done::Retrack(done)) => match *done {

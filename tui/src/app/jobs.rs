@@ -26,7 +26,7 @@ pub(super) enum Work {
 
 /// What a job has come to.
 pub(super) enum Done {
-    Track(Result<TrackDone, WorkbenchError>),
+    Track(Box<Result<TrackDone, WorkbenchError>>),
     Retrack(Box<Result<Retracked, WorkbenchError>>),
     Cluster(Box<Result<ClusterDone, WorkbenchError>>),
 }
@@ -69,7 +69,7 @@ impl Progress for Shared {
 impl Running {
     pub(super) fn start(work: Work, waker: Waker) -> std::io::Result<Self> {
         Self::spawn(waker, move |progress| match work {
-            Work::Track(job) => Done::Track(job.run(progress)),
+            Work::Track(job) => Done::Track(Box::new(job.run(progress))),
             Work::Retrack(job) => Done::Retrack(Box::new(job.run(progress))),
             Work::Cluster(job) => Done::Cluster(Box::new(job.run(progress))),
         })

@@ -178,26 +178,42 @@ pub(super) struct Cluster {
     pub(super) groups: Option<u32>,
 }
 
-/// Columns: δavg, share of visible samples within 1, 2, 4, 8, 16 px of the truth, averaged, a lost sample being a
-/// miss; <1 px, share within 1 px; median, of the errors, px; survival, share of frames before the first error above
-/// 16 px; ok, share of tracks within 8 px throughout; lost, share of visible samples; kept, share of points seen in
-/// every frame; ms/frame in the tracker, one thread. The row "static" tracks nothing.
+/// Trackers side by side on the same points. With a truth: δavg, share of visible samples within 1, 2, 4, 8, 16 px of
+/// it, averaged, and the five shares, a lost sample being a miss; median, of the errors, px; track, median over points of
+/// the median error of a point; surv, share of frames before the first error above 16 px or loss; ok, share of points
+/// within 8 px throughout; occl, share of samples whose visibility is told rightly; prec, of the samples called seen the
+/// share that is visible and within 8 px; rec, of the visible ones the share that is called seen and within 8 px; lost,
+/// share of the visible samples. Always: kept, share of points seen in every frame; back, median distance from the start
+/// when tracked to the end and back, px, and the share within 1 px; keys, median distance of key-frames that are tracked
+/// to from the one before, px; ms, mean and 95 % of the times of a frame in the tracker, one thread; MB, growth of memory.
+/// The row "static" tracks nothing.
 #[derive(Args, Debug)]
 pub(super) struct Compare {
-    /// Clip, or project whose clip and tracks are used.
-    pub(super) clip: PathBuf,
+    /// Clip, or project whose clip, tracks and key-frames are used; several images are a clip, too.
+    #[arg(required = true)]
+    pub(super) clip: Vec<PathBuf>,
     /// Tracker to run; give it once for each (default: klt).
     #[arg(long, value_name = "NAME")]
     pub(super) with: Vec<String>,
-    /// True positions, a table `track,frame,x,y,visible,branch`.
+    /// True positions, a table `track,frame,x,y,visible,branch`; or the true flow between two pictures, a .flo file.
     #[arg(long, value_name = "FILE")]
     pub(super) truth: Option<PathBuf>,
     /// Tracks that another program made of the same points, as a table of tracks.
     #[arg(long, value_name = "NAME=FILE")]
     pub(super) tracks: Vec<Foreign>,
-    /// Features from a table `id,x,y[,frame]` (default: from the truth, else the project's own).
+    /// Features from a table `id,x,y[,frame]` (default: from the truth, else the project's own, else as the first
+    /// tracker finds them).
     #[arg(long, value_name = "FILE")]
     pub(super) points: Option<PathBuf>,
+    /// Frames to compare on, the last one excluded (default: all).
+    #[arg(long, value_name = "A..B")]
+    pub(super) frames: Option<FrameRange>,
+    /// Neither track back nor leave key-frames out: half the time.
+    #[arg(long)]
+    pub(super) quick: bool,
+    /// Draw it, too: shares, growth of errors, distribution of errors.
+    #[arg(long, value_name = "FILE.svg")]
+    pub(super) svg: Option<PathBuf>,
     /// Set a parameter of every tracker that has it.
     #[arg(long = "set", value_name = "K=V")]
     pub(super) set: Vec<String>,

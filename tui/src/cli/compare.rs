@@ -1,60 +1,133 @@
 //! `compare`: trackers side by side.
 
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use honami_workbench::compare::{self, Contestant, Row};
+use honami_workbench::WorkbenchError;
+use honami_workbench::compare::{self, Contestant, KeyPaths, Question};
 use honami_workbench::drive::Seed;
+use honami_workbench::export;
 use honami_workbench::media::{self, Media, OpenOptions};
 use honami_workbench::plugins::{Kind, Param, Registry, Values};
 use honami_workbench::session::{Session, SessionOptions};
-use serde_json::json;
 
 use super::args::{Common, Compare};
 use super::{Answer, options, report, track, want};
 
+mod entry;
+mod svg;
+mod tables;
+
 /// Runs every tracker on the same points and prints one row for each.
 pub(super) fn compare(args: &Compare, common: &Common) -> anyhow::Result<Answer> {
-    let (media, own, registry) = open(args, common)?;
-    let truth =
-        args.truth.as_deref().map(|path| compare::read_truth(path, media.clip().n_frames())).transpose()?;
-    let points = match (&args.points, &truth) {
-        (Some(path), _) => compare::read_points(path)?,
-        (None, Some(truth)) => compare::points_of(truth),
-        (None, None) => own,
+    let opened = open(args, common)?;
+    let folder = args.svg.as_deref().and_then(Path::parent).filter(|folder| !folder.as_os_str().is_empty());
+    if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
+        anyhow::bail!("--svg: there is no folder {}", folder.display());
+    }
+    let (media, registry) = (Arc::clone(&opened.media), Arc::clone(&opened.registry));
+    let contestants = contestants(args, &registry)?;
+    let question = question(args, opened, &contestants)?;
+    let (n_points, frames) = (question.points.len(), question.frames.clone());
+    let rows = compare::compare(&media, &registry, &contestants, question, &report::Bar::new())?;
+    if let Some(path) = &args.svg {
+        let name = args.clip[0].file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let title = format!("{name}: {n_points} points, {} frames", frames.len());
+        export::text(path, &svg::draw(&title, &rows))?;
+    }
+    Ok(Answer {
+        json: entry::answer(&rows, n_points, &frames),
+        text: format!("{n_points} points, {} frames\n{}", frames.len(), tables::all(&rows)),
+        done: true,
+    })
+}
+
+/// What is compared on.
+struct Opened {
+    media: Arc<Media>,
+    registry: Arc<Registry>,
+    /// The project's own points; none of a clip.
+    points: Vec<Seed>,
+    keys: KeyPaths,
+}
+
+fn open(args: &Compare, common: &Common) -> anyhow::Result<Opened> {
+    let [clip] = &args.clip[..] else {
+        let options = OpenOptions { fps: args.fps, ..OpenOptions::default() };
+        return Ok(of_clip(media::open_images(&args.clip, &options)?, common));
     };
-    want(!points.is_empty(), || {
-        "there are no points to compare on: give --truth or --points, or a project that has tracks".to_owned()
-    })?;
+    if clip.extension().is_none_or(|e| e != "honami") {
+        let options = OpenOptions { fps: args.fps, ..OpenOptions::default() };
+        return Ok(of_clip(media::open(clip, &options)?, common));
+    }
+    let session = Session::open(clip, &SessionOptions { read_only: true, ..options(common) })?;
+    let mut points = Vec::new();
+    for (id, span) in session.project.shown_all()? {
+        let seen = span.frames().zip(&span.samples).find(|(_, sample)| sample.status.is_seen());
+        points.extend(seen.map(|(frame, sample)| Seed { frame, track: id, x: sample.x, y: sample.y }));
+    }
+    let keys = compare::key_paths(&session)?;
+    Ok(Opened { media: session.media, registry: session.registry, points, keys })
+}
+
+fn of_clip(media: Media, common: &Common) -> Opened {
+    let registry = Arc::new(Registry::scan(&common.plugins));
+    Opened { media: Arc::new(media), registry, points: Vec::new(), keys: KeyPaths::new() }
+}
+
+fn contestants(args: &Compare, registry: &Registry) -> anyhow::Result<Vec<Contestant>> {
     let none = args.with.is_empty() && args.tracks.is_empty();
     let names = if none { vec![track::DEFAULT.to_owned()] } else { args.with.clone() };
-    if let (Some(first), Some(stray)) = (names.first(), stray(&registry, &names, &args.set)?) {
-        track::values(&registry, Kind::Tracker, first, &[stray])?;
+    if let (Some(first), Some(stray)) = (names.first(), stray(registry, &names, &args.set)?) {
+        track::values(registry, Kind::Tracker, first, &[stray])?;
     }
     let trackers = names.into_iter().map(|name| {
-        let values = values(&registry, &name, &args.set)?;
+        let values = values(registry, &name, &args.set)?;
         Ok(Contestant::Tracker(name, values))
     });
     let mut contestants = trackers.collect::<anyhow::Result<Vec<_>>>()?;
     contestants.extend(args.tracks.iter().map(|f| Contestant::Foreign(f.name.clone(), f.file.clone())));
-    let rows =
-        compare::compare(&media, &registry, &contestants, &points, truth.as_ref(), &report::Bar::new())?;
-    Ok(describe(&rows, points.len()))
+    Ok(contestants)
 }
 
-/// The clip; the points and plugins that come with it.
-fn open(args: &Compare, common: &Common) -> anyhow::Result<(Arc<Media>, Vec<Seed>, Arc<Registry>)> {
-    if args.clip.extension().is_some_and(|e| e == "honami") {
-        let session = Session::open(&args.clip, &SessionOptions { read_only: true, ..options(common) })?;
-        let mut seeds = Vec::new();
-        for (id, span) in session.project.shown_all()? {
-            let seen = span.frames().zip(&span.samples).find(|(_, sample)| sample.status.is_seen());
-            seeds.extend(seen.map(|(frame, sample)| Seed { frame, track: id, x: sample.x, y: sample.y }));
-        }
-        return Ok((session.media, seeds, session.registry));
+/// The points, and what is known of where they go.
+fn question(args: &Compare, opened: Opened, contestants: &[Contestant]) -> anyhow::Result<Question> {
+    let Opened { media, registry, points: own, keys } = opened;
+    let clip = media.clip();
+    let n_frames = clip.n_frames();
+    let frames = args.frames.map_or(0..n_frames, |range| range.start..range.end.unwrap_or(n_frames));
+    if frames.start >= frames.end || frames.end > n_frames {
+        return Err(WorkbenchError::Frames { start: frames.start, end: frames.end, n_frames }.into());
     }
-    let options = OpenOptions { fps: args.fps, ..OpenOptions::default() };
-    let media = Arc::new(media::open(&args.clip, &options)?);
-    Ok((media, Vec::new(), Arc::new(Registry::scan(&common.plugins))))
+    let is_flow = |path: &&PathBuf| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("flo"));
+    let flow = args.truth.as_ref().filter(is_flow).map(|path| compare::read_flow(path, clip)).transpose()?;
+    let table = args.truth.as_ref().filter(|path| !is_flow(path));
+    let mut truth = table.map(|path| compare::read_truth(path, n_frames)).transpose()?;
+    truth.iter().try_for_each(|truth| compare::check_truth(truth, clip))?;
+    let points = match (&args.points, &truth) {
+        (Some(path), _) => compare::read_points(path)?,
+        (None, Some(truth)) => compare::points_of(truth),
+        (None, None) if own.is_empty() => {
+            let trackers: Vec<(&str, &Values)> = contestants.iter().filter_map(tracker).collect();
+            compare::detect(&media, &registry, &trackers, frames.start)?
+        }
+        (None, None) => own,
+    };
+    want(!points.is_empty(), || {
+        "there are no points to compare on: give --points, or a project that has tracks".to_owned()
+    })?;
+    if let Some(flow) = &flow {
+        let len = u32::try_from(frames.len())?;
+        truth = Some(compare::truth_of_flow(flow, &points, len)?);
+    }
+    Ok(Question { points, frames, truth, flow, keys, passes: !args.quick })
+}
+
+fn tracker(contestant: &Contestant) -> Option<(&str, &Values)> {
+    match contestant {
+        Contestant::Tracker(name, values) => Some((name, values)),
+        Contestant::Foreign(..) => None,
+    }
 }
 
 /// `--set` for a tracker: those of its parameters that are set.
@@ -76,44 +149,5 @@ fn has(params: &[Param], text: &str) -> bool {
     params.iter().any(|param| param.id == id)
 }
 
-fn describe(rows: &[Row], n_points: usize) -> Answer {
-    let head = ["tracker", "δavg", "<1 px", "median", "survival", "ok", "lost", "kept", "ms/frame"];
-    let mut table = vec![head.map(str::to_owned).to_vec()];
-    for row in rows {
-        let number =
-            |value: Option<f64>, digits: usize| value.map_or("–".to_owned(), |v| format!("{v:.digits$}"));
-        let of = |part: fn(&honami_workbench::compare::Accuracy) -> f64| row.accuracy.as_ref().map(part);
-        table.push(vec![
-            row.tracker.clone(),
-            number(of(|a| a.delta_avg), 3),
-            number(of(|a| a.within_1px), 3),
-            number(row.accuracy.and_then(|a| a.median_px), 2),
-            number(of(|a| a.survival), 3),
-            number(of(|a| a.ok_tracks), 3),
-            number(of(|a| a.n_lost as f64 / a.n_samples as f64), 3),
-            number(Some(row.kept), 3),
-            number(row.ms_per_frame, 2),
-        ]);
-    }
-    let text = format!("{n_points} points\n{}", report::table(&table));
-    Answer {
-        json: json!({ "points": n_points, "trackers": rows.iter().map(entry).collect::<Vec<_>>() }),
-        text,
-        done: true,
-    }
-}
-
-fn entry(row: &Row) -> serde_json::Value {
-    let mut entry = json!({ "tracker": row.tracker, "kept": row.kept, "ms_per_frame": row.ms_per_frame });
-    if let Some(accuracy) = row.accuracy {
-        entry["delta_avg"] = accuracy.delta_avg.into();
-        entry["within_1px"] = accuracy.within_1px.into();
-        entry["median_px"] = accuracy.median_px.into();
-        entry["survival"] = accuracy.survival.into();
-        entry["ok_tracks"] = accuracy.ok_tracks.into();
-        entry["visibility"] = accuracy.visibility.into();
-        entry["samples"] = accuracy.n_samples.into();
-        entry["lost"] = accuracy.n_lost.into();
-    }
-    entry
-}
+#[cfg(test)]
+mod tests;

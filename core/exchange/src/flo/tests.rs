@@ -1,5 +1,4 @@
 //! Files of flow: bytes laid down by hand, what is read back, and what is refused.
-#![expect(clippy::unwrap_used, reason = "a failed step of a test is a failed test")]
 
 use proptest::prelude::*;
 
@@ -28,7 +27,10 @@ fn bytes_by_hand() {
     let flow = read(&path).unwrap();
     assert_eq!(flow, Flow { width: 2, height: 1, vectors: vec![Some([1.5, -2.0]), None] });
     write(&path, &flow).unwrap();
-    assert_eq!(std::fs::read(&path).unwrap()[..20], [*b"PIEH", i(2), i(1), f(1.5), f(-2.0)].as_flattened()[..]);
+    assert_eq!(
+        std::fs::read(&path).unwrap()[..20],
+        [*b"PIEH", i(2), i(1), f(1.5), f(-2.0)].as_flattened()[..]
+    );
     assert_eq!(read(&path).unwrap(), flow);
 }
 
@@ -71,6 +73,8 @@ fn between_pixels_it_is_bilinear_and_beside_unknown_ones_unknown() {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
     #[test]
     fn what_is_written_reads_back_to_the_same_bits(
         (width, vectors) in (1_usize..9).prop_flat_map(|width| {

@@ -4,6 +4,7 @@ use honami_model::picture::Range;
 use image::codecs::jpeg::JpegEncoder;
 
 use super::*;
+use crate::open_images;
 
 /// Rounded mean of a block, a rounding of .5 upwards.
 fn mean(values: &[u8]) -> u8 {
@@ -32,13 +33,16 @@ fn images_in_natural_order_with_any_name() {
         gray(9, 7, frame).save(folder.join(name)).unwrap();
     }
     std::fs::write(folder.join("notes.txt"), "not an image").unwrap();
+    let want = |frame| gray(9, 7, frame).into_raw();
     for path in ["my plant", "my plant/?eaf *.PNG"] {
         let media = place.open(path);
         assert_eq!(media.clip().times.nominal_fps(), Some(25.0));
         assert!(media.notes().iter().any(|note| note.contains("25 fps")), "{:?}", media.notes());
-        let want: Vec<Vec<u8>> = (0..4).map(|k| gray(9, 7, k).into_raw()).collect();
-        assert_eq!(bytes_of(&media), want);
+        assert_eq!(bytes_of(&media), [0, 1, 2, 3].map(want));
     }
+    let named = ["leaf 11.PNG", "Leaf 1.PNG"].map(|name| folder.join(name));
+    let listed = open_images(&named, &place.options()).unwrap();
+    assert_eq!(bytes_of(&listed), [want(3), want(0)], "as they are listed");
     let numbered = place.open("my plant/leaf %d.PNG");
     assert_eq!(numbered.clip().n_frames(), 3, "the L of the first one is upper-case");
     let timed = open(&folder, &OpenOptions { fps: Some(500.0), ..place.options() }).unwrap();

@@ -11,14 +11,15 @@ fn one_that_does_not_stop_is_not_waited_for_without_end() {
     let (gate, shut) = sync_channel::<()>(1);
     let running = Running::spawn(waker, move |_| {
         assert!(shut.recv().is_err(), "nobody sends");
-        Done::Track(Err(WorkbenchError::Stopped))
+        Done::Track(Box::new(Err(WorkbenchError::Stopped)))
     });
     let running = running.unwrap();
     running.stop();
     assert!(!running.ends_within(Duration::from_millis(1)), "it hears nobody");
     drop(gate);
     assert!(running.ends_within(Duration::from_secs(60)));
-    assert!(matches!(running.join(), Some(Done::Track(Err(WorkbenchError::Stopped)))));
+    let Some(Done::Track(done)) = running.join() else { panic!("it has ended") };
+    assert!(matches!(*done, Err(WorkbenchError::Stopped)));
 }
 
 #[test]
