@@ -1,12 +1,11 @@
 //! Benchmarks: each prints JSON, next to its peer where there is one, from the same run.
 
 use std::fs;
-use std::path::Path;
 
 use anyhow::Context as _;
 
-use crate::BUILD;
-use crate::shell::{Step, built, cargo, target_dir};
+use crate::shell::{Step, cargo, target_dir};
+use crate::{BUILD, accuracy};
 
 /// Name, what it measures, and how to run it.
 type Bench = (&'static str, &'static str, fn(&[&str]) -> anyhow::Result<()>);
@@ -14,7 +13,11 @@ type Bench = (&'static str, &'static str, fn(&[&str]) -> anyhow::Result<()>);
 const BENCHES: [Bench; 12] = [
     ("encode", "the encoder's time, bytes and likeness: `bench encode [BYTES] [CLIP…]`", encode),
     ("trackers", "KLT against OpenCV's calcOpticalFlowPyrLK, same frames, alternating", trackers),
-    ("accuracy", "δavg of KLT and of OpenCV's on calm, wind and storm: `bench accuracy [SEED]`", accuracy),
+    (
+        "accuracy",
+        "every tracker on everything whose answer is known: `bench accuracy [SET…] [--with NAME…]`",
+        accuracy::run,
+    ),
     ("cluster", "composite distance + Ward, N = 2000, T = 500, against SciPy's linkage", cluster),
     ("media", "decoding, seeking, stepping back: `bench media CLIP`", media),
     ("store", "opening, editing and appending to a project of 10,000 tracks", store),
@@ -49,53 +52,6 @@ fn example(package: &str, name: &str, args: &[&str]) -> Step {
 
 fn trackers(args: &[&str]) -> anyhow::Result<()> {
     example("honami-vision", "klt_bench", args).run()
-}
-
-/// The same clip and points for both, at the three levels; the baseline that tracks nothing is in each table.
-fn accuracy(args: &[&str]) -> anyhow::Result<()> {
-    cargo(BUILD).run()?;
-    let seed = args.first().copied().unwrap_or("1");
-    let folder = target_dir()?.join("bench").join(format!("accuracy-{seed}"));
-    if folder.exists() {
-        fs::remove_dir_all(&folder).with_context(|| format!("cannot remove {}", folder.display()))?;
-    }
-    fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
-    let honami = || built("release", "honami");
-    for level in ["calm", "wind", "storm"] {
-        let clip = folder.join(format!("{level}.y4m"));
-        let (truth, points) = (clip.with_extension("truth.csv"), clip.with_extension("points.csv"));
-        let words = ["--wind", level, "--leaves", "2600", "--frames", "150", "--seed", seed];
-        honami()?.arg("synth").arg(&clip).args(words).run()?;
-        fs::write(&points, visible_at_first(&truth)?)?;
-        let peer = clip.with_extension("opencv.csv");
-        Step::new("python3")
-            .args(["tests/peers/klt_opencv.py", "track"])
-            .args([&clip, &points, &peer])
-            .run()?;
-        let opencv = format!("opencv={}", peer.display());
-        honami()?
-            .arg("compare")
-            .arg(&clip)
-            .args(["--with", "klt", "--tracks", &opencv])
-            .arg("--truth")
-            .arg(&truth)
-            .arg("--points")
-            .arg(&points)
-            .run()?;
-    }
-    Ok(())
-}
-
-/// The points of a truth table that can be seen in frame 0, as a table of points.
-fn visible_at_first(truth: &Path) -> anyhow::Result<String> {
-    let text = fs::read_to_string(truth).with_context(|| format!("cannot read {}", truth.display()))?;
-    let mut points = String::from("id,x,y\n");
-    for line in text.lines().skip(1) {
-        if let [id, "0", x, y, "1", ..] = line.split(',').collect::<Vec<_>>()[..] {
-            points += &format!("{id},{x},{y}\n");
-        }
-    }
-    Ok(points)
 }
 
 fn cluster(args: &[&str]) -> anyhow::Result<()> {

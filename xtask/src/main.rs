@@ -1,6 +1,7 @@
 //! Developer commands of honami: `cargo xtask demo|test|lint|bench|wan`.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a command-line tool speaks to a person")]
 
+mod accuracy;
 mod bench;
 mod shell;
 mod system;

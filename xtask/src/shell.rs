@@ -40,6 +40,14 @@ impl Step {
         Ok(())
     }
 
+    /// Runs it and gives what it prints; it says nothing unless it fails.
+    pub(crate) fn output(mut self) -> anyhow::Result<String> {
+        let output = self.0.output().with_context(|| format!("cannot start {}", self.line()))?;
+        let said = String::from_utf8_lossy(&output.stderr);
+        ensure!(output.status.success(), "{} ended with {}: {}", self.line(), output.status, said.trim());
+        Ok(String::from_utf8(output.stdout)?)
+    }
+
     fn line(&self) -> String {
         let words = std::iter::once(self.0.get_program()).chain(self.0.get_args());
         words.map(OsStr::to_string_lossy).collect::<Vec<_>>().join(" ")
@@ -66,7 +74,8 @@ pub(crate) fn target_dir() -> anyhow::Result<PathBuf> {
     me.ancestors().nth(2).map(Path::to_path_buf).context("this program lies in no target folder")
 }
 
-fn root() -> &'static Path {
+/// The root of the workspace.
+pub(crate) fn root() -> &'static Path {
     let xtask = Path::new(env!("CARGO_MANIFEST_DIR"));
     xtask.parent().unwrap_or(xtask)
 }

@@ -1,0 +1,247 @@
+//! Where rows are measured and kept: the program, its trackers, and the folder of clips and answers.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::Context as _;
+use serde_json::{Value, json as object};
+
+use super::cases::{Case, What};
+use super::json;
+use crate::shell::{Step, built, target_dir};
+
+/// Rows of another version are measured again: raise it when the measure or the cases change.
+const VERSION: u32 = 1;
+/// A tracker that takes no longer for a frame, milliseconds, is given everything;
+const QUICK_MS: f64 = 60.0;
+/// one that takes longer than this, very little.
+const SLOW_MS: f64 = 250.0;
+
+/// So many frames of a clip that is tracked both ways.
+const SLOW_FRAMES: u32 = 100;
+
+/// Who is measured.
+pub(super) enum Tracker {
+    /// A plugin: its short name and the hash of its content.
+    Plugin { name: String, sha256: String, params: Vec<String> },
+    /// OpenCV's KLT, by the script that is the peer of other benchmarks, too.
+    Peer { version: String },
+}
+
+/// How much a tracker is given, so that all of it ends in a quarter of an hour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Pace {
+    Quick,
+    Middling,
+    Slow,
+}
+
+impl Tracker {
+    pub(super) fn name(&self) -> &str {
+        match self {
+            Self::Plugin { name, .. } => name,
+            Self::Peer { .. } => "OpenCV KLT",
+        }
+    }
+
+    /// What must be the same for a kept row to hold.
+    fn key(&self) -> String {
+        match self {
+            Self::Plugin { name, sha256, .. } => format!("{name}-{}", &sha256[..16.min(sha256.len())]),
+            Self::Peer { version } => format!("opencv-klt-{version}"),
+        }
+    }
+
+    pub(super) fn has(&self, param: &str) -> bool {
+        matches!(self, Self::Plugin { params, .. } if params.iter().any(|known| known == param))
+    }
+}
+
+/// The folder of all that is measured here.
+pub(super) struct Lab {
+    pub(super) folder: PathBuf,
+    /// Real clips, where `HONAMI_DATA` names them.
+    pub(super) data: Option<PathBuf>,
+}
+
+impl Lab {
+    pub(super) fn new() -> anyhow::Result<Self> {
+        let folder = target_dir()?.join("bench/accuracy");
+        fs::create_dir_all(folder.join("rows"))
+            .with_context(|| format!("cannot make {}", folder.display()))?;
+        let data = std::env::var_os("HONAMI_DATA").map(PathBuf::from);
+        if data.is_none() {
+            eprintln!("HONAMI_DATA is not set: only generated clips are measured");
+        }
+        Ok(Self { folder, data })
+    }
+
+    /// The program; what it decodes is kept beside the clips and not in a person's cache.
+    pub(super) fn honami(&self) -> anyhow::Result<Step> {
+        Ok(built("release", "honami")?.env("XDG_CACHE_HOME", self.folder.join("frames")))
+    }
+
+    /// The shipped trackers, or those of them that are named, and OpenCV where Python has it.
+    pub(super) fn trackers(&self, with: &[String]) -> anyhow::Result<Vec<Tracker>> {
+        let list = json(self.honami()?.args(["plugin", "list", "--json"]))?;
+        let mut trackers = Vec::new();
+        for plugin in list["plugins"].as_array().into_iter().flatten().filter(|p| p["kind"] == "tracker") {
+            let name = plugin["short_name"].as_str().unwrap_or_default().to_owned();
+            if with.is_empty() || with.contains(&name) {
+                let info = json(self.honami()?.args(["plugin", "info", &name, "--json"]))?;
+                let sha256 = info["sha256"].as_str().unwrap_or_default().to_owned();
+                let params = plugin["params"].as_array().into_iter().flatten();
+                let params = params.filter_map(|p| Some(p["id"].as_str()?.to_owned())).collect();
+                trackers.push(Tracker::Plugin { name, sha256, params });
+            }
+        }
+        let stray = with.iter().find(|name| !trackers.iter().any(|tracker| tracker.name() == *name));
+        anyhow::ensure!(stray.is_none(), "there is no tracker {}", stray.map_or("", String::as_str));
+        let version = Step::new("python3").args(["-c", "import cv2; print(cv2.__version__)"]).output();
+        match version {
+            Ok(version) if with.is_empty() => {
+                trackers.push(Tracker::Peer { version: version.trim().to_owned() });
+            }
+            Ok(_) => {}
+            Err(_) => eprintln!("python3 has no cv2: the row of OpenCV is left out"),
+        }
+        Ok(trackers)
+    }
+
+    /// The row of a tracker in a case, measured unless it is kept; `None` where the case is not for this tracker.
+    pub(super) fn row(&self, case: &Case, tracker: &Tracker) -> anyhow::Result<Option<Value>> {
+        let n_points = case.n_points(self.pace(tracker)?);
+        let is_for_it = matches!(tracker, Tracker::Plugin { .. }) || case.is_generated;
+        let Some(n_points) = n_points.filter(|_| is_for_it) else { return Ok(None) };
+        let file = self.kept(case, tracker, n_points);
+        if let Some(kept) = read(&file) {
+            return Ok(Some(kept));
+        }
+        let row = match &case.what {
+            What::Pictures { .. } => self.compare(case, tracker, n_points)?,
+            What::Fork { .. } => self.listen(case, tracker, n_points)?,
+        };
+        fs::write(&file, row.to_string()).with_context(|| format!("cannot write {}", file.display()))?;
+        Ok(Some(row))
+    }
+
+    /// The row if it is kept.
+    pub(super) fn kept_row(&self, case: &Case, tracker: &Tracker) -> Option<Value> {
+        let pace = read(&self.probe(tracker)).map_or(Pace::Quick, |kept| pace_of(&kept));
+        read(&self.kept(case, tracker, case.n_points(pace)?))
+    }
+
+    fn kept(&self, case: &Case, tracker: &Tracker, n_points: usize) -> PathBuf {
+        let name = format!("{}-{}-{n_points}-v{VERSION}.json", case.name, tracker.key());
+        self.folder.join("rows").join(name)
+    }
+
+    fn probe(&self, tracker: &Tracker) -> PathBuf {
+        self.folder.join("rows").join(format!("probe-{}-v{VERSION}.json", tracker.key()))
+    }
+
+    /// How quick a tracker is, on ten frames of a clip of its own.
+    fn pace(&self, tracker: &Tracker) -> anyhow::Result<Pace> {
+        let Tracker::Plugin { name, .. } = tracker else { return Ok(Pace::Quick) };
+        let file = self.probe(tracker);
+        if let Some(kept) = read(&file) {
+            return Ok(pace_of(&kept));
+        }
+        let (clip, points) = (self.folder.join("probe.y4m"), self.folder.join("probe.points.csv"));
+        let line = self.honami()?.arg("compare").arg(&clip).arg("--points").arg(&points);
+        let said = json(line.args(["--quick", "--with", name, "--json"]))?;
+        let row = object!({ "ms_per_frame": said["trackers"][0]["ms_per_frame"] });
+        fs::write(&file, row.to_string()).with_context(|| format!("cannot write {}", file.display()))?;
+        Ok(pace_of(&row))
+    }
+
+    /// `honami compare` with one tracker: its answer as it is.
+    fn compare(&self, case: &Case, tracker: &Tracker, n_points: usize) -> anyhow::Result<Value> {
+        let What::Pictures { clip, truth, points, set, n_frames, passes } = &case.what else {
+            anyhow::bail!("{} is not compared", case.name)
+        };
+        let points = thinned(points, n_points)?;
+        let mut line = self.honami()?.arg("compare").args(clip).arg("--points").arg(&points).arg("--json");
+        if let Some(truth) = truth {
+            line = line.arg("--truth").arg(truth);
+        }
+        let n_frames =
+            if self.pace(tracker)? == Pace::Slow && *passes { Some(SLOW_FRAMES) } else { *n_frames };
+        if let Some(n_frames) = n_frames {
+            line = line.args(["--frames", &format!("0..{n_frames}")]);
+        }
+        if !passes {
+            line = line.arg("--quick");
+        }
+        match tracker {
+            Tracker::Plugin { name, .. } => {
+                line = line.args(["--with", name]);
+                for (param, value) in set.iter().filter(|(param, _)| tracker.has(param)) {
+                    line = line.args(["--set", &format!("{param}={value}")]);
+                }
+            }
+            Tracker::Peer { .. } => {
+                let table = points.with_extension("opencv.csv");
+                let script = Step::new("python3").args(["tests/peers/klt_opencv.py", "track"]);
+                script.args(clip).arg(&points).arg(&table).output()?;
+                line = line.arg("--tracks").arg(format!("opencv={}", table.display()));
+            }
+        }
+        json(line)
+    }
+
+    /// The strongest sway of points on a fork.
+    fn listen(&self, case: &Case, tracker: &Tracker, n_points: usize) -> anyhow::Result<Value> {
+        let What::Fork { clip, points, fps } = &case.what else { anyhow::bail!("{} is no fork", case.name) };
+        let points = thinned(points, n_points)?;
+        let project = self.folder.join(format!("{}-{}.honami", case.name, tracker.name()));
+        remove(&project)?;
+        self.honami()?.arg("new").arg(&project).arg(clip).args(["--fps", &fps.to_string()]).output()?;
+        let n_frames = if self.pace(tracker)? == Pace::Slow { 200 } else { 880 };
+        let line = self.honami()?.arg("track").arg(&project).args(["--with", tracker.name(), "--points"]);
+        line.arg(&points).args(["--frames", &format!("0..{n_frames}")]).output()?;
+        let said = json(self.honami()?.arg("spectrum").arg(&project).arg("--json"))?;
+        remove(&project)?;
+        let peak = &said["lines"][0]["peaks"][0];
+        Ok(object!({ "hz": peak["hz"], "points": n_points, "frames": n_frames }))
+    }
+}
+
+fn pace_of(probe: &Value) -> Pace {
+    match probe["ms_per_frame"].as_f64() {
+        Some(ms) if ms > SLOW_MS => Pace::Slow,
+        Some(ms) if ms > QUICK_MS => Pace::Middling,
+        _ => Pace::Quick,
+    }
+}
+
+fn read(file: &Path) -> Option<Value> {
+    serde_json::from_str(&fs::read_to_string(file).ok()?).ok()
+}
+
+fn remove(file: &Path) -> anyhow::Result<()> {
+    match fs::remove_file(file) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+            Err(error).with_context(|| format!("cannot remove {}", file.display()))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// A table of at most so many of the points, evenly chosen.
+fn thinned(points: &Path, n_points: usize) -> anyhow::Result<PathBuf> {
+    let text = fs::read_to_string(points).with_context(|| format!("cannot read {}", points.display()))?;
+    let (head, rows) = text.split_once('\n').unwrap_or_default();
+    let rows: Vec<&str> = rows.lines().collect();
+    if rows.len() <= n_points {
+        return Ok(points.to_owned());
+    }
+    let chosen = (0..n_points).map(|k| rows[k * rows.len() / n_points]);
+    let text: String = std::iter::once(head).chain(chosen).map(|line| format!("{line}\n")).collect();
+    let file = points.with_extension(format!("{n_points}.csv"));
+    // Others may be reading it: it never changes, and stands there whole.
+    let part = file.with_extension(format!("{:?}.part", std::thread::current().id()).replace(['(', ')'], ""));
+    fs::write(&part, text).with_context(|| format!("cannot write {}", part.display()))?;
+    fs::rename(&part, &file).with_context(|| format!("cannot write {}", file.display()))?;
+    Ok(file)
+}
