@@ -10,9 +10,10 @@ use crate::{BUILD, accuracy};
 /// Name, what it measures, and how to run it.
 type Bench = (&'static str, &'static str, fn(&[&str]) -> anyhow::Result<()>);
 
-const BENCHES: [Bench; 12] = [
+const BENCHES: [Bench; 13] = [
     ("encode", "the encoder's time, bytes and likeness: `bench encode [BYTES] [CLIP…]`", encode),
     ("trackers", "KLT against OpenCV's calcOpticalFlowPyrLK, same frames, alternating", trackers),
+    ("box", "box matching against OpenCV's matchTemplate: `bench box [CLIP…]`", box_matching),
     (
         "accuracy",
         "every tracker on everything whose answer is known: `bench accuracy [SET…] [--with NAME…]`",
@@ -52,6 +53,10 @@ fn example(package: &str, name: &str, args: &[&str]) -> Step {
 
 fn trackers(args: &[&str]) -> anyhow::Result<()> {
     example("honami-vision", "klt_bench", args).run()
+}
+
+fn box_matching(args: &[&str]) -> anyhow::Result<()> {
+    example("honami-vision", "box_bench", args).run()
 }
 
 fn cluster(args: &[&str]) -> anyhow::Result<()> {

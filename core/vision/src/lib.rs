@@ -7,6 +7,7 @@
 //! Nothing here does input or output, keeps a clock or draws a random number; results are the same bits for
 //! any number of threads and at every SIMD level.
 
+pub mod boxes;
 pub mod detect;
 pub mod field;
 pub mod horn_schunck;
