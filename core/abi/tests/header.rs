@@ -158,10 +158,11 @@ fn structs(header: &str) -> BTreeMap<String, Vec<String>> {
 }
 
 #[test]
-fn the_headers_and_the_example_compile_by_themselves() {
+fn the_headers_and_the_examples_compile_by_themselves() {
     check("alone.c", "#include \"honami.h\"\n");
     check("alone_draft.c", "#include \"honami_draft.h\"\n");
     check("null_tracker.c", &read("examples/null_tracker.c"));
+    check("tint_tracker.c", &read("examples/tint_tracker.c"));
 }
 
 #[test]

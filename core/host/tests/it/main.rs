@@ -1,4 +1,4 @@
-//! The host against real libraries: the zoo (Rust), the bad ones (C), the fossil of ABI 1.0.
+//! The host against real libraries: the zoo (Rust), the bad ones (C), the fossils of ABI 1.0 and 1.1.
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail the test")]
 #![expect(clippy::print_stderr, reason = "a test that is skipped says so")]
 
