@@ -13,6 +13,7 @@ pub mod field;
 pub mod horn_schunck;
 pub mod klt;
 pub mod lucas_kanade;
+pub mod meanshift;
 pub mod ncc;
 pub mod plane;
 pub mod pyramid;
@@ -22,7 +23,7 @@ pub mod simd;
 pub mod texture;
 
 /// What everything here looks at.
-pub use honami_model::picture::Gray;
+pub use honami_model::picture::{Chroma, Gray};
 
 /// A position in a picture, `[x, y]`, pixels.
 pub type Point = [f32; 2];
