@@ -8,6 +8,7 @@
 //! any number of threads and at every SIMD level.
 
 pub mod boxes;
+pub mod anchor;
 pub mod detect;
 pub mod field;
 pub mod horn_schunck;
