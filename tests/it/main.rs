@@ -10,6 +10,7 @@ mod home;
 mod journal_kill;
 mod locks;
 mod offers;
+mod opencv;
 mod real_clips;
 mod replay;
 mod retrack;

@@ -1,8 +1,9 @@
-//! Developer commands of honami: `cargo xtask demo|test|lint|bench|wan`.
+//! Developer commands of honami: `cargo xtask demo|test|lint|opencv|bench|wan`.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a command-line tool speaks to a person")]
 
 mod accuracy;
 mod bench;
+mod opencv;
 mod shell;
 mod system;
 mod wan;
@@ -17,6 +18,7 @@ cargo xtask <command>
   demo [--headless]   build what the demo needs (release) and run it
   test [args…]        install what the tests need where it may, then run every test
   lint                formatting, clippy and documentation, warnings denied
+  opencv              install what OpenCV's trackers need where it may, then build them (release)
   bench [name]        measure; without a name, list the benchmarks
   wan [--json] [case…]  measure over slow links (as root); `wan list` lists the cases";
 
@@ -33,6 +35,7 @@ fn main() -> ExitCode {
         Some((&"demo", rest)) => demo(rest),
         Some((&"test", rest)) => test(rest),
         Some((&"lint", [])) => lint(),
+        Some((&"opencv", [])) => opencv::build(),
         Some((&"bench", rest)) => bench::run(rest),
         Some((&"wan", rest)) => wan::run(rest),
         Some((&("help" | "--help" | "-h"), _)) => {
@@ -64,14 +67,28 @@ fn demo(args: &[&str]) -> anyhow::Result<()> {
 fn test(args: &[&str]) -> anyhow::Result<()> {
     system::need_compiler()?;
     system::want_ffmpeg();
+    // What is asked for by name is looked for in the packages that build everywhere.
+    let opencv = if args.is_empty() { opencv::Kit::want() } else { None };
     // The end-to-end tests run the real program with the real plugins: build them first.
     cargo(&["build"]).run()?;
-    cargo(&["test"]).args(args.iter().copied()).run()
+    if let Some(opencv) = &opencv {
+        opencv.cargo(&["build"]).run()?;
+    }
+    cargo(&["test"]).args(args.iter().copied()).run()?;
+    opencv.map_or(Ok(()), |opencv| opencv.cargo(&["test"]).run())
 }
 
 /// Everything that a reviewer should not have to say.
 fn lint() -> anyhow::Result<()> {
     cargo(&["fmt", "--all", "--check"]).run()?;
-    cargo(&["clippy", "--all-targets", "--", "-D", "warnings"]).run()?;
-    cargo(&["doc", "--no-deps", "--document-private-items"]).env("RUSTDOCFLAGS", "-D warnings").run()
+    let clippy = ["clippy", "--all-targets", "--", "-D", "warnings"];
+    let doc = ["doc", "--no-deps", "--document-private-items"];
+    cargo(&clippy).run()?;
+    cargo(&doc).env("RUSTDOCFLAGS", "-D warnings").run()?;
+    let Some(opencv) = opencv::Kit::find() else {
+        eprintln!("skipped: OpenCV's trackers, because OpenCV is not there (`cargo xtask opencv` gets it)");
+        return Ok(());
+    };
+    opencv.cargo(&clippy).run()?;
+    opencv.cargo(&doc).env("RUSTDOCFLAGS", "-D warnings").run()
 }

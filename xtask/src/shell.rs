@@ -32,6 +32,12 @@ impl Step {
         self
     }
 
+    /// In another folder.
+    pub(crate) fn within(mut self, folder: &Path) -> Self {
+        self.0.current_dir(folder);
+        self
+    }
+
     /// Runs it with this terminal as its own.
     pub(crate) fn run(mut self) -> anyhow::Result<()> {
         eprintln!("$ {}", self.line());

@@ -42,33 +42,39 @@ fn answers(program: &str) -> bool {
 
 /// Installs a Debian package where this user may do so without a question; says so where not.
 fn install(package: &str) -> bool {
-    let sudo: &[&str] = match root_prefix() {
-        Some(prefix) => prefix,
-        None => {
-            eprintln!("{package} is missing and cannot be installed from here (needs root and apt-get)");
-            return false;
-        }
+    let Some(apt) = Apt::find() else {
+        eprintln!("{package} is missing and cannot be installed from here (needs root and apt-get)");
+        return false;
     };
-    let apt = |args: &[&str]| {
-        let words: Vec<&str> = sudo.iter().chain(&["apt-get", "-qq", "-y"]).chain(args).copied().collect();
-        Step::new(words[0]).args(&words[1..]).env("DEBIAN_FRONTEND", "noninteractive").run()
-    };
-    let done = apt(&["update"]).and_then(|()| apt(&["install", "--no-install-recommends", package]));
+    let done = apt.run(&["update"]).and_then(|()| apt.run(&["install", "--no-install-recommends", package]));
     if let Err(error) = &done {
         eprintln!("could not install {package}: {error:#}");
     }
     done.is_ok()
 }
 
-/// The words that make a command run as root: none for root itself, `sudo -n` where it asks nothing.
-fn root_prefix() -> Option<&'static [&'static str]> {
-    let ok = |program: &str, args: &[&str]| {
-        let out = Command::new(program).args(args).stderr(Stdio::null()).output().ok()?;
-        out.status.success().then(|| String::from_utf8_lossy(&out.stdout).trim().to_owned())
-    };
-    ok("apt-get", &["--version"])?;
-    if ok("id", &["-u"])? == "0" {
-        return Some(&[]);
+/// apt-get, for a user who may install.
+pub(crate) struct Apt {
+    /// The words that make a command run as root: none for root itself, `sudo -n` where it asks nothing.
+    prefix: &'static [&'static str],
+}
+
+impl Apt {
+    pub(crate) fn find() -> Option<Self> {
+        let ok = |program: &str, args: &[&str]| {
+            let out = Command::new(program).args(args).stderr(Stdio::null()).output().ok()?;
+            out.status.success().then(|| String::from_utf8_lossy(&out.stdout).trim().to_owned())
+        };
+        ok("apt-get", &["--version"])?;
+        if ok("id", &["-u"])? == "0" {
+            return Some(Self { prefix: &[] });
+        }
+        ok("sudo", &["-n", "true"]).map(|_| Self { prefix: &["sudo", "-n"] })
     }
-    ok("sudo", &["-n", "true"]).map(|_| &["sudo", "-n"] as &[_])
+
+    pub(crate) fn run(&self, args: &[&str]) -> anyhow::Result<()> {
+        let mut words = self.prefix.iter().chain(&["apt-get", "-qq", "-y"]).chain(args);
+        let program = words.next().unwrap_or(&"apt-get");
+        Step::new(program).args(words).env("DEBIAN_FRONTEND", "noninteractive").run()
+    }
 }

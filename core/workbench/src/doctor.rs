@@ -21,7 +21,7 @@ pub struct Finding {
 /// Looks at everything honami can make use of.
 #[must_use]
 pub fn examine(registry: &Registry) -> Vec<Finding> {
-    vec![trackers(registry), ffmpeg(), cache(), threads()]
+    vec![trackers(registry), opencv(registry), ffmpeg(), cache(), threads()]
 }
 
 fn trackers(registry: &Registry) -> Finding {
@@ -32,6 +32,19 @@ fn trackers(registry: &Registry) -> Finding {
         found: if names.is_empty() { "none found".to_owned() } else { names.join(", ") },
         adds: "trackers and clusterers",
         advice: Some("cargo build --release builds the shipped ones beside the program".to_owned()),
+    }
+}
+
+/// OpenCV's trackers are a library that is built apart, because it needs OpenCV.
+fn opencv(registry: &Registry) -> Finding {
+    let theirs = registry.plugins().iter().filter(|plugin| plugin.library_id == "org.honami.opencv");
+    let names: Vec<&str> = theirs.map(|plugin| plugin.short_name.as_str()).collect();
+    Finding {
+        what: "OpenCV",
+        there: !names.is_empty(),
+        found: if names.is_empty() { "its plugin is not built".to_owned() } else { names.join(", ") },
+        adds: "its trackers, to compare with: LK, DIS, Farneback, SIFT",
+        advice: Some("cargo xtask opencv gets what it needs from Debian or Ubuntu and builds it".to_owned()),
     }
 }
 
