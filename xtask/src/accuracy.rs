@@ -36,10 +36,10 @@ pub(crate) fn run(args: &[&str]) -> anyhow::Result<()> {
     let begun = Instant::now();
     cargo(BUILD).run()?;
     let lab = Lab::new()?;
-    let trackers = lab.trackers(&wanted.with)?;
     let cases = cases::prepare(&lab, &wanted.sets)?;
+    let (trackers, left_out) = lab.able(lab.trackers(&wanted.with)?);
     let failures = measure(&lab, &cases, &trackers, wanted.n_jobs)?;
-    let page = page::write(&lab, &cases, &trackers);
+    let page = page::write(&lab, &cases, &trackers, &left_out);
     println!("\n{page}");
     eprintln!("measured in {:.0} s", begun.elapsed().as_secs_f64());
     if wanted.sets.is_empty() && wanted.with.is_empty() {

@@ -50,6 +50,8 @@ pub struct Accuracy {
     pub mean_px: Option<f64>,
     /// Root of their mean squared error, pixels.
     pub rms_px: Option<f64>,
+    /// The same of their offsets right and down, each for itself, pixels.
+    pub axis_rms_px: Option<[f64; 2]>,
     /// Their mean offset from the truth, right and down, pixels.
     pub bias_px: Option<[f64; 2]>,
     /// Share of samples whose visibility was told rightly: occlusion accuracy.
@@ -80,6 +82,7 @@ struct Sums {
     /// Of the visible samples that were not lost.
     errors: Vec<f64>,
     offset: [f64; 2],
+    squared: [f64; 2],
     /// One a track that has visible samples.
     medians: Vec<f64>,
     n_visible: u64,
@@ -112,6 +115,7 @@ impl Sums {
                 if let Some([x, y]) = sample.offset_px {
                     self.errors.push(error_px);
                     self.offset = [self.offset[0] + x, self.offset[1] + y];
+                    self.squared = [self.squared[0] + x * x, self.squared[1] + y * y];
                 }
             }
             survived += u64::from(alive);
@@ -132,6 +136,7 @@ impl Sums {
         let (n_visible, n_found) = (self.n_visible as f64, self.errors.len() as f64);
         let n_tracks = self.n_tracks as f64;
         let found = |sum: f64| (n_found > 0.0).then_some(sum / n_found);
+        let on_axes = |sums: [f64; 2]| found(sums[0]).zip(found(sums[1])).map(<[f64; 2]>::from);
         Some(Accuracy {
             delta_avg: self.within.iter().sum::<u64>() as f64 / (n_visible * THRESHOLDS_PX.len() as f64),
             within: self.within.map(|n| n as f64 / n_visible),
@@ -140,7 +145,8 @@ impl Sums {
             trajectory_px: median(self.medians).filter(|px| px.is_finite()),
             mean_px: found(self.errors.iter().sum()),
             rms_px: found(self.errors.iter().map(|px| px * px).sum()).map(f64::sqrt),
-            bias_px: found(self.offset[0]).zip(found(self.offset[1])).map(<[f64; 2]>::from),
+            axis_rms_px: on_axes(self.squared).map(|squares| squares.map(f64::sqrt)),
+            bias_px: on_axes(self.offset),
             visibility: self.n_told as f64 / self.n_all as f64,
             precision: (self.n_seen > 0).then_some(self.n_right as f64 / self.n_seen as f64),
             recall: self.n_right as f64 / n_visible,

@@ -8,10 +8,10 @@ use honami_exchange::flo::Flow;
 use honami_host::{CallContext, Host, Kind, Registry, Tracker, Values};
 use honami_media::Media;
 use honami_model::track::{Quality, Sample, Source, Span, Status, TrackId};
-use honami_motion::accuracy::{Pair, TruePath, accuracy, drift, histogram};
+use honami_motion::accuracy::{Pair, accuracy, drift, histogram};
 
 pub use field::FieldError;
-pub use honami_motion::accuracy::{Accuracy, Drift, Histogram, THRESHOLDS_PX};
+pub use honami_motion::accuracy::{Accuracy, Compared, Drift, Histogram, THRESHOLDS_PX, TruePath, compared};
 pub use keys::{KeyPaths, LeftOut, key_paths};
 pub use meter::Time;
 pub use points::{detect, points_of, read_points};

@@ -135,7 +135,7 @@ fn foliage(lab: &Lab, level: &str) -> anyhow::Result<Vec<Case>> {
             n_frames: None,
             passes: false,
         };
-        let limits = if seed == SEEDS[0] { [1200, 400, 100] } else { [400, 150, 0] };
+        let limits = if seed == SEEDS[0] { [1200, 400, 100] } else { [1200, 300, 0] };
         Ok(Case { name, is_generated: true, limits, what })
     };
     SEEDS.into_iter().map(case).collect()
@@ -172,12 +172,12 @@ fn corners(lab: &Lab, name: &str, clip: &Path, words: &[&str]) -> anyhow::Result
 fn middlebury(lab: &Lab, data: &Path) -> anyhow::Result<Vec<Case>> {
     let case = |pair: &str| {
         let folder = data.join("flow/middlebury").join(pair);
-        let set = ["--set", "max_features=1000", "--set", "distance=7"];
+        let set = ["--set", "max_features=3000", "--set", "distance=7"];
         let points = corners(lab, pair, &folder, &set)?;
         let clip = ["frame10.png", "frame11.png"].map(|name| folder.join(name)).to_vec();
         let (truth, set) = (Some(folder.join("flow10.flo")), Vec::new());
         let what = What::Pictures { clip, truth, points, set, n_frames: None, passes: false };
-        Ok(Case { name: pair.to_owned(), is_generated: false, limits: [1000; 3], what })
+        Ok(Case { name: pair.to_owned(), is_generated: false, limits: [3000, 3000, 1000], what })
     };
     PAIRS.into_iter().map(case).collect()
 }
@@ -245,7 +245,7 @@ fn forks(lab: &Lab, data: &Path) -> anyhow::Result<Vec<Case>> {
 /// The building at the left edge of the picture stands still until a man walks in at frame 242.
 fn waving(lab: &Lab, data: &Path) -> anyhow::Result<Case> {
     let clip = data.join("video/WavingTrees");
-    let set = ["--region", "2,18,20,70", "--set", "distance=3"];
+    let set = ["--region", "1,18,16,62", "--set", "distance=3"];
     let points = corners(lab, "waving", &clip, &set)?;
     let truth = lab.folder.join("waving.truth.csv");
     let text = fs::read_to_string(&points).with_context(|| format!("cannot read {}", points.display()))?;

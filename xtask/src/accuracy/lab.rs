@@ -108,6 +108,22 @@ impl Lab {
         Ok(trackers)
     }
 
+    /// Those that can track, and why the others cannot: one may want a file that nobody has named.
+    pub(super) fn able(&self, trackers: Vec<Tracker>) -> (Vec<Tracker>, Vec<String>) {
+        let mut left_out = Vec::new();
+        let able = trackers.into_iter().filter(|tracker| match self.pace(tracker) {
+            Ok(_) => true,
+            Err(error) => {
+                let line = format!("{error:#}");
+                let why = line.rsplit("honami: ").next().unwrap_or(&line);
+                left_out.push(format!("{}: {why}", tracker.name()));
+                eprintln!("left out: {}: {line}", tracker.name());
+                false
+            }
+        });
+        (able.collect(), left_out)
+    }
+
     /// The row of a tracker in a case, measured unless it is kept; `None` where the case is not for this tracker.
     pub(super) fn row(&self, case: &Case, tracker: &Tracker) -> anyhow::Result<Option<Value>> {
         let n_points = case.n_points(self.pace(tracker)?);

@@ -71,6 +71,8 @@ fn shares_moments_and_bias_by_hand() {
     }
     close(got.mean_px.unwrap(), 11.0 / 4.0, "mean");
     close(got.rms_px.unwrap(), (47.5_f64 / 4.0).sqrt(), "rms");
+    close(got.axis_rms_px.unwrap()[0], got.rms_px.unwrap(), "all of it is to the right");
+    close(got.axis_rms_px.unwrap()[1], 0.0, "nothing is down");
     close(got.bias_px.unwrap()[0], -1.0, "bias");
     close(got.median_px.unwrap(), 3.0, "median of 0.5, 1.5, 3, 6");
     close(got.trajectory_px.unwrap(), 3.0, "median of 0.5, 1.5, 3, 6 and the lost one");

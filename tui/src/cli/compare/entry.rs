@@ -55,6 +55,7 @@ fn against_truth(accuracy: &Accuracy) -> serde_json::Map<String, Value> {
         ("trajectory_px", json!(accuracy.trajectory_px)),
         ("mean_px", json!(accuracy.mean_px)),
         ("rms_px", json!(accuracy.rms_px)),
+        ("axis_rms_px", json!(accuracy.axis_rms_px)),
         ("bias_px", json!(accuracy.bias_px)),
         ("survival", json!(accuracy.survival)),
         ("ok_tracks", json!(accuracy.ok_tracks)),

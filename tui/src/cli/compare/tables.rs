@@ -91,17 +91,17 @@ fn drift(rows: &[Row]) -> String {
 
 /// Errors in the second of two pictures.
 fn end_points(rows: &[Row], with_field: bool) -> String {
-    let of_points = ["mean", "rms", "bias x", "bias y"];
-    let of_field = ["dense", "rms", ">1 px", "known"];
+    let of_points = ["mean", "rms x", "rms y", "bias x", "bias y"];
+    let of_field = ["dense", ">1 px", "known"];
     let head = if with_field { [&of_points[..], &of_field[..]].concat() } else { of_points.to_vec() };
     let table = table(&head, rows, |row| {
-        let of = |part: fn(&Accuracy) -> Option<f64>| fine_px(row.accuracy.as_ref().and_then(part));
+        let rms = |axis: usize| fine_px(row.accuracy.and_then(|a| Some(a.axis_rms_px?[axis])));
         let bias = |axis: usize| fine_px(row.accuracy.and_then(|a| Some(a.bias_px?[axis])));
-        let mut cells = vec![of(|a| a.mean_px), of(|a| a.rms_px), bias(0), bias(1)];
+        let mean = fine_px(row.accuracy.and_then(|a| a.mean_px));
+        let mut cells = vec![mean, rms(0), rms(1), bias(0), bias(1)];
         if with_field {
             let field = row.field.as_ref();
-            let lengths = [field.map(|f| f.mean_px), field.map(|f| f.rms_px)].map(px);
-            cells.extend(lengths);
+            cells.push(px(field.map(|f| f.mean_px)));
             cells.extend([share(field.map(|f| f.over_1px)), share(field.map(|f| f.reached))]);
         }
         cells

@@ -18,6 +18,7 @@ fn row(tracker: &str, skill: f64, n_drift: u32) -> Row {
         trajectory_px: Some(1.5 / skill),
         mean_px: Some(2.0 / skill),
         rms_px: Some(3.0 / skill),
+        axis_rms_px: Some([1.5 / skill, 2.5 / skill]),
         bias_px: Some([0.1, -0.2]),
         visibility: 0.75,
         precision: Some(1.0),
