@@ -10,6 +10,7 @@
 //! Pixels, gradients and mismatches are 16-bit fixed-point numbers and their sums are exact integers, so the
 //! plain kernel and the fast ones give the same bits (`klt/window.rs`).
 
+pub mod affine;
 #[cfg(test)]
 mod tests;
 mod window;

@@ -14,7 +14,7 @@ use honami_plugin::{
 use honami_vision::klt::{self, State};
 use honami_vision::ncc::Ncc;
 use honami_vision::pyramid::Pyramid;
-use settings::Settings;
+use settings::{Model, Settings};
 
 /// Follows each point from frame to frame, then back again to see whether it returns.
 struct Klt {
@@ -91,7 +91,7 @@ impl Tracker for Klt {
 }
 
 /// Points that are followed between two looks at whether to go on: some ten milliseconds.
-const POINTS_A_LOOK: usize = 2048;
+const POINTS_A_LOOK: usize = 1024;
 
 impl Klt {
     /// Adds a row for every point, in the order of their ids.
@@ -99,13 +99,20 @@ impl Klt {
         let Some([now, before]) = &self.pyramids else { return Ok(()) };
         let mut live: Vec<_> = self.points.iter_mut().collect();
         let n = live.len();
+        let search = |prev, next, from: &[_]| {
+            let mut flows = klt::track(prev, next, from, None, &self.params, self.n_threads);
+            if self.settings.model == Model::Affine {
+                klt::affine::refine(prev, next, from, &mut flows, &self.params, self.n_threads);
+            }
+            flows
+        };
         for (k, part) in live.chunks_mut(POINTS_A_LOOK).enumerate() {
             cx.progress((k * POINTS_A_LOOK) as f64 / n as f64, "following points")?;
             let seen = |p: &Live| p.status == Status::Tracked;
             let from: Vec<_> = part.iter().filter(|(_, p)| seen(p)).map(|(_, p)| p.at).collect();
-            let there = klt::track(before, now, &from, None, &self.params, self.n_threads);
+            let there = search(before, now, &from);
             let to: Vec<_> = there.iter().map(|flow| flow.to).collect();
-            let back = klt::track(now, before, &to, None, &self.params, self.n_threads);
+            let back = search(now, before, &to);
             let mut steps = there.iter().zip(&back);
             for (id, point) in part {
                 let mut row = Point::new(**id, point.at[0], point.at[1], point.status);

@@ -1,8 +1,18 @@
 //! The parameters of the KLT plugin, and what they mean to the algorithm.
 
 use honami_follow::{Detection, Losing};
-use honami_plugin::{Status, params};
+use honami_plugin::{Status, choice, params};
 use honami_vision::klt::{self, State};
+
+choice! {
+    /// How a window may change from frame to frame.
+    pub(crate) enum Model {
+        /// It moves.
+        Translation = "translation" => "Translation",
+        /// It moves, turns, stretches and shears.
+        Affine = "affine" => "Affine",
+    }
+}
 
 params! {
     /// What the user may choose.
@@ -13,6 +23,8 @@ params! {
         },
         /// Levels of the pyramid; each doubles the displacement that can be followed.
         levels: i64 = 4 => { label: "Levels", group: "Tracking", min: 1, max: 10, soft_max: 6 },
+        /// How a window may change from frame to frame; an affine one takes several times as long.
+        model: Model = "translation" => { label: "Model", group: "Tracking" },
         /// The most steps on each level.
         iterations: i64 = 30 => {
             label: "Iterations", group: "Tracking", min: 1, max: 1000, soft_max: 100, advanced: true,

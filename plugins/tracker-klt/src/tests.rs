@@ -48,6 +48,7 @@ fn truth(from: &Seed, t: usize) -> [f32; 2] {
 #[test]
 fn bad_input_is_borne() {
     testing::suite::<Klt>(&Settings::default());
+    testing::suite::<Klt>(&Settings { model: Model::Affine, ..Settings::default() });
 }
 
 #[test]
@@ -100,6 +101,36 @@ fn seeding_again_revives_and_retiring_ends() {
     );
     let [x, y] = truth(&revived, 1);
     assert!((rows[0].x - x).hypot(rows[0].y - y) < 0.1, "{:?}", rows[0]);
+}
+
+#[test]
+fn an_affine_window_follows_a_turn_that_translation_drifts_off() {
+    const TURN: f64 = 0.08;
+    let middle = [120.0, 90.0];
+    let turned = |angle: f64| {
+        let (sin, cos) = angle.sin_cos();
+        texture::render(WIDTH, HEIGHT, |x, y| {
+            let (dx, dy) = (x - middle[0], y - middle[1]);
+            texture::value(5, middle[0] + cos * dx + sin * dy, middle[1] - sin * dx + cos * dy)
+        })
+    };
+    let clip: Vec<_> = (0..6_u8).map(|t| turned(TURN * f64::from(t))).collect();
+    let seeds: Vec<Seed> =
+        (0..40).map(|i| seed(i, 95.0 + 6.0 * (i % 8) as f32, 60.0 + 12.0 * (i / 8) as f32)).collect();
+    let off = |settings: &Settings| {
+        let stream = testing::stream(WIDTH, HEIGHT);
+        let rows = testing::track::<Klt>(settings, &stream, &seeds, frames(&clip)).unwrap();
+        let (sin, cos) = (5.0 * TURN).sin_cos();
+        let errors = rows[5].iter().zip(&seeds).map(|(row, seed)| {
+            let (dx, dy) = (f64::from(seed.x) - middle[0], f64::from(seed.y) - middle[1]);
+            let want = [middle[0] + cos * dx - sin * dy, middle[1] + sin * dx + cos * dy];
+            (f64::from(row.x) - want[0]).hypot(f64::from(row.y) - want[1])
+        });
+        errors.sum::<f64>() / seeds.len() as f64
+    };
+    let (plain, affine) =
+        (off(&Settings::default()), off(&Settings { model: Model::Affine, ..Settings::default() }));
+    assert!(affine < 0.5 * plain && affine < 0.2, "{plain} px by translation, {affine} px by affinity");
 }
 
 #[test]
