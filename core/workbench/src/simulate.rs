@@ -171,7 +171,7 @@ fn correct(
         Model::Offered(model) => model,
         Model::First => {
             let study = retrack::study(session, track)?;
-            let first = offer::errors(&study, frame, &())?.first(study.has_rivals());
+            let first = offer::errors(&study, frame, &())?.first(study.models());
             first.unwrap_or(offer::Model::Space)
         }
     };
