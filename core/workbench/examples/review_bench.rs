@@ -1,8 +1,8 @@
 //! Keys per track that a simulated reviewer needs, a row a correction; `cargo xtask bench review`.
 //!
-//! `[--tracks N] [--seed S] [--level calm|wind|storm] [--tolerance PX] [--frames T] [--with TRACKER]… [--json]`; each
-//! model works in a copy of the same project, on the same tracks, with the same trembling hand. The tracker named first
-//! is reviewed; what the others found are candidates, too.
+//! `[--tracks N] [--seed S] [--level calm|wind|storm] [--tolerance PX] [--frames T] [--with TRACKER]… [--model MODEL]…
+//! [--pick worst|first] [--json]`; each model works in a copy of the same project, on the same tracks, with the same
+//! trembling hand. The tracker named first is reviewed; what the others found are candidates, too.
 #![allow(clippy::print_stdout, reason = "a benchmark speaks to a person")]
 
 use std::error::Error;
@@ -35,6 +35,9 @@ struct Asked {
     tolerance_px: f64,
     n_frames: u32,
     with: Vec<String>,
+    /// Those of the models that are tried; empty: all.
+    models: Vec<String>,
+    picks: Vec<Pick>,
     json: bool,
     plugin: PathBuf,
     folder: PathBuf,
@@ -48,6 +51,8 @@ fn asked() -> Result<Asked, Box<dyn Error>> {
         tolerance_px: 4.0,
         n_frames: 150,
         with: Vec::new(),
+        models: Vec::new(),
+        picks: vec![Pick::Worst, Pick::First],
         json: false,
         plugin: PathBuf::from("target/release"),
         folder: std::env::temp_dir(),
@@ -62,6 +67,10 @@ fn asked() -> Result<Asked, Box<dyn Error>> {
             "--tolerance" => asked.tolerance_px = value()?.parse()?,
             "--frames" => asked.n_frames = value()?.parse()?,
             "--with" => asked.with.push(value()?),
+            "--model" => asked.models.push(value()?),
+            "--pick" => {
+                asked.picks = vec![if value()? == "first" { Pick::First } else { Pick::Worst }];
+            }
             "--plugin" => asked.plugin = value()?.into(),
             "--folder" => asked.folder = value()?.into(),
             "--json" => asked.json = true,
@@ -146,9 +155,12 @@ struct Row {
 /// Every model with every pick; key-frames with lines and curves also where nobody has tracked.
 fn rows(asked: &Asked, scene: &Scene) -> Result<Vec<Row>, Box<dyn Error>> {
     let mut rows = Vec::new();
-    for pick in [Pick::Worst, Pick::First] {
+    for &pick in &asked.picks {
         let bare = [Model::Linear, Model::Offered(offer::Model::Hermite)].map(|model| (model, false));
-        for (model, tracked) in bare.into_iter().chain(Model::ALL.map(|model| (model, true))) {
+        let all = bare.into_iter().chain(Model::ALL.map(|model| (model, true)));
+        let is_wanted =
+            |model: Model| asked.models.is_empty() || asked.models.iter().any(|name| name == model.name());
+        for (model, tracked) in all.filter(|(model, _)| is_wanted(*model)) {
             rows.push(row(asked, scene, model, pick, tracked)?);
         }
     }

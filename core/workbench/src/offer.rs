@@ -181,7 +181,7 @@ impl Errors {
 }
 
 /// What is mostly so counts as much as so many key-frames left out.
-const PRIOR_KEYS: f64 = 2.0;
+const PRIOR_KEYS: f64 = 5.0;
 /// Errors below this are the hand's, pixels: they say nothing of the model.
 const SURE_PX: f64 = 0.5;
 
