@@ -5,10 +5,10 @@
 //! pixels. Windows are given by radius; their side is `2 * radius + 1`.
 //!
 //! Nothing here does input or output, keeps a clock or draws a random number; results are the same bits for
-//! any number of threads and at every SIMD level.
+//! any number of threads and at every SIMD level (Fourier transforms, in `piv`, round as the processor has them).
 
-pub mod boxes;
 pub mod anchor;
+pub mod boxes;
 pub mod detect;
 pub mod field;
 pub mod horn_schunck;
@@ -16,6 +16,7 @@ pub mod klt;
 pub mod lucas_kanade;
 pub mod meanshift;
 pub mod ncc;
+pub mod piv;
 pub mod plane;
 pub mod pyramid;
 pub mod robust;
