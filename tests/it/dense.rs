@@ -18,7 +18,7 @@ fn dense_motion_is_that_of_the_leaves() {
     let session = Session::create(&bench.path("p.honami"), &bench.path("clip.y4m"), None, &options).unwrap();
     let times = &session.media.clip().times;
     let mut meter = dense::prepare(&session, None).unwrap();
-    assert_eq!(meter.plugin(), "klt");
+    assert_eq!(meter.plugin(), "anchored");
     let (mut errors, mut speeds) = (Vec::new(), Vec::new());
     // In the last frame motion is that of the way which led there.
     for (frame, other) in

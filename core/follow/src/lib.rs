@@ -4,10 +4,12 @@
 //! A parameter group is taken in by `params!` with `..detection: Detection,`. A plugin that measures dense motion
 //! gives a [`Motion`] and exports [`Particles`] of it; one that follows points by itself uses the pieces.
 
+mod dense;
 mod detection;
 mod losing;
 mod particles;
 
+pub use dense::klt_field;
 pub use detection::{Corners, Detection};
 pub use losing::Losing;
 pub use particles::{Motion, Particles, Trust};

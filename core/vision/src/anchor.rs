@@ -13,6 +13,7 @@
 //! 5. what correlates too little, or is too far from where the neighbours say, is hidden: it is carried along by its
 //!    neighbours, and found again when it can be seen again.
 //!
+//! A point that has few neighbours is given companions: corners around it, followed like the rest and not reported.
 //! Each template learns which of its pixels move with the point and which belong to something before or behind it.
 //! Results of a point therefore depend on which others are followed: the tracker is *joint*.
 //!
@@ -20,6 +21,7 @@
 
 #![expect(clippy::needless_range_loop, reason = "lanes and coefficients run through several arrays at once")]
 
+mod companions;
 mod kernel;
 mod live;
 mod neighbours;
@@ -67,6 +69,8 @@ pub struct Params {
     pub doubt_gray: f32,
     /// Neighbours that a point is related to, at most; 0: each point by itself.
     pub neighbours: u32,
+    /// Corners around it that are followed for the sake of a point with fewer neighbours; 0: none.
+    pub companions: u32,
     /// Neighbours whose distance changes by as much count a quarter, pixels.
     pub kin_px: f32,
     /// What correlation a point loses for each squared standard deviation off its neighbours' word.
@@ -96,6 +100,7 @@ impl Default for Params {
             learning: 0.1,
             doubt_gray: 10.0,
             neighbours: 32,
+            companions: 24,
             kin_px: 3.0,
             stray_cost: 0.04,
             return_cost: 0.1,
@@ -179,6 +184,7 @@ impl Tracker {
         let picture = self.pyramids.as_ref().map(|[last, _]| last.picture());
         for (id, at) in seeds {
             self.n_seeds += 1;
+            let id = u64::from(id);
             match self.live.binary_search_by_key(&id, |point| point.id) {
                 Ok(slot) => self.live[slot].reseed(at, self.n_seeds, picture.as_ref(), &mut desk),
                 Err(_) => fresh.push(Live::new(id, at, self.n_seeds, picture.as_ref(), &desk)),
@@ -193,7 +199,7 @@ impl Tracker {
 
     /// Forgets a point.
     pub fn retire(&mut self, id: u32) {
-        if let Ok(slot) = self.live.binary_search_by_key(&id, |point| point.id) {
+        if let Ok(slot) = self.live.binary_search_by_key(&u64::from(id), |point| point.id) {
             self.live.remove(slot);
             self.is_changed = true;
         }
@@ -229,7 +235,12 @@ impl Tracker {
             return Ok(());
         };
         if std::mem::take(&mut self.is_changed) {
+            let is_idle = live.first().is_none_or(Live::is_companion);
+            live.retain(|point| !is_idle && !point.is_spent());
             neighbours::relate(live, params);
+            if companions::join(live, &last.picture(), params, self.simd, &mut self.n_seeds) {
+                neighbours::relate(live, params);
+            }
         }
         std::mem::swap(last, spare);
         last.fill(picture);
@@ -240,7 +251,8 @@ impl Tracker {
 
     /// What is known of every point, in the order of their ids.
     pub fn rows(&self) -> impl ExactSizeIterator<Item = Row> {
-        self.live.iter().map(Live::row)
+        let n = self.live.partition_point(|point| !point.is_companion());
+        self.live[..n].iter().map(Live::row)
     }
 
     /// Looks for every point by itself: where Lucas-Kanade and its own speed lead.

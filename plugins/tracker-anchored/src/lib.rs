@@ -4,9 +4,9 @@ mod settings;
 #[cfg(test)]
 mod tests;
 
-use honami_follow::{check_size, picture};
+use honami_follow::{check_size, klt_field, picture};
 use honami_plugin::{
-    Cx, DetectFn, Frame, Info, Point, Points, Result, Seed, Status, Stream, Tracker, export,
+    Cx, DetectFn, FieldFn, Frame, Info, Point, Points, Result, Seed, Status, Stream, Tracker, export,
 };
 use honami_vision::anchor::{self, State};
 use settings::Settings;
@@ -26,12 +26,15 @@ impl Tracker for Anchored {
               to a fraction of a pixel, correlation on every pixel around finds it again where that fails. Points \
               that keep their distance from each other ride on the same branch: those that are seen carry those \
               that are hidden, which are called occluded until they are found again. The tracker is joint: what \
-              becomes of a point depends on the others that are followed.",
+              becomes of a point depends on the others that are followed. Dense motion is Lucas-Kanade's search from \
+              the nodes of a grid, there and back, and 0 where a node does not come back to within a pixel.",
         cite: &["Lucas, Kanade 1981", "Bouguet 2000", "Baker, Matthews 2004", "Diener 2009, 2.4.1"],
         ..Info::NEW
     };
     const DETECT: Option<DetectFn<Settings>> =
         Some(|settings, wanted, _| settings.detection.features(wanted));
+    const FIELD: Option<FieldFn<Settings>> =
+        Some(|settings, from, to, max_threads, cx| klt_field(&settings.dense(), from, to, max_threads, cx));
 
     fn begin(settings: &Settings, stream: &Stream, _: &Cx<'_>) -> Result<Self> {
         Ok(Self { tracker: anchor::Tracker::new(settings.tracking(), stream.max_threads as usize) })

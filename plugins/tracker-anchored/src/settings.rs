@@ -17,6 +17,8 @@ params! {
         levels: i64 = 4 => { label: "Levels", group: "Tracking", min: 1, max: 10, soft_max: 6 },
         /// Points around a point that tell where it is, at most; 0: each point by itself.
         neighbours: i64 = 32 => { label: "Neighbours", group: "Tracking", min: 0, max: 256, soft_max: 64 },
+        /// Corners around it that are followed for the sake of a point with fewer neighbours; 0: none.
+        companions: i64 = 24 => { label: "Companions", group: "Tracking", min: 0, max: 256, soft_max: 64 },
         /// A point that correlates as much carries others, and teaches its template which pixels are its own.
         sure: f64 = 0.7 => { label: "Sure from correlation", group: "Tracking", min: 0, max: 1, advanced: true },
         /// Neighbours whose distance changes by as much count a quarter.
@@ -44,6 +46,11 @@ params! {
 }
 
 impl Settings {
+    /// For dense motion, which has no template to hold on to: a larger window.
+    pub(crate) fn dense(&self) -> klt::Params {
+        klt::Params { levels: self.levels as u32, ..klt::Params::default() }
+    }
+
     pub(crate) fn tracking(&self) -> anchor::Params {
         let usual = anchor::Params::default();
         let radius_px = self.radius as u32;
@@ -59,6 +66,7 @@ impl Settings {
             patience: self.patience as u32,
             sure: self.sure as f32,
             neighbours: self.neighbours as u32,
+            companions: self.companions as u32,
             kin_px: self.kin as f32,
             learning: self.learning as f32,
             ..usual

@@ -1,13 +1,12 @@
 //! The pyramidal KLT tracker as a honami plugin; the algorithm is `honami_vision::klt`.
 
-mod dense;
 mod settings;
 #[cfg(test)]
 mod tests;
 
 use std::collections::BTreeMap;
 
-use honami_follow::{check_size, picture};
+use honami_follow::{check_size, klt_field, picture};
 use honami_plugin::{
     Cx, DetectFn, FieldFn, Frame, Info, Point, Points, Result, Seed, Status, Stream, Tracker, export,
 };
@@ -49,7 +48,9 @@ impl Tracker for Klt {
     };
     const DETECT: Option<DetectFn<Settings>> =
         Some(|settings, wanted, _| settings.detection.features(wanted));
-    const FIELD: Option<FieldFn<Settings>> = Some(dense::field);
+    const FIELD: Option<FieldFn<Settings>> = Some(|settings, from, to, max_threads, cx| {
+        klt_field(&settings.tracking(), from, to, max_threads, cx)
+    });
 
     fn begin(settings: &Settings, stream: &Stream, _: &Cx<'_>) -> Result<Self> {
         let params = settings.tracking();

@@ -192,7 +192,7 @@ pub(super) struct Compare {
     /// Clip, or project whose clip, tracks and key-frames are used; several images are a clip, too.
     #[arg(required = true)]
     pub(super) clip: Vec<PathBuf>,
-    /// Tracker to run; give it once for each (default: klt).
+    /// Tracker to run; give it once for each (default: anchored).
     #[arg(long, value_name = "NAME")]
     pub(super) with: Vec<String>,
     /// True positions, a table `track,frame,x,y,visible,branch`; or the true flow between two pictures, a .flo file.

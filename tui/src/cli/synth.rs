@@ -84,7 +84,7 @@ pub(super) fn demo(args: &Demo, common: &Common) -> anyhow::Result<Outcome> {
     let (clip, file) = (args.folder.join(CLIP), session.project.path());
     let truth = generate::truth_beside(&clip);
     let text = format!(
-        "{} is ready: open it with `honami {0}`\nhow good was it: honami compare {} --truth {} --with klt",
+        "{} is ready: open it with `honami {0}`\nhow good was it: honami compare {} --truth {} --with anchored --with klt",
         file.display(),
         clip.display(),
         truth.display()

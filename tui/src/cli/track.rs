@@ -11,7 +11,7 @@ use super::args::{Common, Region, Track};
 use super::{Answer, report, session, want};
 
 /// The tracker that is used unless one is named.
-pub(super) const DEFAULT: &str = "klt";
+pub(super) const DEFAULT: &str = "anchored";
 
 /// Tracks, and shows what was found.
 pub(super) fn track(args: &Track, common: &Common) -> anyhow::Result<Answer> {

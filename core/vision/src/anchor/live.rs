@@ -6,6 +6,8 @@ use super::warp::{STILL, Warp};
 use super::{Row, State};
 use crate::{Gray, Point, klt};
 
+/// Ids from here on are the tracker's own.
+pub(super) const OWN: u64 = 1 << 32;
 /// How far a leaf is expected to flutter about its branch until it has been seen to, pixels.
 const FLUTTER_PX: f32 = 3.0;
 /// How slowly its flutter is forgotten: frames.
@@ -14,7 +16,8 @@ const MEMORY_FRAMES: f32 = 20.0;
 /// A point that has not been retired.
 #[derive(Debug)]
 pub(super) struct Live {
-    pub(super) id: u32,
+    /// The seed's, or [`OWN`] and more for a companion.
+    pub(super) id: u64,
     /// Which of all seedings it is from.
     pub(super) stamp: u32,
     pub(super) at: Point,
@@ -38,6 +41,8 @@ pub(super) struct Live {
     /// Mean square of that, pixels², and in how many frames.
     flutter_px2: f32,
     n_flutter: u32,
+    /// Whether it was seen to that it has neighbours.
+    pub(super) has_company: bool,
     /// Position when it was related to its neighbours.
     pub(super) base: Point,
     pub(super) near: Vec<Neighbour>,
@@ -50,7 +55,7 @@ pub(super) struct Live {
 
 impl Live {
     /// A new point, with its template where there is a picture to cut it from.
-    pub(super) fn new(id: u32, at: Point, stamp: u32, picture: Option<&Gray<'_>>, desk: &Desk<'_>) -> Self {
+    pub(super) fn new(id: u64, at: Point, stamp: u32, picture: Option<&Gray<'_>>, desk: &Desk<'_>) -> Self {
         let at = if at.iter().all(|c| c.is_finite()) { at } else { [-1.0; 2] };
         let mut point = Self {
             id,
@@ -69,6 +74,7 @@ impl Live {
             aside: [0.0; 2],
             flutter_px2: FLUTTER_PX * FLUTTER_PX,
             n_flutter: 2,
+            has_company: false,
             base: at,
             near: Vec::new(),
             flow: None,
@@ -118,9 +124,21 @@ impl Live {
         *self = point;
     }
 
+    /// Whether the tracker follows it for itself.
+    pub(super) fn is_companion(&self) -> bool {
+        self.id >= OWN
+    }
+
+    /// Whether a companion is of no use any more.
+    pub(super) fn is_spent(&self) -> bool {
+        /// Hidden for so many frames, it has likely turned into something else.
+        const USELESS_FRAMES: u32 = 50;
+        self.is_companion() && (self.n_hidden > USELESS_FRAMES || self.state == State::Outside)
+    }
+
     pub(super) fn row(&self) -> Row {
         let ncc = self.fit.filter(|_| self.state == State::Tracked).map(|fit| fit.ncc);
-        Row { id: self.id, at: self.at, state: self.state, fb: self.fb, ncc }
+        Row { id: self.id as u32, at: self.at, state: self.state, fb: self.fb, ncc }
     }
 
     pub(super) fn seen(&self) -> Seen {

@@ -12,7 +12,7 @@ use crate::Point;
 /// A point that was near when the two were related.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Neighbour {
-    id: u32,
+    id: u64,
     /// Which seeding of it; another is another point.
     stamp: u32,
     slot: u32,
@@ -51,11 +51,11 @@ const QUORUM: usize = 3;
 /// How slowly what was long ago is forgotten: frames.
 const MEMORY_FRAMES: f32 = 20.0;
 /// Relatives that are farther away count less, pixels (standard deviation).
-const NEAR_PX: f32 = 60.0;
+pub(super) const NEAR_PX: f32 = 60.0;
 
 /// Looks up who is where, and finds relatives for those who lack some.
 pub(super) fn relate(live: &mut [Live], params: &Params) {
-    let slots: BTreeMap<(u32, u32), u32> =
+    let slots: BTreeMap<(u64, u32), u32> =
         live.iter().zip(0..).map(|(point, slot)| ((point.id, point.stamp), slot)).collect();
     for point in live.iter_mut() {
         point.near.retain_mut(|other| {
@@ -66,7 +66,7 @@ pub(super) fn relate(live: &mut [Live], params: &Params) {
     for slot in 0..live.len() {
         if live[slot].is_sure && live[slot].near.len() < params.neighbours as usize {
             let found = grid.around(live, slot, params.neighbours as usize);
-            let old: BTreeMap<u32, (f32, u32)> =
+            let old: BTreeMap<u64, (f32, u32)> =
                 live[slot].near.iter().map(|n| (n.id, (n.apart, n.n))).collect();
             let relative = |&other: &u32| {
                 let Live { id, stamp, at, .. } = live[other as usize];

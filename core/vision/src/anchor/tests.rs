@@ -258,7 +258,7 @@ fn what_cannot_be_found_is_hidden_then_lost_and_stays_finite() {
     let flat = vec![90; (WIDTH * HEIGHT) as usize];
     let noise = texture::render(WIDTH, HEIGHT, |x, y| 128.0 + 90.0 * texture::hash(3, x as i64, y as i64));
     for later in [flat.clone(), noise] {
-        let (mut tracker, _) = on_grid(Params { patience: 3, ..Params::default() }, 29);
+        let (mut tracker, _) = on_grid(Params { patience: 3, companions: 0, ..Params::default() }, 29);
         push(&mut tracker, &REST.picture(0));
         for frame in 1..7 {
             for row in push(&mut tracker, &later) {
@@ -274,6 +274,31 @@ fn what_cannot_be_found_is_hidden_then_lost_and_stays_finite() {
         let rows = push(&mut tracker, &flat);
         assert!(rows.iter().all(|row| row.at.iter().all(|c| c.is_finite())), "{rows:?}");
         assert_eq!((rows[0].state, rows[2].state), (State::Outside, State::Outside));
+    }
+}
+
+#[test]
+fn a_single_point_is_given_company_that_is_not_reported() {
+    for (companions, reach_px) in [(24, 2.0), (0, 60.0)] {
+        let mut tracker = Tracker::new(Params { companions, ..Params::default() }, 1);
+        tracker.seed([(7, [58.0, 52.0])]);
+        for frame in 0..24 {
+            let (motion, picture) = passing(frame, 5..15);
+            let rows = push(&mut tracker, &picture);
+            assert_eq!(rows.iter().map(|row| row.id).collect::<Vec<_>>(), [7]);
+            let off = distance(rows[0].at, motion.to([58.0, 52.0]));
+            let hidden = (5..15).contains(&frame);
+            if companions > 0 || frame < 15 {
+                let state = if hidden { State::Occluded } else { State::Tracked };
+                assert_eq!(rows[0].state, state, "{companions} companions, frame {frame}: {:?}", rows[0]);
+                assert!(off < if hidden { reach_px } else { 0.3 }, "frame {frame}: off by {off}");
+            }
+        }
+        assert_eq!(tracker.live.len() > 10, companions > 0);
+        // It leaves with the point: nobody follows what nobody asks for.
+        tracker.retire(7);
+        push(&mut tracker, &REST.picture(0));
+        assert_eq!(tracker.live.len(), 0);
     }
 }
 

@@ -1,7 +1,6 @@
 //! Dense motion on pictures that turn, drift and hide: known everywhere.
 
 use super::*;
-use crate::dense;
 
 /// Radians from one frame to the next, about the middle of the picture.
 const TURN: f64 = 0.03;
@@ -19,7 +18,7 @@ fn turned(angle: f64) -> Vec<u8> {
 fn field(pictures: [&[u8]; 2], max_threads: u32) -> honami_plugin::Field {
     let frame = |data, index| Frame::new(Gray::packed(data, WIDTH, HEIGHT), index, index as f64);
     let [from, to] = [frame(pictures[0], 0), frame(pictures[1], 1)];
-    dense::field(&Settings::default(), &from, &to, max_threads, &testing::cx()).unwrap()
+    klt_field(&Settings::default().tracking(), &from, &to, max_threads, &testing::cx()).unwrap()
 }
 
 /// Where each node lies, and its displacement.

@@ -371,7 +371,7 @@ fn mouse(state: &mut State) -> Vec<Effect> {
 
 fn open_form(state: &mut State, task: Task) {
     let plugin = match task {
-        Task::Track => "tracker-klt",
+        Task::Track => "tracker-anchored",
         Task::Cluster => "clusterer-movement",
     };
     if !edit::is_writable(state) {

@@ -504,7 +504,7 @@ fn forms() {
         (
             "bare",
             "t r",
-            "review | frame 0 track 1 | error no tracker was found; `honami doctor` says where tracker-klt is looked for",
+            "review | frame 0 track 1 | error no tracker was found; `honami doctor` says where tracker-anchored is looked for",
         ),
         (
             "empty",

@@ -1,12 +1,11 @@
-//! Dense motion: the tracker's own search from the nodes of a grid, there and back.
+//! Dense motion by Lucas-Kanade's search from the nodes of a grid, there and back.
 
-use honami_follow::picture;
 use honami_plugin::{Cx, Field, Frame, Result};
 use honami_vision::field::Grid;
 use honami_vision::klt::{self, State};
 use honami_vision::pyramid::Pyramid;
 
-use crate::settings::Settings;
+use crate::picture;
 
 /// Nodes are a radius apart, so that windows overlap by half: closer ones would mostly see the same. At least, pixels:
 const STEP_PX: u32 = 4;
@@ -14,24 +13,26 @@ const STEP_PX: u32 = 4;
 const ASTRAY_PX: f32 = 1.0;
 
 /// Displacements between two frames; (0, 0) where nothing could be measured: no texture, hidden, or out of the picture.
-pub(crate) fn field(
-    settings: &Settings,
+///
+/// # Errors
+/// When the user wants to stop.
+pub fn klt_field(
+    params: &klt::Params,
     from: &Frame<'_>,
     to: &Frame<'_>,
     max_threads: u32,
     cx: &Cx<'_>,
 ) -> Result<Field> {
-    let params = settings.tracking();
     let [from, to] = [from, to].map(picture);
     let step = params.radius_px.max(STEP_PX);
     let grid = Grid::over(from.width, from.height, step);
     let nodes: Vec<_> = grid.nodes().collect();
 
     let [from, to] = [from, to].map(|gray| Pyramid::new(&gray, params.levels, params.radius_px));
-    let there = klt::track(&from, &to, &nodes, None, &params, max_threads as usize);
+    let there = klt::track(&from, &to, &nodes, None, params, max_threads as usize);
     cx.progress(0.5, "tracking back")?;
     let ends: Vec<_> = there.iter().map(|flow| flow.to).collect();
-    let back = klt::track(&to, &from, &ends, None, &params, max_threads as usize);
+    let back = klt::track(&to, &from, &ends, None, params, max_threads as usize);
     let moved = |((at, there), back): ((&[f32; 2], &klt::Flow), &klt::Flow)| {
         let is_found = there.state == State::Tracked && back.state == State::Tracked;
         let is_back = (back.to[0] - at[0]).hypot(back.to[1] - at[1]) <= ASTRAY_PX;
