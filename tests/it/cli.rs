@@ -101,7 +101,7 @@ fn exported_tracks_have_the_columns_of_the_table_and_true_times() {
     let bench = Bench::new();
     bench.synth("clip.y4m", 40, "--fps 50");
     bench.json("new p.honami clip.y4m");
-    bench.json("track p.honami --frames 4..30");
+    bench.json("track p.honami --with klt --frames 4..30");
     let samples = bench.samples("p.honami");
     let text = fs::read_to_string(bench.path("p.honami.csv")).unwrap();
     assert_eq!(text.lines().next(), Some("track,frame,time_s,x,y,status,source,quality,fb,ncc,run"));
@@ -187,7 +187,7 @@ fn new_features_are_found_on_the_way() {
     let bench = Bench::new();
     bench.synth("clip.y4m", 30, "--wind storm");
     bench.json("new p.honami clip.y4m");
-    bench.json("track p.honami --detect --every 10 --set lose_fb=0.5 --set distance=4 --frames 2..");
+    bench.json("track p.honami --with klt --detect --every 10 --set lose_fb=0.5 --set distance=4 --frames 2..");
     let samples = bench.samples("p.honami");
     let starts = by_track(&samples).into_values().map(|rows| rows[0]["frame"].parse::<u32>().unwrap());
     let starts: std::collections::BTreeSet<u32> = starts.collect();

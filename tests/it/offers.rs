@@ -20,7 +20,7 @@ const TRACK: TrackId = TrackId(3);
 fn session(bench: &Bench) -> Session {
     bench.json(&format!("synth clip.y4m --size 320x240 --frames {N_FRAMES} --leaves 60"));
     bench.json("new p.honami clip.y4m");
-    bench.json("track p.honami --set max_features=20");
+    bench.json("track p.honami --with klt --set max_features=20");
     let plugin_paths = vec![program().parent().unwrap().to_owned()];
     let options = SessionOptions { plugin_paths, read_only: false };
     let mut session = Session::open(&bench.path("p.honami"), &options).unwrap();

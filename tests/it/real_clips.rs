@@ -37,7 +37,7 @@ fn leaves_in_wind_are_kept_over_the_whole_clip() {
             (&n_frames.into(), &size[0].into(), &size[1].into())
         );
         assert!((new["fps"].as_f64().unwrap() - 25.0).abs() < 1e-6 && new["variable_rate"] == false, "{new}");
-        let track = bench.json(&format!("track p.honami {HARRIS}"));
+        let track = bench.json(&format!("track p.honami --with klt {HARRIS}"));
         assert!(track["tracks"].as_u64().unwrap() <= 400, "{name}: {track}");
         let kept = n_kept(&bench.samples("p.honami"), n_frames);
         assert!(kept >= at_least, "{name}: {kept} tracks are kept");
@@ -71,7 +71,7 @@ fn tuning_forks_sound_as_they_should() {
         let is_it = |row: &&Row| row["fork_hz"] == fork_hz.to_string() && row["true_fps"] == fps.to_string();
         let region = regions.iter().find(is_it).unwrap();
         let region = ["x", "y", "w", "h"].map(|column| region[column].as_str()).join(",");
-        bench.json(&format!("track p.honami --region {region}"));
+        bench.json(&format!("track p.honami --with klt --region {region}"));
         let spectrum = bench.json("spectrum p.honami");
         let peak = &spectrum["lines"][0]["peaks"][0];
         assert!(range_hz.contains(&peak["hz"].as_f64().unwrap()), "{name}: {peak}");
@@ -89,7 +89,7 @@ fn an_irregular_clip_keeps_its_times() {
     assert_eq!((&new["frames"], &new["variable_rate"]), (&68.into(), &true.into()));
     let notes = new["notes"].to_string();
     assert!(notes.contains("68") && notes.contains("irregular"), "{notes}");
-    bench.json("track p.honami");
+    bench.json("track p.honami --with klt");
     let samples = bench.samples("p.honami");
     let last =
         samples.iter().filter(|row| row["frame"] == "67").map(|row| row["time_s"].parse::<f64>().unwrap());
@@ -102,14 +102,14 @@ fn a_folder_of_images_is_a_clip() {
     let Some((bench, new)) = project("video/WavingTrees", "--fps 15") else { return };
     assert_eq!((&new["width"], &new["height"]), (&160.into(), &120.into()));
     assert!([287, 288].map(Value::from).contains(&new["frames"]), "{new}");
-    let track = bench.json("track p.honami --frames 0..40");
+    let track = bench.json("track p.honami --with klt --frames 0..40");
     assert!(track["tracks"].as_u64().unwrap() > 20, "{track}");
 }
 
 #[test]
 fn what_a_hard_clip_loses_is_reported() {
     let Some((bench, _)) = project("video/reeds_wind.mp4", "") else { return };
-    let track = bench.json(&format!("track p.honami --frames 0..60 --set lose_fb=1 {HARRIS}"));
+    let track = bench.json(&format!("track p.honami --with klt --frames 0..60 --set lose_fb=1 {HARRIS}"));
     let (tracks, lost) = (track["tracks"].as_u64().unwrap(), track["lost"].as_u64().unwrap());
     assert!(lost * 2 > tracks, "reeds in a storm are not followed by such a tracker: {track}");
     let samples = bench.samples("p.honami");

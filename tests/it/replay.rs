@@ -10,7 +10,7 @@ fn bench() -> (Bench, String) {
     let bench = Bench::new();
     bench.synth("clip.y4m", 20, "");
     let clip = bench.json("new p.honami clip.y4m")["sha256"].clone();
-    bench.json("track p.honami --set max_features=9");
+    bench.json("track p.honami --with klt --set max_features=9");
     let revision = bench.json("log p.honami")["revision"].clone();
     let head = json!({
         "honami-log": 1, "honami": "0.1.0", "project": "p", "clip": clip, "revision": revision,

@@ -19,7 +19,7 @@ fn bench() -> Bench {
     let bench = Bench::new();
     bench.json(&format!("synth clip.y4m --size 560x440 --frames {N_FRAMES} --leaves 250"));
     bench.json("new p.honami clip.y4m");
-    bench.json("track p.honami --set max_features=30");
+    bench.json("track p.honami --with klt --set max_features=30");
     bench
 }
 
@@ -98,7 +98,7 @@ fn backward_is_forward_through_the_clip_turned_round() {
     fs::write(bench.path("turned.y4m"), reversed(&fs::read(bench.path("clip.y4m")).unwrap())).unwrap();
     fs::write(bench.path("points.csv"), points).unwrap();
     bench.json("new turned.honami turned.y4m");
-    bench.json("track turned.honami --points points.csv");
+    bench.json("track turned.honami --with klt --points points.csv");
     // The birth of a track is what the feature is; a backward pass ends before it.
     let without_birth = |rows: Vec<Row>, birth: u32| -> Vec<Row> {
         rows.into_iter().filter(|row| row["frame"] != birth.to_string()).collect()

@@ -25,10 +25,10 @@ fn at_work(what: &str) -> (Bench, Child) {
     bench.synth("clip.y4m", N_FRAMES, "--leaves 40");
     bench.json("new p.honami clip.y4m");
     let end = if what == AGAIN { N_FRAMES } else { 8 };
-    bench.json(&format!("track p.honami --frames 0..{end} --set max_features=20"));
+    bench.json(&format!("track p.honami --with klt --frames 0..{end} --set max_features=20"));
     assert_eq!(bench.edit("p.honami", "key 0 3 20 30").code, Some(0));
     // A large window makes every frame slow.
-    let line = format!("track p.honami --json --set radius=50 --set levels=1{what}");
+    let line = format!("track p.honami --with klt --json --set radius=50 --set levels=1{what}");
     let mut command = bench.command(line.split(' '));
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let database =

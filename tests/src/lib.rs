@@ -174,7 +174,7 @@ impl Bench {
         let bench = Self::new();
         bench.synth("clip.y4m", 40, "");
         bench.json("new p.honami clip.y4m");
-        bench.json("track p.honami");
+        bench.json("track p.honami --with klt");
         bench
     }
 

@@ -89,7 +89,7 @@ fn time_turned_round_turns_the_motion_and_threads_change_nothing() {
 #[test]
 fn a_picture_smaller_than_a_window_has_one_node() {
     let frame = Frame::new(Gray::packed(&[7; 6], 3, 2), 0, 0.0);
-    let field = dense::field(&Settings::default(), &frame, &frame, 1, &testing::cx()).unwrap();
+    let field = klt_field(&Settings::default().tracking(), &frame, &frame, 1, &testing::cx()).unwrap();
     assert_eq!(
         (field.nx, field.ny, field.origin, field.u, field.v),
         (1, 1, [1.0, 0.5], vec![0.0], vec![0.0])
