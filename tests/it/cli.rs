@@ -1,5 +1,6 @@
 //! Every command on a small generated clip: what it does, and the keys that scripts rely on.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
@@ -190,8 +191,54 @@ fn new_features_are_found_on_the_way() {
     bench.json("track p.honami --with klt --detect --every 10 --set lose_fb=0.5 --set distance=4 --frames 2..");
     let samples = bench.samples("p.honami");
     let starts = by_track(&samples).into_values().map(|rows| rows[0]["frame"].parse::<u32>().unwrap());
-    let starts: std::collections::BTreeSet<u32> = starts.collect();
+    let starts: BTreeSet<u32> = starts.collect();
     assert!(starts.len() > 1 && starts.iter().all(|frame| [2, 12, 22].contains(frame)), "{starts:?}");
+}
+
+/// Particles are tracks of their own: newborn (5) in their first frame, tracked (1) to their last, numbered after the
+/// features.
+#[test]
+fn particles_are_born_into_tracks_of_their_own() {
+    let bench = Bench::new();
+    bench.synth("clip.y4m", 24, "");
+    bench.json("new p.honami clip.y4m");
+    let words = "track p.honami --with particles --set life=6 --set max_features=40";
+    let ran = bench.json(words);
+    let samples = bench.samples("p.honami");
+    let tracks = by_track(&samples);
+    let is_newborn = |rows: &&Vec<&Row>| rows[0]["status"] == "5";
+    let (born, found): (Vec<_>, Vec<_>) = tracks.values().partition(is_newborn);
+    assert_eq!(
+        (ran["tracks"].as_u64(), ran["born"].as_u64()),
+        (Some(tracks.len() as u64), Some(born.len() as u64))
+    );
+    assert_eq!(found.len(), 40);
+    assert!(found.iter().all(|rows| rows.len() == 24) && ran["lost"].as_u64() < Some(40), "{ran}");
+    assert!(born.len() > 100, "{ran}");
+    let mut first_frames = BTreeSet::new();
+    for rows in &born {
+        assert!((1..=6).contains(&rows.len()), "{} frames", rows.len());
+        assert!(rows[1..].iter().all(|row| row["status"] == "1"));
+        first_frames.insert(rows[0]["frame"].parse::<u32>().unwrap());
+    }
+    assert_eq!(first_frames.len(), 24, "some are born in each frame: {first_frames:?}");
+    // No number is set aside for a birth that never came.
+    assert_eq!(tracks.keys().copied().collect::<Vec<_>>(), (0..tracks.len() as u32).collect::<Vec<_>>());
+
+    // Where features may be found, and nowhere else.
+    bench.json("new r.honami clip.y4m");
+    bench.json("track r.honami --with particles --region 20,10,60,50 --set spacing=8");
+    let samples = bench.samples("r.honami");
+    for rows in by_track(&samples).values() {
+        let [x, y] = ["x", "y"].map(|column| rows[0][column].parse::<f64>().unwrap());
+        assert!((19.5..=79.5).contains(&x) && (9.5..=59.5).contains(&y), "{:?}", rows[0]);
+    }
+
+    // Tracks that are there already are followed without births.
+    bench.json("new q.honami clip.y4m");
+    bench.json("track q.honami --set max_features=5");
+    let again = bench.json("track q.honami --with particles");
+    assert_eq!((again["tracks"].as_u64(), again["born"].as_u64()), (Some(5), Some(0)), "{again}");
 }
 
 #[test]

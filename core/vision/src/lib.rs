@@ -16,6 +16,7 @@ pub mod klt;
 pub mod lucas_kanade;
 pub mod meanshift;
 pub mod ncc;
+pub mod particles;
 pub mod piv;
 pub mod plane;
 pub mod pyramid;

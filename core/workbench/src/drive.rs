@@ -5,7 +5,9 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
 
-use honami_host::{CallContext, DetectRequest, FrameView, HostError, Point, Points, StreamInfo, Tracker};
+use honami_host::{
+    CallContext, DetectRequest, FrameView, HostError, Point, PointRow, Points, StreamInfo, Tracker,
+};
 use honami_media::{FrameRef, Media};
 use honami_model::clip::Clip;
 use honami_model::picture::Gray;
@@ -18,6 +20,10 @@ use crate::stamp::SEED;
 
 /// More features than any tracker finds in a frame; a tracker's own parameter sets the real limit.
 pub(crate) const MAX_FEATURES: u32 = 100_000;
+
+/// Ids that a tracker may give to points of its own making; numbers of tracks never get that far. Each is given a
+/// number when it is born, so that none is set aside for births that never come.
+const BIRTHS: Range<u32> = u32::MAX - (1 << 24)..u32::MAX;
 
 /// A feature given to a tracker in one frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,7 +59,8 @@ pub struct Plan {
     pub frames: Range<u32>,
     /// Features to follow; those given in other frames are ignored.
     pub seeds: Vec<Seed>,
-    /// New features on the way.
+    /// New features on the way. Whoever lets the tracker find them lets it add points of its own, too: each becomes a
+    /// track that begins as newborn.
     pub detect: Option<Detect>,
     /// Threads the tracker may use.
     pub max_threads: u32,
@@ -111,7 +118,8 @@ pub fn drive(
     plan.seeds.sort_by_key(|seed| (seed.frame, seed.track));
     let (first, total) = (plan.frames.start, u64::from(plan.frames.end - plan.frames.start));
     let ear = Ear::new(progress);
-    let mut ride = Ride { media, tracker, plan: &plan, board: Board::new(first), step_secs: Vec::new() };
+    let board = Board::new(first);
+    let mut ride = Ride { media, tracker, plan: &plan, board, born: BTreeMap::new(), step_secs: Vec::new() };
     let mut stopped = ear.call(0, total, |call| ride.begin(call));
     for frame in plan.frames.clone() {
         let done = u64::from(frame - first);
@@ -125,7 +133,7 @@ pub fn drive(
         ride.board.flush(sink)?;
     }
     if stopped.is_ok() {
-        stopped = ear.call(total, total, |call| ride.end(call));
+        stopped = ear.call(total, total, |call| ride.end(numbers, call));
         ride.board.flush(sink)?;
         progress.report(total, total, "frame");
     }
@@ -143,6 +151,8 @@ struct Ride<'a> {
     tracker: &'a mut Tracker,
     plan: &'a Plan,
     board: Board,
+    /// Numbers of the tracks that points of the tracker's own making have become.
+    born: BTreeMap<u32, u32>,
     step_secs: Vec<f64>,
 }
 
@@ -157,7 +167,7 @@ impl Ride<'_> {
             reversed: false,
             max_threads: self.plan.max_threads,
             seed: SEED,
-            births: 0..0,
+            births: if self.plan.detect.is_some() { BIRTHS } else { 0..0 },
         };
         Ok(self.tracker.begin(info, call)?)
     }
@@ -175,7 +185,8 @@ impl Ride<'_> {
         let first = frame == self.plan.frames.start;
         // Seeds hold in the frame pushed last; only those of the first frame come before it.
         if !first {
-            self.board.take(self.tracker.push(&view, call)?);
+            let answers = self.tracker.push(&view, call)?;
+            self.take(answers, numbers)?;
         }
         let mut new: Vec<Point> = due(&self.plan.seeds, frame).collect();
         if let Some(detect) = &self.plan.detect {
@@ -190,11 +201,37 @@ impl Ride<'_> {
             self.tracker.seed(&new, call)?;
         }
         if first {
-            self.board.take(self.tracker.push(&view, call)?);
+            let answers = self.tracker.push(&view, call)?;
+            self.take(answers, numbers)?;
         } else {
             self.board.place(frame, &new);
         }
         self.step_secs.push(begun.elapsed().as_secs_f64());
+        Ok(())
+    }
+
+    /// Keeps answers. Points of the tracker's own making become tracks where features may be found; elsewhere nobody
+    /// has asked for them.
+    fn take(&mut self, mut answers: Vec<Points>, numbers: Numbers<'_>) -> Result<(), WorkbenchError> {
+        let mask = self.plan.detect.as_ref().and_then(|detect| detect.mask.as_deref());
+        let (width, height) = (self.media.clip().width as usize, self.media.clip().height as usize);
+        let is_wanted = |row: &PointRow| {
+            let [x, y] = [row.x, row.y].map(|c| c.round().max(0.0) as usize);
+            x < width && y < height && mask.is_none_or(|mask| mask[y * width + x] != 0)
+        };
+        for answer in &mut answers {
+            let newborn = answer.rows.iter().filter(|row| row.status == Status::Newborn && is_wanted(row));
+            let ids: Vec<u32> = newborn.map(|row| row.id).collect();
+            if !ids.is_empty() {
+                let numbers = numbers(u32::try_from(ids.len()).unwrap_or(u32::MAX))?;
+                self.born.extend(ids.into_iter().zip(numbers));
+            }
+            answer.rows.retain(|row| !BIRTHS.contains(&row.id) || self.born.contains_key(&row.id));
+            for row in &mut answer.rows {
+                row.id = self.born.get(&row.id).copied().unwrap_or(row.id);
+            }
+        }
+        self.board.take(answers);
         Ok(())
     }
 
@@ -227,9 +264,10 @@ impl Ride<'_> {
         Ok(ids.zip(features).map(|(id, feature)| Point { id, x: feature.x, y: feature.y }).collect())
     }
 
-    fn end(&mut self, call: &CallContext<'_>) -> Result<(), WorkbenchError> {
+    fn end(&mut self, numbers: Numbers<'_>, call: &CallContext<'_>) -> Result<(), WorkbenchError> {
         let begun = Instant::now();
-        self.board.take(self.tracker.end(call)?);
+        let answers = self.tracker.end(call)?;
+        self.take(answers, numbers)?;
         let secs = begun.elapsed().as_secs_f64();
         self.step_secs.last_mut().into_iter().for_each(|last| *last += secs);
         Ok(())

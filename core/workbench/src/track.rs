@@ -11,7 +11,7 @@ use honami_media::{Media, OpenOptions};
 use honami_model::clip::Clip;
 use honami_model::document::RunId;
 use honami_model::edit::Transaction;
-use honami_model::track::{Span, TrackId, TrackSet};
+use honami_model::track::{TrackId, TrackSet};
 use honami_store::{Project, RunHead, RunWriter};
 
 use crate::drive::{self, Detect, Driven, Plan, Rows, Seed};
@@ -19,6 +19,10 @@ use crate::error::WorkbenchError;
 use crate::progress::Progress;
 use crate::session::Session;
 use crate::stamp::stamp;
+
+mod ends;
+
+pub use ends::Ends;
 
 /// Frames that are written at a time.
 const CHUNK: usize = 64;
@@ -94,8 +98,8 @@ pub struct TrackOutcome {
     pub run: RunId,
     /// Tracks with samples.
     pub n_tracks: usize,
-    /// Of these, tracks that are not seen in the last frame that was tracked.
-    pub n_lost: usize,
+    /// How these ended.
+    pub ends: Ends,
     /// Frames tracked.
     pub frames: Range<u32>,
     /// Whether it ended before the frames that were asked for.
@@ -244,10 +248,7 @@ pub fn finish(session: &mut Session, done: TrackDone) -> Result<TrackOutcome, Wo
     let n_tracks = found.len();
     let reached = frames.start..driven.end;
     let last = reached.end.saturating_sub(1);
-    let spans = session.project.run_tracks(run)?;
-    let is_seen = |span: &Span| span.get(last).is_some_and(|sample| sample.status.is_seen());
-    let seen: BTreeSet<TrackId> = spans.iter().filter(|(_, span)| is_seen(span)).map(|(id, _)| *id).collect();
-    let n_lost = n_tracks - seen.len();
+    let ends = Ends::of(&session.project.run_tracks(run)?, last);
     let stopped = driven.end < frames.end;
     // Half a run laid over tracks that reach further would leave a seam in each: it is kept, and not shown.
     let shown = n_tracks > 0 && !(stopped && any_reaches(&session.project, &found, driven.end)?);
@@ -255,8 +256,7 @@ pub fn finish(session: &mut Session, done: TrackDone) -> Result<TrackOutcome, Wo
     if shown {
         session.project.commit(Transaction::show_run(run, found))?;
     }
-    let mut line =
-        format!("{plugin}: {tracks}, frames {}-{last}, {n_lost} lost, {seconds:.1} s", reached.start);
+    let mut line = format!("{plugin}: {tracks}, frames {}-{last}, {ends}, {seconds:.1} s", reached.start);
     let kept = match (shown, n_tracks) {
         (true, _) => format!("{tracks} up to there kept"),
         (false, 0) => "nothing was tracked".to_owned(),
@@ -270,7 +270,7 @@ pub fn finish(session: &mut Session, done: TrackDone) -> Result<TrackOutcome, Wo
     }
     let Driven { step_secs, warnings, .. } = driven;
     let (frames, tracker_secs) = (reached, step_secs.iter().sum());
-    Ok(TrackOutcome { run, n_tracks, n_lost, frames, stopped, seconds, tracker_secs, error, warnings, line })
+    Ok(TrackOutcome { run, n_tracks, ends, frames, stopped, seconds, tracker_secs, error, warnings, line })
 }
 
 /// Whether any of the tracks, as it is shown, goes on at this frame.

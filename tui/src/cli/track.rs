@@ -108,7 +108,10 @@ fn describe(outcome: &TrackOutcome) -> Answer {
     let json = json!({
         "run": outcome.run.0,
         "tracks": outcome.n_tracks,
-        "lost": outcome.n_lost,
+        "lost": outcome.ends.n_lost,
+        "hidden": outcome.ends.n_hidden,
+        "outside": outcome.ends.n_outside,
+        "born": outcome.ends.n_born,
         "frames": [outcome.frames.start, outcome.frames.end],
         "stopped": outcome.stopped,
         "seconds": outcome.seconds,

@@ -1,0 +1,69 @@
+//! The parameters of the plugin, and what they mean to the algorithm.
+
+use honami_follow::Detection;
+use honami_plugin::params;
+use honami_vision::particles::Params;
+use honami_vision::{detect, klt};
+
+params! {
+    /// What the user may choose.
+    pub(crate) struct Settings {
+        /// Frames in which a particle lives. A shorter life drifts less, and knows less of its own steadiness.
+        life: i64 = 30 => { label: "Life", group: "Particles", unit: "frame", min: 1, max: 10000, soft_max: 200 },
+        /// Difference of a particle's last two displacements at which it weighs 1/e.
+        scale: f64 = 1.0 => {
+            label: "Speed scale", group: "Particles", unit: "px/frame", min: 0.01, max: 1000, soft_max: 10, scale: "log",
+        },
+        /// How far the motion of a particle reaches.
+        reach: f64 = 16.0 => { label: "Reach", group: "Particles", unit: "px", min: 1, max: 1000, soft_max: 60 },
+        /// Particles are born no nearer than this to those that live.
+        spacing: f64 = 5.0 => { label: "Spacing", group: "Particles", unit: "px", min: 1, max: 1000, soft_max: 40 },
+        /// The most particles that live at a time.
+        particles: i64 = 8000 => { label: "Most particles", group: "Particles", min: 1, max: 1000000, soft_max: 20000 },
+        /// Particles become tracks of their own, wherever the tracker also finds the features.
+        emit: bool = true => { label: "Particles as tracks", group: "Particles" },
+        /// Radius of the template; its side is 2r+1. Larger windows survive longer and see less detail.
+        radius: i64 = 7 => {
+            label: "Template radius", group: "Tracking", unit: "px", min: 1, max: 100, soft_max: 31,
+        },
+        /// Levels of the pyramid; each doubles the displacement that can be followed.
+        levels: i64 = 4 => { label: "Levels", group: "Tracking", min: 1, max: 10, soft_max: 6 },
+        /// The most steps on each level.
+        iterations: i64 = 30 => {
+            label: "Iterations", group: "Tracking", min: 1, max: 1000, soft_max: 100, advanced: true,
+        },
+        /// A shorter step ends the search on a level.
+        epsilon: f64 = 0.01 => {
+            label: "Epsilon", group: "Tracking", unit: "px", min: 1e-5, max: 1, scale: "log", advanced: true,
+        },
+        /// A template whose gradient matrix has a smaller eigenvalue is flat, and the particle ends (OpenCV's measure).
+        min_eigenvalue: f64 = 1e-4 => {
+            label: "Minimum eigenvalue", group: "Tracking", min: 0, max: 1, advanced: true,
+        },
+        ..detection: Detection,
+    }
+}
+
+impl Settings {
+    pub(crate) fn swarm(&self) -> Params {
+        Params {
+            klt: klt::Params {
+                radius_px: self.radius as u32,
+                levels: self.levels as u32,
+                max_iterations: self.iterations as u32,
+                epsilon_px: self.epsilon as f32,
+                min_eigenvalue: self.min_eigenvalue as f32,
+            },
+            corners: detect::Params {
+                method: detect::Method::ShiTomasi,
+                max_corners: self.particles as usize,
+                quality: self.detection.quality as f32,
+                min_distance_px: self.spacing as f32,
+                window_radius_px: self.detection.corner_radius as u32,
+            },
+            life_frames: self.life as u32,
+            scale_px: self.scale,
+            reach_px: self.reach as f32,
+        }
+    }
+}
