@@ -47,13 +47,13 @@ pub struct Params {
 impl Default for Params {
     fn default() -> Self {
         Self {
-            alpha_gray: 15.0,
+            alpha_gray: 10.0,
             levels: 6,
             warps: 3,
             max_sweeps: 40,
             tolerance_px: 1e-3,
-            robust_gray: 0.0,
-            median: false,
+            robust_gray: 5.0,
+            median: true,
             step_px: 2,
         }
     }

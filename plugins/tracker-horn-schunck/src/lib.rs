@@ -15,7 +15,7 @@ params! {
     pub(crate) struct Settings {
         /// Weight of the smoothness: motion that differs by 1 px from a pixel to the next costs as much as a brightness
         /// that is off by so many gray levels.
-        alpha: f64 = 15.0 => {
+        alpha: f64 = 10.0 => {
             label: "Smoothness", group: "Tracking", unit: "gray levels", min: 0.01, max: 1000, soft_max: 50, scale: "log",
         },
         /// Levels of the pyramid; each doubles the displacement that can be measured.
@@ -24,7 +24,7 @@ params! {
         warps: i64 = 3 => { label: "Warps", group: "Tracking", min: 1, max: 100, soft_max: 10 },
         /// A brightness that is off by more counts ever less than its square, so that what hides or appears pulls
         /// less; 0: Horn and Schunck's own square.
-        robust: f64 = 0.0 => {
+        robust: f64 = 5.0 => {
             label: "Robust from", group: "Tracking", unit: "gray levels", min: 0, max: 255, soft_max: 20,
         },
         /// Whether motion goes through a 3x3 median after each warp, which keeps edges of motion sharp.

@@ -65,7 +65,7 @@ fn what_has_no_texture_or_one_edge_is_not_known_and_the_rest_is() {
 
 #[test]
 fn threads_do_not_change_a_bit_and_a_no_ends_it() {
-    let pair = Pair::affine("", (300, 200), [1.01, 0.02, -0.01, 1.0], [1.3, 0.4]);
+    let pair = Pair::affine("", (480, 300), [1.01, 0.02, -0.01, 1.0], [1.3, 0.4]);
     let bits = |field: &Field| field.u.iter().chain(&field.v).map(|v| v.to_bits()).collect::<Vec<_>>();
     let once = field(&pair, &Params::default(), 1);
     for n_threads in [2, 3, 8] {
@@ -99,7 +99,7 @@ fn tiny_pictures_are_measured_without_harm() {
 
 #[test]
 fn pairs_with_measured_motion_are_met_as_well_as_the_readme_says() {
-    for (name, limit) in [("RubberWhale", 0.4), ("Hydrangea", 1.0), ("Grove2", 0.8)] {
+    for (name, limit) in [("RubberWhale", 0.285), ("Hydrangea", 0.4), ("Grove2", 0.295)] {
         let Some(pair) = Pair::middlebury(name) else { return };
         let (errors, known) = pair.errors(&field(&pair, &Params::default(), 2), 0);
         let (mean, median) = (mean(&errors), errors[errors.len() / 2]);

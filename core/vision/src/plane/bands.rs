@@ -1,7 +1,7 @@
 //! Rows shared among threads.
 
 /// Fewer values than this are not worth a thread.
-const VALUES_A_THREAD: usize = 1 << 14;
+const VALUES_A_THREAD: usize = 1 << 15;
 
 /// Calls `work` on bands of rows of several arrays of one size, each band on a thread of its own: with the number of its
 /// first row, and its part of every array.
