@@ -122,21 +122,32 @@ pub fn follow(
 pub struct Search<'a> {
     colours: &'a Colours,
     params: &'a Params,
-    /// `p` and `q` by bin, `q` not divided by its sum, and the weight `√(p/q)` of the bins that occur.
+    /// `p` by bin.
     sought: Vec<f64>,
-    seen: Vec<f64>,
-    weights: Vec<f64>,
-    /// The bins of `seen` that are not 0.
+    /// What the region looked at last has of each bin.
+    seen: Vec<Pixels>,
+    /// The bins that it has.
     occurring: Vec<u16>,
+}
+
+/// The pixels of a region whose colour lies in one bin.
+#[derive(Clone, Copy, Debug, Default)]
+struct Pixels {
+    /// Sum under the kernel: the bin's `q`, not yet divided by that of all bins.
+    kernel: f64,
+    n: f64,
+    /// Sums of what they lie right of and below the centre, pixels.
+    x: f64,
+    y: f64,
 }
 
 impl<'a> Search<'a> {
     /// A search in this picture.
     #[must_use]
     pub fn new(colours: &'a Colours, params: &'a Params) -> Self {
-        let none = vec![0.0; colours.bins().len()];
-        let (sought, seen) = (none.clone(), none.clone());
-        Self { colours, params, sought, seen, weights: none, occurring: Vec::new() }
+        let n = colours.bins().len();
+        let (sought, seen) = (vec![0.0; n], vec![Pixels::default(); n]);
+        Self { colours, params, sought, seen, occurring: Vec::new() }
     }
 
     /// The colours of a region; `None` where it shares no pixel with the picture.
@@ -144,7 +155,7 @@ impl<'a> Search<'a> {
     pub fn histogram(&mut self, region: Region) -> Option<Histogram> {
         let total = self.look(region)?;
         self.occurring.sort_unstable();
-        let share = |&bin: &u16| (bin, (self.seen[usize::from(bin)] / total) as f32);
+        let share = |&bin: &u16| (bin, (self.seen[usize::from(bin)].kernel / total) as f32);
         Some(Histogram { shares: self.occurring.iter().map(share).collect() })
     }
 
@@ -182,7 +193,7 @@ impl<'a> Search<'a> {
     fn climb(&mut self, mut region: Region) -> Option<Found> {
         let mut similarity = self.similarity(region)?;
         for _ in 0..self.params.max_iterations {
-            let Some([mut dx, mut dy]) = self.shift(region) else { break };
+            let Some([mut dx, mut dy]) = self.shift() else { break };
             let (at, before) = (region.at, similarity);
             while similarity <= before && dx.hypot(dy) >= f64::from(self.params.epsilon_px) {
                 let to = Region { at: [at[0] + dx as f32, at[1] + dy as f32], ..region };
@@ -198,30 +209,28 @@ impl<'a> Search<'a> {
         Some(Found { region, similarity })
     }
 
-    /// ρ of a region with what is sought; its pixels' weights are then at hand for [`shift`](Self::shift).
+    /// The bins of the region looked at last, each with its `p`.
+    fn bins(&self) -> impl Iterator<Item = (f64, &Pixels)> {
+        self.occurring.iter().map(|&bin| (self.sought[usize::from(bin)], &self.seen[usize::from(bin)]))
+    }
+
+    /// ρ of a region with what is sought.
     fn similarity(&mut self, region: Region) -> Option<f64> {
         let total = self.look(region)?;
-        let Self { sought, seen, weights, occurring, .. } = self;
-        let mut sum = 0.0;
-        for &bin in &*occurring {
-            let (p, q) = (sought[usize::from(bin)], seen[usize::from(bin)]);
-            sum += (p * q).sqrt();
-            weights[usize::from(bin)] = (p / q).sqrt();
-        }
+        let sum: f64 = self.bins().map(|(p, seen)| (p * seen.kernel).sqrt()).sum();
         // Rounding may carry it a hair over 1.
         Some((sum / total.sqrt()).min(1.0))
     }
 
-    /// The mean of the region's pixels under their weights, relative to its centre; `None` where all weigh nothing.
-    fn shift(&self, region: Region) -> Option<[f64; 2]> {
+    /// The mean of the pixels looked at last under their weights, relative to their region's centre; `None` where all
+    /// weigh nothing. All pixels of a bin weigh the same, so the bins' sums will do.
+    fn shift(&self) -> Option<[f64; 2]> {
         let [mut sum, mut sum_x, mut sum_y] = [0.0; 3];
-        for Run { bins, dx, dy, .. } in runs(self.colours, region) {
-            for (&bin, k) in bins.iter().zip(0_u32..) {
-                let weight = self.weights[usize::from(bin)];
-                sum += weight;
-                sum_x += weight * (dx + f64::from(k));
-                sum_y += weight * dy;
-            }
+        for (p, seen) in self.bins() {
+            let weight = (p / seen.kernel).sqrt();
+            sum += weight * seen.n;
+            sum_x += weight * seen.x;
+            sum_y += weight * seen.y;
         }
         (sum > 0.0).then(|| [sum_x / sum, sum_y / sum])
     }
@@ -229,7 +238,7 @@ impl<'a> Search<'a> {
     /// Weighs the colours of a region; the sum of the weights, `None` where it has no pixel.
     fn look(&mut self, region: Region) -> Option<f64> {
         for bin in self.occurring.drain(..) {
-            self.seen[usize::from(bin)] = 0.0;
+            self.seen[usize::from(bin)] = Pixels::default();
         }
         if !region.at.iter().all(|c| c.is_finite()) {
             return None;
@@ -239,13 +248,16 @@ impl<'a> Search<'a> {
             let start = 1.0 - dy * dy * inverse;
             for (&bin, k) in bins.iter().zip(0_u32..) {
                 let dx = dx + f64::from(k);
-                let weight = start - dx * dx * inverse;
+                let kernel = start - dx * dx * inverse;
                 let seen = &mut self.seen[usize::from(bin)];
-                if *seen == 0.0 {
+                if seen.n < 0.5 {
                     self.occurring.push(bin);
                 }
-                *seen += weight;
-                total += weight;
+                seen.kernel += kernel;
+                seen.n += 1.0;
+                seen.x += dx;
+                seen.y += dy;
+                total += kernel;
             }
         }
         (total > 0.0).then_some(total)
