@@ -188,7 +188,9 @@ fn new_features_are_found_on_the_way() {
     let bench = Bench::new();
     bench.synth("clip.y4m", 30, "--wind storm");
     bench.json("new p.honami clip.y4m");
-    bench.json("track p.honami --with klt --detect --every 10 --set lose_fb=0.5 --set distance=4 --frames 2..");
+    bench.json(
+        "track p.honami --with klt --detect --every 10 --set lose_fb=0.5 --set distance=4 --frames 2..",
+    );
     let samples = bench.samples("p.honami");
     let starts = by_track(&samples).into_values().map(|rows| rows[0]["frame"].parse::<u32>().unwrap());
     let starts: BTreeSet<u32> = starts.collect();
