@@ -192,6 +192,7 @@ fn every_word_is_an_edit_that_undo_takes_back() {
         "time 2 5 0.02".to_owned(),
         "sketch 4 3 0.5 0,100,90 0.5,120,95 1.5,130,99".to_owned(),
         "retrack 2 both 0 24".to_owned(),
+        "take 2 1 0 24".to_owned(),
         "mark lost 3 20 22".to_owned(),
         "mark outside 3 20 22".to_owned(),
         "range-delete 5 20 24".to_owned(),

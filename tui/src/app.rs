@@ -48,6 +48,7 @@ mod stills;
 mod tally;
 pub mod tracks;
 pub mod update;
+pub mod versus;
 pub mod view;
 
 pub use door::{Gives, Offer, Offers, run};

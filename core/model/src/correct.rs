@@ -25,6 +25,7 @@ pub use mark::{delete_range, mark};
 pub use refused::Refused;
 pub use sketch::{Drawn, HUMAN_DELAY_S, Played, Stroke, sketch};
 pub use space::space;
+pub use take::take;
 pub use time::{Slid, time};
 
 mod blend;
@@ -33,6 +34,7 @@ mod mark;
 mod refused;
 mod sketch;
 mod space;
+mod take;
 mod time;
 pub mod tracks;
 

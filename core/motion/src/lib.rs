@@ -5,6 +5,7 @@
 
 pub mod accuracy;
 pub mod composite;
+pub mod disagreement;
 pub mod linkage;
 pub mod overlay;
 pub mod positions;

@@ -3,15 +3,18 @@
 //! The screen and the scripts ask for the same steps; what each does is the model's (see
 //! [`correct`](mod@honami_model::correct)).
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
-use honami_model::correct::{Refused, Shown, Stroke, delete_range, mark, sketch, tracks};
+use honami_model::correct::{Refused, Shown, Stroke, delete_range, mark, sketch, take, tracks};
+use honami_model::document::RunId;
 use honami_model::edit::Transaction;
-use honami_model::track::{Status, TrackId, TrackSet};
+use honami_model::track::{Span, Status, TrackId, TrackSet};
 use honami_store::Project;
 
 use crate::error::WorkbenchError;
 use crate::ground::Ground;
+use crate::versus::whole;
 
 /// What is to be done.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,6 +34,15 @@ pub enum Step {
         tracks: TrackSet,
         /// The frames.
         frames: Range<u32>,
+    },
+    /// Lay what a run found over a range of frames.
+    Take {
+        /// Of these tracks; those that it has not found there are left out.
+        tracks: TrackSet,
+        /// The frames.
+        frames: Range<u32>,
+        /// The run, shown or not.
+        run: RunId,
     },
     /// Lay what was drawn while the clip played over a track.
     Sketch {
@@ -80,6 +92,10 @@ pub fn prepare(project: &mut Project, step: &Step) -> Result<(Transaction, Optio
     let grounds = ids.iter().map(|&id| Ground::of(project, id)).collect::<Result<Vec<Ground>, _>>()?;
     let times = project.clip().clip.times.clone();
     let shown: Vec<Shown<'_>> = grounds.iter().map(|ground| ground.shown(&times)).collect();
+    let found = match step {
+        Step::Take { run, .. } => found(project, &ids, *run)?,
+        _ => BTreeMap::new(),
+    };
     let edit = |new: TrackId| match (step, &shown[..]) {
         (Step::Mark { frames, status, .. }, _) => {
             tracks::many(&shown, |shown| mark(shown, frames.clone(), *status))
@@ -87,6 +103,10 @@ pub fn prepare(project: &mut Project, step: &Step) -> Result<(Transaction, Optio
         (Step::DeleteRange { frames, .. }, _) => {
             tracks::many(&shown, |shown| delete_range(shown, frames.clone()))
         }
+        (Step::Take { frames, run, .. }, _) => tracks::many(&shown, |shown| {
+            let nothing = Span::default();
+            take(shown, *run, found.get(&shown.id()).unwrap_or(&nothing), frames.clone())
+        }),
         (Step::Sketch { strokes, .. }, [shown]) => {
             sketch(shown, strokes).map(|correction| correction.transaction)
         }
@@ -106,6 +126,17 @@ pub fn prepare(project: &mut Project, step: &Step) -> Result<(Transaction, Optio
     Ok((edit(new)?, Some(new)))
 }
 
+/// What a run found of some tracks.
+fn found(
+    project: &Project,
+    tracks: &[TrackId],
+    run: RunId,
+) -> Result<BTreeMap<TrackId, Span>, WorkbenchError> {
+    project.run(run)?;
+    let of = |&track: &TrackId| Ok((track, whole(project.run_spans(run, track)?, 0)));
+    tracks.iter().map(of).collect()
+}
+
 impl Step {
     /// Whether a new track comes of it.
     fn makes_one(&self) -> bool {
@@ -115,9 +146,10 @@ impl Step {
     /// The tracks it works on, the one that stays first.
     fn tracks(&self) -> Vec<TrackId> {
         match self {
-            Self::Mark { tracks, .. } | Self::DeleteRange { tracks, .. } | Self::Average(tracks) => {
-                tracks.iter().collect()
-            }
+            Self::Mark { tracks, .. }
+            | Self::DeleteRange { tracks, .. }
+            | Self::Take { tracks, .. }
+            | Self::Average(tracks) => tracks.iter().collect(),
             Self::Sketch { track, .. } | Self::Split { track, .. } | Self::Duplicate(track) => vec![*track],
             Self::Swap { tracks, .. } => tracks.to_vec(),
             Self::Join { track, with } => vec![*track, *with],

@@ -26,6 +26,7 @@ pub mod simulate;
 pub mod spectra;
 mod stamp;
 pub mod track;
+pub mod versus;
 
 pub use error::WorkbenchError;
 /// Tracks of other programs.

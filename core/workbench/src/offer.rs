@@ -57,21 +57,6 @@ impl Model {
         }
     }
 
-    /// How far it is mostly off, as a multiple of the best model's error; `None`: it is never offered first.
-    ///
-    /// From `cargo xtask bench review` on other clips than those of docs/review.md.
-    fn usual_error(self) -> Option<f64> {
-        match self {
-            Self::Fused => Some(1.0),
-            Self::Both => Some(1.2),
-            Self::Space => Some(2.0),
-            Self::Forward => Some(2.5),
-            Self::Backward => Some(3.0),
-            Self::Hermite => Some(4.0),
-            Self::KeyOnly => None,
-        }
-    }
-
     /// How a tracker goes for it; `None`: it needs none.
     #[must_use]
     pub fn way(self) -> Option<Way> {
@@ -159,31 +144,20 @@ impl Errors {
         self.0.get(&model).map(|out| out.mean_px)
     }
 
-    /// The model to offer first among these: the one with the smallest error, as far as errors are known, and as long as
-    /// they are few, also the one that mostly does best.
-    ///
-    /// Errors are compared as logarithms, because those of a track in calm air and of one in a storm differ by factors;
-    /// what is mostly so counts as much as [`PRIOR_KEYS`] key-frames. A model that missed a key-frame which another one
-    /// found is not offered first.
+    /// The model to offer first: the best one, and while nothing is known what several runs have found, where there are
+    /// several.
     #[must_use]
-    pub fn first(&self, models: impl IntoIterator<Item = Model>) -> Option<Model> {
-        let most = self.0.values().map(|out| out.n).max().unwrap_or(0);
-        let score = |model: Model| -> Option<(f64, Model)> {
-            let prior = PRIOR_KEYS * model.usual_error()?.ln();
-            let known = self.0.get(&model).filter(|out| out.n == most);
-            match known {
-                Some(out) => Some((prior + out.n as f64 * (out.mean_px + SURE_PX).ln(), model)),
-                None => (most == 0).then_some((prior, model)),
-            }
-        };
-        models.into_iter().filter_map(score).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, model)| model)
+    pub fn first(&self, has_rivals: bool) -> Option<Model> {
+        self.best().or(has_rivals.then_some(Model::Fused))
+    }
+
+    /// The model with the smallest error, of those that found all that any of them found.
+    fn best(&self) -> Option<Model> {
+        let most = self.0.values().map(|out| out.n).max()?;
+        let all = self.0.iter().filter(|(_, out)| out.n == most);
+        all.min_by(|(_, a), (_, b)| a.mean_px.total_cmp(&b.mean_px)).map(|(model, _)| *model)
     }
 }
-
-/// What is mostly so counts as much as so many key-frames left out.
-const PRIOR_KEYS: f64 = 5.0;
-/// Errors below this are the hand's, pixels: they say nothing of the model.
-const SURE_PX: f64 = 0.5;
 
 /// Leaves out the key-frames nearest to a frame, one after the other, and asks every model where they are.
 ///

@@ -7,6 +7,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
+use honami_model::document::RunId;
 use honami_model::edit::Transaction;
 use honami_model::history::{Entry, EntryId, Step};
 use honami_model::judgement::Judgement;
@@ -19,7 +20,7 @@ use honami_workbench::retrack::{self, Way};
 use honami_workbench::session::Session;
 use honami_workbench::store::{Project, StoreError};
 use honami_workbench::track::{self, TrackRequest};
-use honami_workbench::{correct, dense};
+use honami_workbench::{correct, dense, versus};
 
 use super::command_log::{self, Origin};
 use super::correcting::{Answer, Ask};
@@ -161,6 +162,11 @@ impl World {
             Effect::Track(request) => self.track(&request, now),
             Effect::Retrack { track, way, frame, within } => self.retrack((track, way, frame), within, now),
             Effect::Measure(track) => self.measure(track),
+            Effect::Versus(runs) => self.versus(runs),
+            Effect::Entrants(first) => {
+                let entrants = versus::entrants(&self.session.project);
+                entrants.map(|entrants| vec![Fact::Entrants(first, entrants)])
+            }
             Effect::Cluster(request) => self.cluster(&request, now),
             Effect::StopJob => {
                 self.running.iter().for_each(|(running, _)| running.stop());
@@ -341,6 +347,17 @@ impl World {
     fn cluster(&mut self, request: &ClusterRequest, now: Duration) -> Facts {
         let work = Work::Cluster(cluster::prepare(&self.session, request)?);
         self.start(work, &request.plugin, false, now)
+    }
+
+    /// Finds two runs to be beside each other: these, or the usual ones.
+    fn versus(&self, runs: Option<[RunId; 2]>) -> Facts {
+        let entrants = versus::entrants(&self.session.project)?;
+        let find = |run: RunId| entrants.iter().find(|one| one.run == run).cloned();
+        let two = match runs {
+            None => versus::usual(&entrants),
+            Some([a, b]) => find(a).zip(find(b)).map(<[_; 2]>::from),
+        };
+        Ok(vec![Fact::Versus(two)])
     }
 
     /// Has a tracker measure dense motion from now on.

@@ -15,6 +15,7 @@ use honami_model::track::{Quality, Sample, Source, Span, Status, TrackId};
 use honami_workbench::offer::{Errors, Wish};
 use honami_workbench::plugins::Param;
 use honami_workbench::review::{Evidence, Review, Subject};
+use honami_workbench::versus::{Compared, Entrant, Paired, disagreement};
 use ratatui::layout::Rect;
 
 use super::correcting::{Answer, Ask};
@@ -178,6 +179,46 @@ fn ghost(state: &State, wish: &Wish) -> Option<Correction> {
     let over = frames.clone().map(|frame| shown.span().get(frame).map(lower)).collect();
     let lay = Edit::Lay { track, first_frame: frames.start, over };
     shown.correct(keys.chain([lay]).collect(), wish.model.word()).ok()
+}
+
+/// Two runs that can be beside each other, of the fixture's tracks.
+pub(super) fn entrants() -> Vec<Entrant> {
+    let entrant = |(run, radius, is_shown)| Entrant {
+        run: RunId(run),
+        tracker: "klt".to_owned(),
+        version: "0.1.0".to_owned(),
+        params: format!("radius={radius}"),
+        tracks: [1, 2, 7].map(TrackId).into_iter().collect(),
+        frames: 0..100,
+        is_shown,
+    };
+    [(4, 20, false), (2, 15, true), (1, 5, true)].map(entrant).to_vec()
+}
+
+/// Puts two runs beside each other. A has found what is shown; in B track 1 is 9 px off its way round frame 40 and half
+/// a pixel elsewhere, track 2 is lost from frame 30 on, and track 7 is 3 px lower.
+pub(super) fn versus(state: &mut State) {
+    let [_, b, a] = <[Entrant; 3]>::try_from(entrants()).expect("three");
+    let runs = [a.run, b.run];
+    update(state, Msg::Fact(Fact::Versus(Some([a, b]))));
+    let in_b = |row: &TrackRow| {
+        let sample = |(frame, sample): (u32, &Sample)| {
+            let bump = 9.0 * (-f64::from(frame.abs_diff(40)).powi(2) / 50.0).exp() as f32;
+            let (off, is_lost) = match row.id.0 {
+                1 => (0.5 + bump, false),
+                2 => (0.0, frame >= 30),
+                _ => (3.0, false),
+            };
+            let status = if is_lost { Status::Lost } else { sample.status };
+            Sample { y: sample.y + off, status, ..*sample }
+        };
+        let samples = row.span.frames().zip(&row.span.samples).map(sample).collect();
+        Span { first_frame: row.span.first_frame, samples }
+    };
+    let paired = |row: &TrackRow| Paired { track: row.id, spans: [Span::clone(&row.span), in_b(row)] };
+    let tracks: Vec<Paired> = state.tracks.iter().map(paired).collect();
+    let compared = Compared { found: disagreement(&tracks), tracks };
+    update(state, Msg::Fact(Fact::Compared(runs, Ok(Arc::new(compared)))));
 }
 
 /// Several hundred tracks more, beside and above one another.

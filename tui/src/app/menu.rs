@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use honami_model::clip::FrameTimes;
+use honami_model::document::RunId;
 use honami_model::track::TrackId;
+use honami_workbench::versus::Entrant;
 
 use super::action::{Action, TABLE};
 use super::files::{Lead, Listing};
@@ -24,6 +26,10 @@ pub enum Choice {
     Swap(TrackId),
     /// Joins it to the selected track.
     Join(TrackId),
+    /// Makes this run the first of two beside each other.
+    First(RunId),
+    /// Puts these two runs beside each other.
+    Second(RunId, RunId),
     /// Goes to a frame.
     Frame(u32),
     /// Opens the form of the plugin with this place in the list.
@@ -140,6 +146,23 @@ impl Menu {
             choice: Choice::Plugin(at),
         });
         Self::new("plugins", rows.collect(), Mode::Review)
+    }
+
+    /// Runs to choose A from; or, where that is chosen, B.
+    #[must_use]
+    pub fn of_runs(a: Option<RunId>, entrants: &[Entrant]) -> Self {
+        let rows = entrants.iter().map(|one| {
+            let (first, last) = (one.frames.start, one.frames.end.saturating_sub(1));
+            let hidden = if one.is_shown { "" } else { ", hidden" };
+            Row {
+                label: one.name(),
+                detail: format!("{}, frames {first}-{last}{hidden}", one.tracks),
+                keys: String::new(),
+                choice: a.map_or(Choice::First(one.run), |a| Choice::Second(a, one.run)),
+            }
+        });
+        let title = if a.is_none() { "A: the first of two runs" } else { "B: the run beside it" };
+        Self::new(title, rows.collect(), Mode::Review)
     }
 
     /// The projects and clips of a folder.

@@ -15,14 +15,24 @@ pub enum Panel {
     History,
     /// Curves of the selected track or its group.
     Plots,
+    /// Two runs beside each other.
+    Versus,
     /// What was done in this session.
     Log,
 }
 
 impl Panel {
     /// All of them, in the order in which they follow each other.
-    pub const ALL: &[Self] =
-        &[Self::Queue, Self::Tracks, Self::Groups, Self::KeyFrames, Self::History, Self::Plots, Self::Log];
+    pub const ALL: &[Self] = &[
+        Self::Queue,
+        Self::Tracks,
+        Self::Groups,
+        Self::KeyFrames,
+        Self::History,
+        Self::Plots,
+        Self::Versus,
+        Self::Log,
+    ];
 
     /// What its title calls it.
     #[must_use]
@@ -34,6 +44,7 @@ impl Panel {
             Self::KeyFrames => "key-frames",
             Self::History => "history",
             Self::Plots => "plots",
+            Self::Versus => "A/B",
             Self::Log => "log",
         }
     }

@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use honami_workbench::plots;
+use honami_model::document::RunId;
+use honami_workbench::versus::{self, Compared};
+use honami_workbench::{WorkbenchError, plots};
 
 use super::behind::Behind;
 use super::command_log::{CommandLog, Head, LogFile};
@@ -24,6 +26,7 @@ use super::state::{Display, Link, Mode, Notice, State};
 use super::stills::{self, Stills};
 use super::tally::Tally;
 use super::update::{Effect, Fact, Msg, update};
+use super::versus::{Versus, VersusRequest};
 use super::view;
 use crate::term::encode::Frame;
 use crate::term::glyph::Glyphs;
@@ -66,6 +69,9 @@ impl Turned {
     }
 }
 
+/// Two runs, and what became of comparing them.
+type Duel = ([RunId; 2], Result<Compared, WorkbenchError>);
+
 pub(super) struct App {
     state: State,
     pictures: Pictures,
@@ -79,6 +85,7 @@ pub(super) struct App {
     /// How late pictures are on screen while something is drawn after them.
     late: Late,
     plotting: Behind<Lot>,
+    comparing: Behind<Duel>,
     /// When the figures of the link were last looked at.
     link_seen: Duration,
     /// When to keep where the user is.
@@ -103,6 +110,7 @@ impl App {
             tally: Tally::default(),
             late: Late::default(),
             plotting: Behind::new("plots", screen.waker()),
+            comparing: Behind::new("two runs", screen.waker()),
             link_seen: Duration::ZERO,
             seat_due: None,
             next: None,
@@ -304,6 +312,20 @@ impl App {
         Ok(())
     }
 
+    /// Has two runs compared, and takes what becomes of it.
+    fn compare(&mut self, world: &World) -> anyhow::Result<()> {
+        if let Some(VersusRequest { runs, tracks }) = Versus::request(&mut self.state) {
+            let project = world.project().to_owned();
+            self.comparing.ask(move || (runs, versus::compare(&project, runs, &tracks)))?;
+        }
+        if let Some((runs, compared)) = self.comparing.news()? {
+            let compared = compared.map(Arc::new).map_err(|error| error.to_string());
+            update(&mut self.state, Msg::Fact(Fact::Compared(runs, compared)));
+            self.frame = None;
+        }
+        Ok(())
+    }
+
     /// Takes the dense motion of the shown frame, where that is shown, as soon as it is measured.
     fn measure(&mut self, world: &mut World) {
         if let Some(fact) = world.dense(&self.state) {
@@ -325,6 +347,7 @@ impl App {
     /// Paints, if there is anything to paint and the link has room for it.
     fn show(&mut self, screen: &mut Screen, world: &mut World) -> anyhow::Result<()> {
         self.plot()?;
+        self.compare(world)?;
         self.measure(world);
         let n_ready = world.n_ready();
         if n_ready != self.state.n_ready {

@@ -25,6 +25,7 @@ use super::queue::{Looked, Opened};
 use super::ranging::Ranging;
 use super::sketching::Sketching;
 use super::tracks::{Groups, TrackRow};
+use super::versus::Versus;
 use super::view::theme::Theme;
 use crate::term::capabilities::Pixels;
 use crate::term::colour::Depth;
@@ -88,6 +89,8 @@ pub struct State {
     pub motion: Motion,
     /// Dense motion, where the colours show that; `None`: that of the tracks.
     pub dense: Option<Dense>,
+    /// Two runs over the picture, instead of the tracks.
+    pub versus: Option<Box<Versus>>,
     /// Whether all tracks are marked in the picture, not only the selected one.
     pub marks_all: bool,
     /// What the plots show.
@@ -287,6 +290,7 @@ impl State {
             count: None,
             motion: Motion::default(),
             dense: None,
+            versus: None,
             marks_all: true,
             plotted: Plotted::default(),
             panel_is_wide: false,

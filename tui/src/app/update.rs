@@ -16,10 +16,12 @@ mod ranges;
 mod sketch;
 mod time;
 mod tracks;
+mod versus;
 
 use std::ops::Range;
 use std::time::Duration;
 
+use honami_model::document::RunId;
 use honami_model::edit::Transaction;
 use honami_model::history::EntryId;
 use honami_model::track::TrackId;
@@ -110,6 +112,10 @@ pub enum Effect {
     },
     /// Measure dense motion with the tracker of this track.
     Measure(Option<TrackId>),
+    /// Put these two runs beside each other; `None`: the newest two.
+    Versus(Option<[RunId; 2]>),
+    /// List the runs that can be beside each other; with the first of them chosen, those that can be beside it.
+    Entrants(Option<RunId>),
     /// Run a clusterer.
     Cluster(ClusterRequest),
     /// Stop the running job; it keeps what it has.
@@ -302,6 +308,8 @@ fn choose(state: &mut State) -> Vec<Effect> {
             actions::open_plugin(state, at);
             Vec::new()
         }
+        Some(Choice::First(a)) => vec![Effect::Entrants(Some(a))],
+        Some(Choice::Second(a, b)) => vec![Effect::Versus(Some([a, b]))],
         Some(Choice::File(lead)) => vec![Effect::Follow(lead)],
         None => Vec::new(),
     }
@@ -328,3 +336,5 @@ mod sketch_tests;
 mod tests;
 #[cfg(test)]
 mod tracks_tests;
+#[cfg(test)]
+mod versus_tests;

@@ -32,6 +32,7 @@ pub fn draw(state: &State, shot: Option<&Shot>) -> Frame {
     let layout = Layout::of(state);
     let nth = picture::marks_nth(state, &Lens::of(state, layout.picture), state.shown_frame());
     picture::draw(state, &layout, shot, nth, &mut frame);
+    picture::versus::legend(state, layout.picture, &mut frame);
     picture::motion::legend(state, layout.picture, &mut frame);
     lines::title(state, layout.title, nth, &mut frame);
     column::draw(state, layout.column, &mut frame);

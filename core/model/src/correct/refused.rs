@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::mark::word;
 use super::said;
+use crate::document::RunId;
 use crate::edit::EditError;
 use crate::track::{Status, TrackId};
 
@@ -36,6 +37,16 @@ pub enum Refused {
         frames: Range<u32>,
         /// What they are.
         status: Status,
+    },
+    /// What a run found is what is shown.
+    #[error("track {track}: {} already as run {run} found {}", are(frames), if frames.len() == 1 { "it" } else { "them" })]
+    ShownAlready {
+        /// The track.
+        track: TrackId,
+        /// The frames asked for.
+        frames: Range<u32>,
+        /// The run.
+        run: RunId,
     },
     /// The sample cannot be right where the feature is not seen.
     #[error("track {track} is {} at frame {frame}: place it, or leave it so", word(*status))]

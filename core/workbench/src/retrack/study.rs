@@ -21,7 +21,6 @@ use super::plan::{self, Anchors, Limits, Pass, Stretch};
 use super::{Direction, RetrackJob, RetrackRequest, Way, direction, lay};
 use crate::error::WorkbenchError;
 use crate::ground::Ground;
-use crate::offer::Model;
 use crate::progress::Progress;
 use crate::session::Session;
 
@@ -165,12 +164,6 @@ impl Study {
     pub fn has_rivals(&self) -> bool {
         let runs = &self.ground.runs;
         runs.iter().any(|(run, _)| *run != runs[0].0)
-    }
-
-    /// The models that can be offered for it, in their order.
-    pub fn models(&self) -> impl Iterator<Item = Model> + use<> {
-        let has_rivals = self.has_rivals();
-        Model::ALL.into_iter().filter(move |model| *model != Model::Fused || has_rivals)
     }
 
     /// The correction that sets key-frames and lays the best path through what several runs have found around a frame,

@@ -2,6 +2,7 @@
 
 use honami_host::{HostError, Kind, Values};
 use honami_model::correct::{self, Correction, Drawn, Played, Refused, Shown, Stroke};
+use honami_model::document::RunId;
 use honami_model::edit::{Edit, Transaction};
 use honami_model::judgement::{Effort, Judgement, Verdict};
 use honami_model::track::{Status, TrackId};
@@ -84,6 +85,12 @@ pub const WORDS: &[Word] = &[
         takes: "TRACK FIRST LAST",
         does: "take the samples of a range away",
         act: range_delete,
+    },
+    Word {
+        name: "take",
+        takes: "TRACK RUN FIRST LAST",
+        does: "lay what a run found in a range over what is shown; key-frames stay",
+        act: take,
     },
     Word { name: "split", takes: "TRACK FRAME", does: "cut a track in two: a new one goes on", act: split },
     Word { name: "swap", takes: "TRACK TRACK FIRST LAST", does: "exchange two tracks in a range", act: swap },
@@ -221,6 +228,11 @@ fn mark(session: &mut Session, given: &Arguments<'_>) -> Outcome {
 
 fn range_delete(session: &mut Session, given: &Arguments<'_>) -> Outcome {
     stepped(session, &Step::DeleteRange { tracks: given.track(0)?.into(), frames: given.frames(1)? })
+}
+
+fn take(session: &mut Session, given: &Arguments<'_>) -> Outcome {
+    let (tracks, run) = (given.track(0)?.into(), RunId(given.whole(1, "run")?));
+    stepped(session, &Step::Take { tracks, frames: given.frames(2)?, run })
 }
 
 fn split(session: &mut Session, given: &Arguments<'_>) -> Outcome {

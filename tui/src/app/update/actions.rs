@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use super::{
     Action, Effect, Mode, State, choose, complain, edit, history, look, motion, moving, open_menu, pick,
-    queue, ranges, say, sketch, time, tracks,
+    queue, ranges, say, sketch, time, tracks, versus,
 };
 use honami_model::judgement::Verdict;
 use honami_model::track::{Status, TrackSet};
@@ -59,8 +59,8 @@ pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {
             None => state.mode = Mode::Prompt(String::new()),
         },
         Action::GoTrack => time::go_track(state),
-        Action::NextItem => queue::step(state, count(state)),
-        Action::PreviousItem => queue::step(state, -count(state)),
+        Action::NextItem => step_item(state, count(state)),
+        Action::PreviousItem => step_item(state, -count(state)),
         Action::WorstFrame => queue::open_worst(state),
         Action::Bisect => queue::bisect(state),
         Action::Reject => return queue::judge(state, Some(Verdict::Rejected)),
@@ -113,6 +113,10 @@ fn look_about(state: &mut State, action: Action) -> Vec<Effect> {
         Action::MotionGainDown => motion::gain(state, -count(state)),
         Action::MotionDial => motion::open_dial(state),
         Action::MotionSource => return motion::change_source(state),
+        Action::Versus => return versus::toggle(state),
+        Action::VersusFlick => versus::flick(state),
+        Action::VersusRuns => return vec![Effect::Entrants(None)],
+        Action::PanelVersus => show_panel(state, Panel::Versus),
         Action::Marks => state.marks_all = !state.marks_all,
         Action::Column if matches!(state.mode, Mode::Move(_)) => moving::next_model(state),
         Action::Column => state.panel = Panel::after(state.panel),
@@ -130,6 +134,15 @@ fn look_about(state: &mut State, action: Action) -> Vec<Effect> {
         other => return correct(state, other),
     }
     Vec::new()
+}
+
+/// The item of the queue so many further on; of two runs beside each other, the disagreement.
+fn step_item(state: &mut State, by: i64) {
+    if state.versus.is_some() {
+        versus::step(state, by);
+    } else {
+        queue::step(state, by);
+    }
 }
 
 /// Frames forward; the point that a hand leads stays behind in the one that is left.
@@ -181,6 +194,8 @@ fn correct(state: &mut State, action: Action) -> Vec<Effect> {
         Action::Join => tracks::choose_other(state, "join with", Choice::Join),
         Action::Duplicate => return tracks::duplicate(state),
         Action::Average => return tracks::average(state),
+        Action::TakeA => return versus::take(state, 0),
+        Action::TakeB => return versus::take(state, 1),
         Action::NameTrack => tracks::begin_name(state),
         other => debug_assert!(false, "{other:?} is done nowhere"),
     }
@@ -289,8 +304,8 @@ fn leave(state: &mut State) -> Vec<Effect> {
     Vec::new()
 }
 
-/// Leaves what is open; while reviewing, stops what runs: first the clip, then the job; then gives up the range, and
-/// then the picks.
+/// Leaves what is open; while reviewing, stops what runs: first the clip, then the job; then gives up the range, then
+/// the picks, and then the two runs.
 fn back(state: &mut State) -> Vec<Effect> {
     match &mut state.mode {
         Mode::Review if state.play.is_some() => time::stop(state),
@@ -304,6 +319,8 @@ fn back(state: &mut State) -> Vec<Effect> {
             }
             if !state.picked.is_empty() {
                 state.picked.clear();
+            } else if state.versus.is_some() {
+                versus::close(state);
             } else if state.job.is_none() {
                 state.lesson.iter_mut().for_each(Lesson::close);
             }
@@ -369,7 +386,7 @@ fn mouse(state: &mut State) -> Vec<Effect> {
     vec![Effect::Mouse(state.mouse)]
 }
 
-fn open_form(state: &mut State, task: Task) {
+pub(super) fn open_form(state: &mut State, task: Task) {
     let plugin = match task {
         Task::Track => "tracker-anchored",
         Task::Cluster => "clusterer-movement",

@@ -4,10 +4,11 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use honami_model::correct::Layers;
+use honami_model::document::RunId;
 use honami_model::history::{Entry, EntryId};
 use honami_workbench::review::Told;
 
-use super::{Mode, State, logged, motion, moving, offers, queue, sketch, tell, time};
+use super::{Mode, State, logged, motion, moving, offers, queue, sketch, tell, time, versus};
 use crate::app::correcting::Answer;
 use crate::app::dense::FieldOf;
 use crate::app::files::Listing;
@@ -16,6 +17,7 @@ use crate::app::plotted::Subject;
 use crate::app::state::{Display, Job, Link, Notice};
 use crate::app::tracks::{Groups, TrackRow};
 use honami_workbench::plots::Plots;
+use honami_workbench::versus::{Compared, Entrant};
 
 /// Something that has changed in the world.
 #[derive(Clone, Debug)]
@@ -58,6 +60,12 @@ pub enum Fact {
     Dense(Option<FieldOf>),
     /// Dense motion cannot be measured, for this reason.
     NotMeasured(String),
+    /// These two runs are beside each other from now on; `None`: there are no two of the same tracks.
+    Versus(Option<[Entrant; 2]>),
+    /// These runs can be beside each other, or beside the one that was chosen first.
+    Entrants(Option<RunId>, Vec<Entrant>),
+    /// What became of comparing these two runs.
+    Compared([RunId; 2], Result<Arc<Compared>, String>),
     /// So many frames can be shown without waiting.
     Ready(u32),
     /// The undo tree has these entries more, and the document stands there.
@@ -118,6 +126,9 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
             // Of its own time, not an answer to a key: it has no place in the log.
             state.notice = Some(Notice { text, is_error: true });
         }
+        Fact::Versus(runs) => versus::on_runs(state, runs),
+        Fact::Entrants(first, entrants) => versus::on_entrants(state, first, entrants),
+        Fact::Compared(runs, compared) => versus::on_compared(state, runs, compared),
         Fact::Ready(n) => state.n_ready = n,
         Fact::History(new, head) => {
             let (from, has_grown) = (state.history.head, !new.is_empty());
@@ -136,6 +147,7 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
 fn on_tracks(state: &mut State, rows: Vec<TrackRow>) {
     state.tracks = rows;
     state.plotted.revision += 1;
+    versus::on_tracks(state);
     let (tracks, picked) = (&state.tracks, &mut state.picked);
     picked.retain(|track| tracks.binary_search_by_key(track, |row| row.id).is_ok());
     if state.selected.is_none_or(|track| state.row(track).is_none()) {

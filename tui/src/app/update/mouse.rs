@@ -1,6 +1,6 @@
 //! The mouse: selects, places, scrubs; whatever it does, keys do too.
 
-use super::{Effect, Mode, State, history, look, moving, queue, sketch, time};
+use super::{Effect, Mode, State, history, look, moving, queue, sketch, time, versus};
 use crate::app::layout::{Layout, Lens, bar, frame_at};
 use crate::app::view::column::{self, Pick};
 use crate::term::input::{Mouse, MouseKind};
@@ -73,6 +73,7 @@ fn pick(state: &mut State, picked: Option<Pick>) {
         Some(Pick::Panel(panel)) => state.panel = panel,
         Some(Pick::Item(rank)) => queue::open_rank(state, rank),
         Some(Pick::Track(track)) => time::select(state, track),
+        Some(Pick::At(track, frame)) => versus::open(state, track, frame),
         Some(Pick::Frame(frame)) => time::go(state, frame),
         Some(Pick::Entry(row)) => {
             if !matches!(state.mode, Mode::History { .. }) {
@@ -90,10 +91,13 @@ fn pick(state: &mut State, picked: Option<Pick>) {
 fn nearest(state: &mut State, lens: &Lens, point: [f32; 2]) {
     let far = |at: [f32; 2]| (at[0] - point[0]).hypot(at[1] - point[1]);
     let frame = state.shown_frame();
-    let found = state
-        .tracks
-        .iter()
-        .filter_map(|row| Some((row.id, far(row.at(frame)?))))
+    let shown = match &state.versus {
+        Some(versus) if versus.compared.is_some() => versus.points(frame),
+        _ => state.tracks.iter().filter_map(|row| Some((row.id, row.at(frame)?))).collect(),
+    };
+    let found = shown
+        .into_iter()
+        .map(|(track, at)| (track, far(at)))
         .filter(|(_, far)| *far <= REACH_CELLS * lens.cell_px())
         .min_by(|a, b| a.1.total_cmp(&b.1));
     if let Some((track, _)) = found {

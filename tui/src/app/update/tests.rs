@@ -39,6 +39,7 @@ pub(super) fn start(words: &str) -> State {
                 state.job = Some(Job { plugin, what, done, since, keeps_frames: true, is_stopping: false });
             }
             "bare" => state.plugins.clear(),
+            "versus" => fixture::versus(&mut state),
             _ => panic!("{word}?"),
         }
     }

@@ -10,6 +10,7 @@ mod log;
 mod plots;
 mod queue;
 mod tracks;
+mod versus;
 
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
@@ -31,6 +32,8 @@ pub enum Pick {
     Item(Rank),
     /// A track.
     Track(TrackId),
+    /// A frame of a track.
+    At(TrackId, u32),
     /// A frame of the clip.
     Frame(u32),
     /// A row of the undo tree.
@@ -39,6 +42,10 @@ pub enum Pick {
 
 /// A panel that lists something.
 trait List {
+    /// What stands above it: as much as leaves half of the panel to its rows.
+    fn above(&self) -> Vec<Line<'static>> {
+        Vec::new()
+    }
     /// What its columns mean.
     fn heading(&self) -> String;
     /// What it says instead of rows when there are none.
@@ -61,14 +68,22 @@ fn list<'a>(state: &'a State, panel: Panel) -> Option<Box<dyn List + 'a>> {
         Panel::Groups => Box::new(groups::GroupList::of(state)),
         Panel::KeyFrames => Box::new(key_frames::KeyFrames::of(state)),
         Panel::History => Box::new(history::History(state)),
+        Panel::Versus => Box::new(versus::VersusList::of(state)),
         Panel::Log => Box::new(log::Log(state)),
         Panel::Plots => return None,
     })
 }
 
-/// Rows of the list, and the first of them that is seen.
-fn window(list: &dyn List, area: Rect) -> (usize, usize) {
-    let n_rows = usize::from(area.height.saturating_sub(2));
+/// What stands above a list in a panel, as far as there is room.
+fn above(list: &dyn List, area: Rect) -> Vec<Line<'static>> {
+    let mut lines = list.above();
+    lines.truncate(usize::from(area.height.saturating_sub(2) / 2));
+    lines
+}
+
+/// Rows of a list that begins under so many, and the first of them that is seen.
+fn window(list: &dyn List, area: Rect, top: usize) -> (usize, usize) {
+    let n_rows = usize::from(area.height).saturating_sub(top);
     let at = list.current().unwrap_or(0);
     (n_rows, at.saturating_sub(n_rows / 2).min(list.len().saturating_sub(n_rows)))
 }
@@ -89,13 +104,18 @@ pub(super) fn draw(state: &State, area: Rect, frame: &mut Frame) {
         let below = Rect { y: inside.y + 1, height: inside.height.saturating_sub(1), ..inside };
         return plots::draw(state, below, frame);
     };
+    let mut y = 1;
+    for line in above(&*list, inside) {
+        put(frame, inside, y, &line);
+        y += 1;
+    }
     if list.len() == 0 {
-        put(frame, inside, 1, &Line::styled(list.nothing(), style::DIM));
+        put(frame, inside, y, &Line::styled(list.nothing(), style::DIM));
         return;
     }
-    put(frame, inside, 1, &Line::styled(list.heading(), style::DIM));
-    let (n_rows, first) = window(&*list, inside);
-    for (y, i) in (2..).zip(first..list.len().min(first + n_rows)) {
+    put(frame, inside, y, &Line::styled(list.heading(), style::DIM));
+    let (n_rows, first) = window(&*list, inside, usize::from(y) + 1);
+    for (y, i) in (y + 1..).zip(first..list.len().min(first + n_rows)) {
         let is_current = list.current() == Some(i);
         let mark = Span::raw(if is_current { "▸" } else { " " });
         let mut line = list.row(i);
@@ -124,13 +144,15 @@ fn title(panel: Panel, width: u16) -> Line<'static> {
 pub fn pick_at(state: &State, area: Rect, row: u16) -> Option<Pick> {
     let panel = state.panel?;
     let list = list(state, panel);
-    let Some(at) = row.checked_sub(area.y + 2) else {
-        return (row == area.y).then(|| Pick::Panel(Panel::after(Some(panel))));
-    };
+    if row == area.y {
+        return Some(Pick::Panel(Panel::after(Some(panel))));
+    }
     let list = list?;
-    let (n_rows, first) = window(&*list, area);
-    let i = first + usize::from(at);
-    (usize::from(at) < n_rows && i < list.len()).then(|| list.pick(i)).flatten()
+    let top = above(&*list, area).len() + 2;
+    let at = usize::from(row.checked_sub(area.y)?).checked_sub(top)?;
+    let (n_rows, first) = window(&*list, area, top);
+    let i = first + at;
+    (at < n_rows && i < list.len()).then(|| list.pick(i)).flatten()
 }
 
 /// What lies so many rows after the current one, within the list.

@@ -8,6 +8,7 @@ use ratatui::text::{Line, Span};
 
 use honami_model::track::{Source, Status, TrackId};
 use honami_workbench::review::Parts;
+use honami_workbench::versus::{Entrant, Sight};
 
 use super::offers::offers;
 use super::{fill, fitted, put, style, width};
@@ -19,6 +20,7 @@ use crate::app::layout::{Lens, bar, column_of, frame_at};
 use crate::app::sketching::Sketching;
 use crate::app::state::{Job, Mode, State};
 use crate::app::tracks::TrackRow;
+use crate::app::versus::{LETTERS, Sides, Versus};
 use crate::term::encode::Frame;
 
 /// Eight levels of a bar.
@@ -33,7 +35,10 @@ fn facts(state: &State, nth: usize) -> Vec<(u8, String)> {
     }
     let counted = |n: usize, one: &str| if n == 1 { format!("1 {one}") } else { format!("{n} {one}s") };
     let mut facts = vec![(0, counted(state.tracks.len(), "track"))];
-    facts.extend(state.tracker.clone().map(|tracker| (5, tracker)));
+    match &state.versus {
+        Some(versus) => facts.push((1, runs_words(versus))),
+        None => facts.extend(state.tracker.clone().map(|tracker| (5, tracker))),
+    }
     let progress = state.review.progress();
     if progress.total() > 0 {
         facts.push((1, format!("{} to review, {} done", progress.open, progress.judged.done())));
@@ -48,6 +53,18 @@ fn facts(state: &State, nth: usize) -> Vec<(u8, String)> {
         facts.push((2, format!("{times}{}", if state.follow { " following" } else { "" })));
     }
     facts
+}
+
+/// Which runs are beside each other, and which of them are drawn.
+fn runs_words(versus: &Versus) -> String {
+    let name = |side: usize| {
+        let Entrant { run, tracker, .. } = &versus.runs[side];
+        format!("{} run {run} {tracker}", LETTERS[side])
+    };
+    match versus.sides {
+        Sides::Both => format!("{} · {}", name(0), name(1)),
+        Sides::One(side) => format!("only {}", name(side)),
+    }
 }
 
 /// Where a sample is put, and by what it is moved from there.
@@ -168,6 +185,7 @@ fn words(state: &State, row: &TrackRow) -> Vec<String> {
         }
         .to_owned(),
     }];
+    words.extend(state.versus.as_deref().and_then(|versus| sight_words(versus, row.id, state.frame)));
     match state.doubt() {
         Some(item) => {
             // Its numbers are of that frame, not of this one: the first of them is not shown without it.
@@ -186,6 +204,17 @@ fn words(state: &State, row: &TrackRow) -> Vec<String> {
         }
     }
     words
+}
+
+/// What two runs say of a track in a frame.
+fn sight_words(versus: &Versus, track: TrackId, frame: u32) -> Option<String> {
+    let paired = versus.compared.as_ref()?.track(track);
+    Some(match paired.and_then(|paired| paired.sight(frame)) {
+        None => "not in A and B".to_owned(),
+        Some(Sight::Both(px)) => format!("A–B {px:.2} px"),
+        Some(Sight::Alone(side)) => format!("only {} sees it", LETTERS[side]),
+        Some(Sight::Neither) => "neither sees it".to_owned(),
+    })
 }
 
 fn fb_words(fb_px: f32) -> String {
@@ -416,6 +445,7 @@ fn hint_line(state: &State, room: usize) -> Line<'static> {
         "model" if context == Context::Move => 1,
         "back" if context == Context::Move => 2,
         "end" | "lost" | "occluded" | "take away" | "average" => 1,
+        "flick" | "take A" | "take B" => 2,
         _ => 3,
     });
     let cells = |(keys, word): &(String, String)| width(keys) + 1 + width(word) + 2;
@@ -447,7 +477,12 @@ fn is_useful(state: &State, action: Action) -> bool {
     }
     match action {
         Action::Accept => state.opened().is_some() && state.read_only.is_none(),
-        Action::NextItem => !state.review.queue.is_empty(),
+        Action::NextItem => state.versus.is_some() || !state.review.queue.is_empty(),
+        Action::VersusFlick => state.versus.is_some(),
+        Action::TakeA | Action::TakeB => {
+            let shows = |side| state.versus.as_deref().is_some_and(|versus| versus.sides == Sides::One(side));
+            shows(usize::from(action == Action::TakeB)) && state.read_only.is_none()
+        }
         Action::MoveSample => !state.tracks.is_empty() && state.read_only.is_none(),
         Action::WorstFrame => state.opened().is_none() && state.doubt().is_some(),
         Action::RunTracker => state.tracks.is_empty() && state.job.is_none() && state.read_only.is_none(),

@@ -4,6 +4,7 @@ mod ghost;
 pub(super) mod motion;
 mod path;
 mod sketch;
+pub(super) mod versus;
 
 use std::collections::BTreeMap;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
@@ -153,7 +154,10 @@ impl<'a> Canvas<'a> {
         };
         // Marks belong to the frame that is shown, which may be a moment behind.
         canvas.motion(state, shot.frame);
-        canvas.tracks(state, shot.frame, nth);
+        match state.versus.as_deref().and_then(|versus| Some((versus.sides, versus.compared.as_deref()?))) {
+            Some(of) => canvas.versus(state, of, shot.frame, nth),
+            None => canvas.tracks(state, shot.frame, nth),
+        }
         canvas.cursor(state, shot.frame);
         canvas
     }

@@ -181,6 +181,31 @@ fn screens_of_corrections() {
 }
 
 #[test]
+fn screens_of_two_runs() {
+    let (small, large) = ((80, 24), (120, 40));
+    let versus = |state: &mut State| {
+        fixture::versus(state);
+        state.notice = None;
+    };
+    check("versus_80x24", small, "", versus);
+    check("versus_120x40", large, "n n", versus);
+    check("versus_one_80x24", small, "F F", versus);
+    check("versus_mono_80x24", small, "P a", |state| {
+        state.mono = true;
+        versus(state);
+    });
+    check("versus_40x12", (40, 12), "", versus);
+    check("versus_runs_80x24", small, "", |state| {
+        versus(state);
+        update(state, Msg::Fact(Fact::Entrants(None, fixture::entrants())));
+    });
+    check("versus_plots_80x24", small, "P p", |state| {
+        versus(state);
+        plot(state);
+    });
+}
+
+#[test]
 fn screens_of_motion_and_plots() {
     let (small, large) = ((80, 24), (120, 40));
     check("motion_80x24", small, "v v", |_| {});

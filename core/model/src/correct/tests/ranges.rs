@@ -40,6 +40,40 @@ fn ranges() {
 }
 
 #[test]
+fn what_a_run_found_is_taken() {
+    let given = short(&[(3, 9.0, 9.0)]);
+    let marked = mark(&given.shown(), 5..7, Status::Occluded).unwrap();
+    let given = Given { track: marked.track, ..given };
+    let shown = given.shown();
+    let mut found = given.runs[0].1.clone();
+    found.samples.iter_mut().for_each(|sample| sample.y = 2.0);
+    found.samples[8].status = Status::Lost;
+    found.samples.truncate(10);
+    let taken = |frames| take(&shown, RunId(7), &found, frames).unwrap();
+    for (frames, want, line) in [
+        (0..99, "tttKttttxttt", "track 42: frames 0-9 taken from run 7, up to 2.0 px"),
+        (4..6, "tttKtto", "track 42: frames 4-5 taken from run 7, up to 2.0 px"),
+    ] {
+        let taken = taken(frames.clone());
+        assert!(letters(&taken.span).starts_with(want), "{:?} in {frames:?}", letters(&taken.span));
+        assert_eq!(taken.transaction.label, line);
+        let all = taken.span.frames().zip(&taken.span.samples);
+        for (frame, sample) in all {
+            let is_taken = frames.contains(&frame) && frame < 10 && frame != 3;
+            let was = shown.span().get(frame).unwrap();
+            assert_eq!(sample, if is_taken { found.get(frame).unwrap() } else { was }, "frame {frame}");
+        }
+    }
+    let refused = |found: &Span, frames| take(&shown, RunId(1), found, frames).unwrap_err().to_string();
+    assert_eq!(refused(&found, 10..12), "track 42 has no samples in frames 10-11");
+    assert_eq!(
+        refused(&given.runs[0].1, 8..12),
+        "track 42: frames 8-11 are already as run 1 found them",
+        "it is the run that is shown"
+    );
+}
+
+#[test]
 fn a_marked_frame_stays_marked_when_key_frames_are_set_beside_it() {
     let given = short(&[(1, 0.0, 0.0)]);
     let marked = mark(&given.shown(), 5..7, Status::Occluded).unwrap();

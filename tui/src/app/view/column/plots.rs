@@ -27,10 +27,12 @@ pub(super) fn draw(state: &State, area: Rect, frame: &mut Frame) {
     let Some(plots) = Plotted::shown(state) else {
         return put(frame, area, 0, &Line::styled(what, style::DIM));
     };
+    let apart: Series = versus_px(state);
     let n_tracks = plots.n_tracks;
     let mean = if n_tracks > 1 { format!("  mean of {n_tracks} tracks") } else { String::new() };
     put(frame, area, 0, &Line::styled(format!("{what}{mean}"), style::DIM));
     let parts: Vec<(&str, &Series, &str, usize)> = [
+        ("A–B", &apart, "px", 2),
         ("x", &plots.x_px, "px", 1),
         ("y", &plots.y_px, "px", 1),
         ("speed", &plots.speed_px_s, "px/s", 1),
@@ -58,6 +60,16 @@ pub(super) fn draw(state: &State, area: Rect, frame: &mut Frame) {
             }
         }
     }
+}
+
+/// How far apart two runs beside each other are on the plotted track; nothing where none are, or of a group.
+fn versus_px(state: &State) -> Series {
+    let compared = state.versus.as_ref().and_then(|versus| versus.compared.as_ref());
+    let track = match Plotted::subject(state) {
+        Some(Subject::Track(track)) => compared.and_then(|compared| compared.track(track)),
+        _ => None,
+    };
+    track.map(|paired| paired.distances_px(state.clip.n_frames())).unwrap_or_default()
 }
 
 /// A curve over the clip under a line with its value in the current frame and its range.

@@ -1,5 +1,7 @@
 //! The way of the selected track through the frames near this one.
 
+use honami_model::track::Span;
+
 use super::{Canvas, KEY};
 use crate::app::tracks::TrackRow;
 
@@ -14,18 +16,10 @@ const AHEAD: [u8; 3] = [120, 200, 255];
 const DIAMOND: [(i64, i64); 5] = [(0, 0), (-1, 0), (1, 0), (0, -1), (0, 1)];
 
 impl Canvas<'_> {
-    /// A line from sample to sample, broken where the track is not seen; key-frames are diamonds on it.
+    /// The way of a track, with key-frames as diamonds on it.
     pub(super) fn path(&mut self, row: &TrackRow, frame: u32) {
+        self.trace(&row.span, frame, [PAST, AHEAD]);
         let frames = frame.saturating_sub(FRAMES)..=frame.saturating_add(FRAMES);
-        let seen = |f: u32| row.span.get(f).filter(|s| s.status.is_seen()).map(|s| [s.x, s.y]);
-        for f in frames.clone() {
-            let Some(at) = seen(f) else { continue };
-            let colour = if f < frame { PAST } else { AHEAD };
-            match seen(f + 1).filter(|_| frames.contains(&(f + 1))) {
-                Some(next) => self.line(at, next, colour),
-                None => self.line(at, at, if f <= frame { PAST } else { AHEAD }),
-            }
-        }
         for &key in row.keys.iter().filter(|key| frames.contains(key)) {
             if let Some(at) = row.at(key) {
                 self.mark(at, &DIAMOND, KEY, '*');
@@ -33,7 +27,22 @@ impl Canvas<'_> {
         }
     }
 
-    fn line(&mut self, from: [f32; 2], to: [f32; 2], colour: [u8; 3]) {
+    /// A line from sample to sample, broken where the feature is not seen, in the colours of the past and of what is
+    /// ahead.
+    pub(super) fn trace(&mut self, span: &Span, frame: u32, [past, ahead]: [[u8; 3]; 2]) {
+        let frames = frame.saturating_sub(FRAMES)..=frame.saturating_add(FRAMES);
+        let seen = |f: u32| span.get(f).filter(|s| s.status.is_seen()).map(|s| [s.x, s.y]);
+        for f in frames.clone() {
+            let Some(at) = seen(f) else { continue };
+            let colour = if f < frame { past } else { ahead };
+            match seen(f + 1).filter(|_| frames.contains(&(f + 1))) {
+                Some(next) => self.line(at, next, colour),
+                None => self.line(at, at, if f <= frame { past } else { ahead }),
+            }
+        }
+    }
+
+    pub(super) fn line(&mut self, from: [f32; 2], to: [f32; 2], colour: [u8; 3]) {
         // As fine as a cell's dots: no place between is missed, whatever the pixels are.
         let per_px = 4.0 * f64::from(self.lens.area.width) / self.lens.width;
         let n =
