@@ -1,7 +1,8 @@
 //! Keys per track that a simulated reviewer needs, a row a correction; `cargo xtask bench review`.
 //!
-//! `[--tracks N] [--seed S] [--level calm|wind|storm] [--tolerance PX] [--frames T] [--json]`; each model works in a
-//! copy of the same project, on the same tracks, with the same trembling hand.
+//! `[--tracks N] [--seed S] [--level calm|wind|storm] [--tolerance PX] [--frames T] [--with TRACKER]… [--model MODEL]…
+//! [--pick worst|first] [--json]`; each model works in a copy of the same project, on the same tracks, with the same
+//! trembling hand. The tracker named first is reviewed; what the others found are candidates, too.
 #![allow(clippy::print_stdout, reason = "a benchmark speaks to a person")]
 
 use std::error::Error;
@@ -9,7 +10,6 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use honami_model::edit::Transaction;
-use honami_model::provenance::Value;
 use honami_model::track::TrackId;
 use honami_motion::accuracy::TruePath;
 use honami_workbench::compare::{Truth, points_of, read_truth};
@@ -24,8 +24,8 @@ use honami_workbench::track::{self, Area, PointSource, TrackRequest};
 /// More key-frames than anybody places on one track.
 const MAX_KEYS: u32 = 61;
 
-/// Radius of the window of a second run, pixels: there is one tracker, and with a wide window it errs elsewhere.
-const RIVAL_RADIUS: i64 = 20;
+/// The tracker that is reviewed, and those whose runs are candidates beside it.
+const TRACKERS: [&str; 3] = ["anchored", "klt", "lucas-kanade"];
 
 /// What is asked for.
 struct Asked {
@@ -34,6 +34,10 @@ struct Asked {
     levels: Vec<Level>,
     tolerance_px: f64,
     n_frames: u32,
+    with: Vec<String>,
+    /// Those of the models that are tried; empty: all.
+    models: Vec<String>,
+    picks: Vec<Pick>,
     json: bool,
     plugin: PathBuf,
     folder: PathBuf,
@@ -46,6 +50,9 @@ fn asked() -> Result<Asked, Box<dyn Error>> {
         levels: vec![Level::Calm, Level::Wind],
         tolerance_px: 4.0,
         n_frames: 150,
+        with: Vec::new(),
+        models: Vec::new(),
+        picks: vec![Pick::Worst, Pick::First],
         json: false,
         plugin: PathBuf::from("target/release"),
         folder: std::env::temp_dir(),
@@ -59,11 +66,19 @@ fn asked() -> Result<Asked, Box<dyn Error>> {
             "--level" => asked.levels = vec![value()?.parse()?],
             "--tolerance" => asked.tolerance_px = value()?.parse()?,
             "--frames" => asked.n_frames = value()?.parse()?,
+            "--with" => asked.with.push(value()?),
+            "--model" => asked.models.push(value()?),
+            "--pick" => {
+                asked.picks = vec![if value()? == "first" { Pick::First } else { Pick::Worst }];
+            }
             "--plugin" => asked.plugin = value()?.into(),
             "--folder" => asked.folder = value()?.into(),
             "--json" => asked.json = true,
             _ => return Err(format!("unknown option {word}").into()),
         }
+    }
+    if asked.with.is_empty() {
+        asked.with = TRACKERS.map(str::to_owned).to_vec();
     }
     Ok(asked)
 }
@@ -111,11 +126,10 @@ fn scene(asked: &Asked, level: Level) -> Result<Scene, Box<dyn Error>> {
     let project = folder.join("review.honami");
     remove(&project)?;
     let mut session = Session::create(&project, &clip, None, &options(asked))?;
-    // What has found more, and less exactly, lies below; what is shown is what the tracker finds as it comes.
-    let wide: Values = [("radius".to_owned(), Value::Int(RIVAL_RADIUS))].into_iter().collect();
-    let given = PointSource::Given(seeds.clone());
-    for (params, points) in [(wide, given), (Values::default(), PointSource::Existing)] {
-        let plugin = "klt".to_owned();
+    // What is shown is the topmost run.
+    for (k, plugin) in asked.with.iter().rev().enumerate() {
+        let points = if k == 0 { PointSource::Given(seeds.clone()) } else { PointSource::Existing };
+        let (plugin, params) = (plugin.clone(), Values::default());
         let (frames, every, area) = (0..asked.n_frames, None, Area::Whole);
         let request = TrackRequest { plugin, params, points, frames, every, area };
         let done = track::prepare(&mut session, &request)?.run(&())?;
@@ -141,9 +155,12 @@ struct Row {
 /// Every model with every pick; key-frames with lines and curves also where nobody has tracked.
 fn rows(asked: &Asked, scene: &Scene) -> Result<Vec<Row>, Box<dyn Error>> {
     let mut rows = Vec::new();
-    for pick in [Pick::Worst, Pick::First] {
+    for &pick in &asked.picks {
         let bare = [Model::Linear, Model::Offered(offer::Model::Hermite)].map(|model| (model, false));
-        for (model, tracked) in bare.into_iter().chain(Model::ALL.map(|model| (model, true))) {
+        let all = bare.into_iter().chain(Model::ALL.map(|model| (model, true)));
+        let is_wanted =
+            |model: Model| asked.models.is_empty() || asked.models.iter().any(|name| name == model.name());
+        for (model, tracked) in all.filter(|(model, _)| is_wanted(*model)) {
             rows.push(row(asked, scene, model, pick, tracked)?);
         }
     }
@@ -223,7 +240,7 @@ fn print(asked: &Asked, level: Level, n_tracks: usize, rows: &[Row]) {
                  \"at_once\":{:.3},\"ms\":{:.2},\"strokes_mouse\":{},\"strokes_nudges\":{}}}",
                 asked.seed,
                 asked.tolerance_px,
-                if row.tracked { "klt" } else { "keys" },
+                if row.tracked { "runs" } else { "keys" },
                 row.model.name(),
                 row.pick,
                 told.mean,
@@ -240,8 +257,11 @@ fn print(asked: &Asked, level: Level, n_tracks: usize, rows: &[Row]) {
         return;
     }
     println!(
-        "{level}, seed {}: {n_tracks} tracks of {} frames, tolerance {} px, hand 0.5 px; klt, and klt radius={RIVAL_RADIUS} below it",
-        asked.seed, asked.n_frames, asked.tolerance_px
+        "{level}, seed {}: {n_tracks} tracks of {} frames, tolerance {} px, hand 0.5 px; trackers, the one reviewed first: {}",
+        asked.seed,
+        asked.n_frames,
+        asked.tolerance_px,
+        asked.with.join(", ")
     );
     println!(
         "from  model      frame   mean median  p90  of linear  unfinished  at once  ms/corr  strokes mouse|nudges"
@@ -250,7 +270,7 @@ fn print(asked: &Asked, level: Level, n_tracks: usize, rows: &[Row]) {
         let told = told(row);
         println!(
             "{:5} {:10} {:5} {:6.1} {:6} {:4} {:10.2} {:10.0} % {:6.0} % {:8.1} {:10} | {}",
-            if row.tracked { "klt" } else { "keys" },
+            if row.tracked { "runs" } else { "keys" },
             row.model.name(),
             format!("{:?}", row.pick).to_lowercase(),
             told.mean,

@@ -57,6 +57,21 @@ impl Model {
         }
     }
 
+    /// How far it is mostly off, as a multiple of the best model's error; `None`: it is never offered first.
+    ///
+    /// From `cargo xtask bench review` on other clips than those of docs/review.md.
+    fn usual_error(self) -> Option<f64> {
+        match self {
+            Self::Fused => Some(1.0),
+            Self::Both => Some(1.2),
+            Self::Space => Some(2.0),
+            Self::Forward => Some(2.5),
+            Self::Backward => Some(3.0),
+            Self::Hermite => Some(4.0),
+            Self::KeyOnly => None,
+        }
+    }
+
     /// How a tracker goes for it; `None`: it needs none.
     #[must_use]
     pub fn way(self) -> Option<Way> {
@@ -127,37 +142,57 @@ pub fn grant(study: &Arc<Study>, wish: &Wish, progress: &dyn Progress) -> Result
     Ok(Granted::Retracked(Box::new(job.run(progress)?)))
 }
 
-/// How far each model is from key-frames that it was not told of; a model that is missing could find none of them.
+/// The models that can be offered for a track, and how far each is from key-frames that it was not told of; one that is
+/// missing could find none of them.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Errors(BTreeMap<Model, LeftOut>);
+pub struct Errors {
+    models: Vec<Model>,
+    known: BTreeMap<Model, LeftOut>,
+}
 
 impl Errors {
-    /// Errors that are known.
+    /// Errors that are known, of models that can be offered.
     #[must_use]
-    pub fn new(known: impl IntoIterator<Item = (Model, LeftOut)>) -> Self {
-        Self(known.into_iter().collect())
+    pub fn new(models: Vec<Model>, known: impl IntoIterator<Item = (Model, LeftOut)>) -> Self {
+        Self { models, known: known.into_iter().collect() }
     }
 
     /// Mean distance of a model from the key-frames left out, pixels.
     #[must_use]
     pub fn px(&self, model: Model) -> Option<f64> {
-        self.0.get(&model).map(|out| out.mean_px)
+        self.known.get(&model).map(|out| out.mean_px)
     }
 
-    /// The model to offer first: the best one, and while nothing is known what several runs have found, where there are
-    /// several.
+    /// The model to offer first: the one with the smallest error, as far as errors are known, and as long as
+    /// they are few, also the one that mostly does best.
+    ///
+    /// Errors are compared as logarithms, because those of a track in calm air and of one in a storm differ by factors;
+    /// what is mostly so counts as much as [`PRIOR_KEYS`] key-frames. A model that missed a key-frame which another one
+    /// found is not offered first.
     #[must_use]
-    pub fn first(&self, has_rivals: bool) -> Option<Model> {
-        self.best().or(has_rivals.then_some(Model::Fused))
-    }
-
-    /// The model with the smallest error, of those that found all that any of them found.
-    fn best(&self) -> Option<Model> {
-        let most = self.0.values().map(|out| out.n).max()?;
-        let all = self.0.iter().filter(|(_, out)| out.n == most);
-        all.min_by(|(_, a), (_, b)| a.mean_px.total_cmp(&b.mean_px)).map(|(model, _)| *model)
+    pub fn first(&self) -> Option<Model> {
+        let most = self.known.values().map(|out| out.n).max().unwrap_or(0);
+        let score = |model: Model| -> Option<(f64, Model)> {
+            let prior = PRIOR_KEYS * model.usual_error()?.ln();
+            let known = self.known.get(&model).filter(|out| out.n == most);
+            match known {
+                Some(out) => Some((prior + out.n as f64 * (out.mean_px + SURE_PX).ln(), model)),
+                None => (most == 0).then_some((prior, model)),
+            }
+        };
+        self.models
+            .iter()
+            .copied()
+            .filter_map(score)
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(_, model)| model)
     }
 }
+
+/// What is mostly so counts as much as so many key-frames left out.
+const PRIOR_KEYS: f64 = 5.0;
+/// Errors below this are the hand's, pixels: they say nothing of the model.
+const SURE_PX: f64 = 0.5;
 
 /// Leaves out the key-frames nearest to a frame, one after the other, and asks every model where they are.
 ///
@@ -187,7 +222,7 @@ pub fn errors(study: &Study, frame: u32, progress: &dyn Progress) -> Result<Erro
     let of = |(model, told): (Model, BTreeMap<u32, [f32; 2]>)| {
         Some((model, loko(keys, |_, frame| told.get(&frame).copied())?))
     };
-    Ok(Errors(told.into_iter().filter_map(of).collect()))
+    Ok(Errors::new(study.models().collect(), told.into_iter().filter_map(of)))
 }
 
 /// The key-frames to leave out, with their neighbours.

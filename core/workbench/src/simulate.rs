@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use honami_model::correct::{Refused, key_only, linear};
 use honami_model::document::Key;
-use honami_model::track::{Span, TrackId};
+use honami_model::track::{Span, Status, TrackId};
 use honami_motion::accuracy::TruePath;
 use rand::SeedableRng as _;
 use rand_distr::{Distribution as _, StandardNormal};
@@ -135,10 +135,12 @@ pub fn review(
 fn next(shown: &Span, truth: &TruePath, habits: &Habits) -> Option<u32> {
     let wrong = (truth.first_frame..).zip(&truth.positions).filter(|(_, position)| position.2);
     let mut wrong = wrong.filter_map(|(frame, &(x, y, _))| {
-        // What is said to be lost where it can be seen is wrong wherever it is.
+        // What is said to be lost where it can be seen is wrong wherever it is; what is said to be hidden is shown where
+        // the tracker puts it, and right when it is there.
         let error_px = shown.get(frame).map_or(f64::INFINITY, |sample| {
             let error_px = (f64::from(sample.x) - x).hypot(f64::from(sample.y) - y);
-            if sample.status.is_seen() { error_px } else { error_px.max(2.0 * habits.tolerance_px) }
+            let is_told = sample.status.is_seen() || sample.status == Status::Occluded;
+            if is_told { error_px } else { error_px.max(2.0 * habits.tolerance_px) }
         });
         (error_px > habits.tolerance_px).then_some((frame, error_px))
     });
@@ -171,7 +173,7 @@ fn correct(
         Model::Offered(model) => model,
         Model::First => {
             let study = retrack::study(session, track)?;
-            let first = offer::errors(&study, frame, &())?.first(study.has_rivals());
+            let first = offer::errors(&study, frame, &())?.first();
             first.unwrap_or(offer::Model::Space)
         }
     };

@@ -23,17 +23,24 @@ fn the_nearest_key_frames_are_left_out_with_their_neighbours() {
 }
 
 #[test]
-fn a_model_that_missed_a_key_frame_is_not_offered_before_one_that_found_all() {
-    let known = |px: &[(Model, usize, f64)]| {
-        Errors::new(px.iter().map(|&(model, n, mean_px)| (model, LeftOut { n, mean_px })))
+fn the_first_model_is_the_best_one_as_far_as_that_is_known() {
+    let alone = || Model::ALL.into_iter().filter(|model| *model != Model::Fused);
+    let known = |models: Vec<Model>, px: &[(Model, usize, f64)]| {
+        Errors::new(models, px.iter().map(|&(model, n, mean_px)| (model, LeftOut { n, mean_px })))
     };
+    assert_eq!(known(Vec::new(), &[]).first(), None);
+    assert_eq!(known(Model::ALL.to_vec(), &[]).first(), Some(Model::Fused));
     for (px, want) in [
-        (&[][..], None),
-        (&[(Model::Space, 2, 0.8), (Model::Both, 2, 0.3), (Model::Hermite, 2, 2.4)], Some(Model::Both)),
-        (&[(Model::Space, 3, 0.8), (Model::Forward, 1, 0.1)], Some(Model::Space)),
-        // Of equals the one that is offered before.
-        (&[(Model::Both, 1, 0.5), (Model::Space, 1, 0.5)], Some(Model::Space)),
+        (&[][..], Model::Both),
+        // One key-frame left out says little: it has to be clearly better.
+        (&[(Model::Space, 1, 0.8), (Model::Both, 1, 1.0), (Model::Hermite, 1, 0.9)], Model::Both),
+        (&[(Model::Space, 1, 0.2), (Model::Both, 1, 12.0)], Model::Space),
+        (&[(Model::Space, 8, 0.8), (Model::Both, 8, 1.6), (Model::Hermite, 8, 0.7)], Model::Space),
+        (&[(Model::Space, 3, 9.0), (Model::Both, 3, 30.0), (Model::Hermite, 3, 2.0)], Model::Hermite),
+        // What missed a key-frame that another found is not offered before it.
+        (&[(Model::Space, 3, 0.8), (Model::Both, 1, 0.1)], Model::Space),
+        (&[(Model::KeyOnly, 3, 0.0), (Model::Space, 3, 0.8)], Model::Space),
     ] {
-        assert_eq!(known(px).best(), want, "{px:?}");
+        assert_eq!(known(alone().collect(), px).first(), Some(want), "{px:?}");
     }
 }

@@ -21,6 +21,7 @@ use super::plan::{self, Anchors, Limits, Pass, Stretch};
 use super::{Direction, RetrackJob, RetrackRequest, Way, direction, lay};
 use crate::error::WorkbenchError;
 use crate::ground::Ground;
+use crate::offer::Model;
 use crate::progress::Progress;
 use crate::session::Session;
 
@@ -164,6 +165,15 @@ impl Study {
     pub fn has_rivals(&self) -> bool {
         let runs = &self.ground.runs;
         runs.iter().any(|(run, _)| *run != runs[0].0)
+    }
+
+    /// The models that can be offered for it, in their order.
+    pub fn models(&self) -> impl Iterator<Item = Model> + use<> {
+        let (has_rivals, has_tracker) = (self.has_rivals(), self.usual.is_some());
+        Model::ALL.into_iter().filter(move |model| match model {
+            Model::Fused => has_rivals,
+            model => model.way().is_none() || has_tracker,
+        })
     }
 
     /// The correction that sets key-frames and lays the best path through what several runs have found around a frame,

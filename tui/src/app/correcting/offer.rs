@@ -126,7 +126,7 @@ impl Moving {
             Answer::Ghost(wish, ghost) => self.offer.found = Some((wish, ghost)),
             Answer::Errors(track, errors) if track == self.track => {
                 let errors = errors.unwrap_or_default();
-                let first = errors.first(self.models().any(|model| model == Model::Fused));
+                let first = errors.first();
                 self.offer.errors = Some(errors);
                 if let (Tool::Place { model, .. }, Some(first)) = (&mut self.tool, first)
                     && may_offer

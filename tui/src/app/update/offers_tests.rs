@@ -23,7 +23,8 @@ fn tell_answer(state: &mut State, answer: Answer) -> Vec<Effect> {
 
 fn errors(px: &[(Model, f64)]) -> Answer {
     let known = px.iter().map(|&(model, mean_px)| (model, LeftOut { n: 2, mean_px }));
-    Answer::Errors(TrackId(1), Ok(Errors::new(known)))
+    let models = px.iter().map(|(model, _)| *model).collect();
+    Answer::Errors(TrackId(1), Ok(Errors::new(models, known)))
 }
 
 /// Presses keys without an answer to what is asked for behind the screen; returns the wishes.
@@ -62,7 +63,7 @@ fn the_model_with_the_smallest_error_is_offered_first_unless_another_was_chosen(
     // Where the track is not shown there is nothing that could be carried along.
     let mut state = start("frame=80 track=2");
     press(&mut state, "m");
-    let known = Errors::new([(Model::Space, LeftOut { n: 1, mean_px: 0.1 })]);
+    let known = Errors::new(vec![Model::Space], [(Model::Space, LeftOut { n: 1, mean_px: 0.1 })]);
     tell_answer(&mut state, Answer::Errors(TrackId(2), Ok(known)));
     assert_eq!(moving(&state).model(), Some(Model::KeyOnly));
 }

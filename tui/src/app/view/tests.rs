@@ -175,7 +175,7 @@ fn screens_of_corrections() {
         fixture::press(state, "m l");
         let px = [(Model::Both, 0.31), (Model::Space, 0.82), (Model::Hermite, 2.4)];
         let known = px.map(|(model, mean_px)| (model, LeftOut { n: 2, mean_px }));
-        let told = Answer::Errors(TrackId(1), Ok(Errors::new(known)));
+        let told = Answer::Errors(TrackId(1), Ok(Errors::new(px.map(|(model, _)| model).to_vec(), known)));
         update(state, Msg::Fact(Fact::Offered(told)));
     });
 }
