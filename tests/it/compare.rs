@@ -55,7 +55,7 @@ fn a_generated_clip_is_measured_from_all_sides_and_drawn() {
 fn a_clip_without_truth_is_compared_on_what_a_tracker_finds() {
     let bench = Bench::new();
     bench.synth("clip.y4m", 8, "");
-    let said = bench.json("compare clip.y4m");
+    let said = bench.json("compare clip.y4m --with klt");
     assert!(number(&said["points"]) > 10.0, "{said}");
     assert_eq!(row(&said, "klt").get("delta_avg"), None);
     assert!(number(&row(&said, "klt")["back"]["median_px"]) < 0.5, "{said}");
@@ -87,7 +87,7 @@ fn a_pair_of_pictures_is_compared_with_a_flow() {
     // The same picture twice, under two names: nothing moves, and it is two frames.
     let twice = bench.path("b twice.png");
     fs::copy(first, &twice).unwrap();
-    let args = ["compare", first, twice.to_str().unwrap(), "--truth", "still.flo", "--json"];
+    let args = ["compare", first, twice.to_str().unwrap(), "--truth", "still.flo", "--with", "klt", "--json"];
     let said = bench.run(args).json();
     let klt = row(&said, "klt");
     assert!(number(&klt["rms_px"]) < 1e-3 && number(&klt["field"]["mean_px"]) < 1e-3, "{klt}");
@@ -95,7 +95,7 @@ fn a_pair_of_pictures_is_compared_with_a_flow() {
     assert!(bench.run(args.into_iter().take(5)).text().contains("end-point error"));
     // One that says that all moves by (3, 4): 5 px, and nobody is near.
     flow(&bench, "moves.flo", [160, 120], [3.0, 4.0]);
-    let args = ["compare", first, twice.to_str().unwrap(), "--truth", "moves.flo", "--json"];
+    let args = ["compare", first, twice.to_str().unwrap(), "--truth", "moves.flo", "--with", "klt", "--json"];
     let off = row(&bench.run(args).json(), "klt").clone();
     assert!((number(&off["median_px"]) - 5.0).abs() < 0.01, "{off}");
     assert!((number(&off["bias_px"][1]) + 4.0).abs() < 0.1, "{off}");
@@ -142,7 +142,7 @@ fn middlebury_trees_are_followed_to_a_tenth_of_a_pixel() {
     let bench = Bench::new();
     let file = |name: &str| folder.join(name).to_str().unwrap().to_owned();
     let (from, to, truth) = (file("frame10.png"), file("frame11.png"), file("flow10.flo"));
-    let said = bench.run(["compare", &from, &to, "--truth", &truth, "--json"]).json();
+    let said = bench.run(["compare", &from, &to, "--truth", &truth, "--with", "klt", "--json"]).json();
     assert!(number(&row(&said, "klt")["median_px"]) < 0.1, "{said}");
     assert!(number(&row(&said, "static")["median_px"]) > 1.0, "{said}");
 }

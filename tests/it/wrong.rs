@@ -35,8 +35,8 @@ const CASES: &[Case] = &[
     ("plugin info nothing", FAILED, &["no plugin \"nothing\"", "there are:"]),
     ("track p.honami --set foo=1", USAGE, &["no parameter \"foo\"", "there are: radius"]),
     ("track p.honami --set radius", USAGE, &["name=value"]),
-    ("track p.honami --set radius=wide", USAGE, &["radius", "whole number, 1 to 100 (px)", "wide"]),
-    ("track p.honami --set radius=0", USAGE, &["radius", "1 to 100", "\"0\""]),
+    ("track p.honami --set radius=wide", USAGE, &["radius", "whole number, 2 to 50 (px)", "wide"]),
+    ("track p.honami --set radius=0", USAGE, &["radius", "2 to 50", "\"0\""]),
     ("track p.honami --set method=fast", USAGE, &["one of shi-tomasi, harris", "fast"]),
     // Frames, areas and points.
     ("track p.honami --frames 0..41", FAILED, &["0..41", "0..40"]),

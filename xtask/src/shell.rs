@@ -49,7 +49,8 @@ impl Step {
     /// Runs it and gives what it prints; it says nothing unless it fails.
     pub(crate) fn output(mut self) -> anyhow::Result<String> {
         let output = self.0.output().with_context(|| format!("cannot start {}", self.line()))?;
-        let said = String::from_utf8_lossy(&output.stderr);
+        let said = if output.stderr.is_empty() { &output.stdout } else { &output.stderr };
+        let said = String::from_utf8_lossy(said);
         ensure!(output.status.success(), "{} ended with {}: {}", self.line(), output.status, said.trim());
         Ok(String::from_utf8(output.stdout)?)
     }

@@ -168,17 +168,17 @@ impl Errors {
     ///
     /// Errors are compared as logarithms, because those of a track in calm air and of one in a storm differ by factors;
     /// what is mostly so counts as much as [`PRIOR_KEYS`] key-frames. A model that missed a key-frame which another one
-    /// found is not offered first.
+    /// found is not offered first. While nothing is known it is what several runs have found, where there are several:
+    /// that is there at once.
     #[must_use]
     pub fn first(&self) -> Option<Model> {
-        let most = self.known.values().map(|out| out.n).max().unwrap_or(0);
+        let Some(most) = self.known.values().map(|out| out.n).max() else {
+            return self.models.contains(&Model::Fused).then_some(Model::Fused);
+        };
         let score = |model: Model| -> Option<(f64, Model)> {
             let prior = PRIOR_KEYS * model.usual_error()?.ln();
-            let known = self.known.get(&model).filter(|out| out.n == most);
-            match known {
-                Some(out) => Some((prior + out.n as f64 * (out.mean_px + SURE_PX).ln(), model)),
-                None => (most == 0).then_some((prior, model)),
-            }
+            let out = self.known.get(&model).filter(|out| out.n == most)?;
+            Some((prior + out.n as f64 * (out.mean_px + SURE_PX).ln(), model))
         };
         self.models
             .iter()

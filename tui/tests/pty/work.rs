@@ -14,7 +14,7 @@ pub(super) fn plugins() -> PathBuf {
     let profile = if cfg!(debug_assertions) { "dev" } else { "release" };
     let output = Command::new(env!("CARGO"))
         .args(["build", "--quiet", "--message-format=json", "--profile", profile])
-        .args(["-p", "honami-tracker-klt", "-p", "honami-clusterer-movement"])
+        .args(["-p", "honami-tracker-anchored", "-p", "honami-clusterer-movement"])
         .current_dir(env!("CARGO_MANIFEST_DIR"))
         .stderr(Stdio::inherit())
         .output()
@@ -22,7 +22,7 @@ pub(super) fn plugins() -> PathBuf {
     assert!(output.status.success(), "the plugins do not build");
     let library = |line: &str| {
         let message: Value = serde_json::from_str(line).ok()?;
-        let is_it = message["target"]["name"] == "honami_tracker_klt";
+        let is_it = message["target"]["name"] == "honami_tracker_anchored";
         message["filenames"][0].as_str().filter(|_| is_it).map(PathBuf::from)
     };
     let messages = String::from_utf8(output.stdout).unwrap();
@@ -79,7 +79,7 @@ fn a_clip_is_tracked_grouped_and_corrected_and_survives_a_kill() {
     terminal.press("tr");
     terminal.wait_for_text("the selected track");
     terminal.press("\r");
-    terminal.wait_for_text("klt: track ");
+    terminal.wait_for_text("anchored: track ");
     terminal.signal(Signal::KILL);
     assert!(!terminal.wait_for_end());
 

@@ -10,7 +10,7 @@ use super::cases::{Case, What};
 use super::json;
 use crate::shell::{Step, built, target_dir};
 
-/// Rows of another version are measured again: raise it when the measure or the cases change.
+/// Clips, points and rows of another version are made again: raise it when the measure or the cases change.
 const VERSION: u32 = 1;
 /// A tracker that takes no longer for a frame, milliseconds, is given everything;
 const QUICK_MS: f64 = 60.0;
@@ -66,7 +66,7 @@ pub(super) struct Lab {
 
 impl Lab {
     pub(super) fn new() -> anyhow::Result<Self> {
-        let folder = target_dir()?.join("bench/accuracy");
+        let folder = target_dir()?.join(format!("bench/accuracy-v{VERSION}"));
         fs::create_dir_all(folder.join("rows"))
             .with_context(|| format!("cannot make {}", folder.display()))?;
         let data = std::env::var_os("HONAMI_DATA").map(PathBuf::from);
@@ -148,12 +148,12 @@ impl Lab {
     }
 
     fn kept(&self, case: &Case, tracker: &Tracker, n_points: usize) -> PathBuf {
-        let name = format!("{}-{}-{n_points}-v{VERSION}.json", case.name, tracker.key());
+        let name = format!("{}-{}-{n_points}.json", case.name, tracker.key());
         self.folder.join("rows").join(name)
     }
 
     fn probe(&self, tracker: &Tracker) -> PathBuf {
-        self.folder.join("rows").join(format!("probe-{}-v{VERSION}.json", tracker.key()))
+        self.folder.join("rows").join(format!("probe-{}.json", tracker.key()))
     }
 
     /// How quick a tracker is, on ten frames of a clip of its own: the median, which a busy machine changes least.
