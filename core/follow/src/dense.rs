@@ -11,6 +11,8 @@ use crate::picture;
 const STEP_PX: u32 = 4;
 /// A node whose way there and back ends farther than this from its start has no known motion, pixels.
 const ASTRAY_PX: f32 = 1.0;
+/// Nodes that are followed between two looks at whether to go on.
+const NODES_A_LOOK: usize = 2048;
 
 /// Displacements between two frames; (0, 0) where nothing could be measured: no texture, hidden, or out of the picture.
 ///
@@ -29,15 +31,21 @@ pub fn klt_field(
     let nodes: Vec<_> = grid.nodes().collect();
 
     let [from, to] = [from, to].map(|gray| Pyramid::new(&gray, params.levels, params.radius_px));
-    let there = klt::track(&from, &to, &nodes, None, params, max_threads as usize);
-    cx.progress(0.5, "tracking back")?;
-    let ends: Vec<_> = there.iter().map(|flow| flow.to).collect();
-    let back = klt::track(&to, &from, &ends, None, params, max_threads as usize);
     let moved = |((at, there), back): ((&[f32; 2], &klt::Flow), &klt::Flow)| {
         let is_found = there.state == State::Tracked && back.state == State::Tracked;
         let is_back = (back.to[0] - at[0]).hypot(back.to[1] - at[1]) <= ASTRAY_PX;
         if is_found && is_back { (there.to[0] - at[0], there.to[1] - at[1]) } else { (0.0, 0.0) }
     };
-    let (u, v) = nodes.iter().zip(&there).zip(&back).map(moved).unzip();
+    let (mut u, mut v) = (Vec::with_capacity(nodes.len()), Vec::with_capacity(nodes.len()));
+    for part in nodes.chunks(NODES_A_LOOK) {
+        cx.progress(u.len() as f64 / nodes.len() as f64, "following a grid")?;
+        let there = klt::track(&from, &to, part, None, params, max_threads as usize);
+        let ends: Vec<_> = there.iter().map(|flow| flow.to).collect();
+        let back = klt::track(&to, &from, &ends, None, params, max_threads as usize);
+        for (x, y) in part.iter().zip(&there).zip(&back).map(moved) {
+            u.push(x);
+            v.push(y);
+        }
+    }
     Ok(Field { origin: grid.origin, step: grid.step_px, nx: grid.nx, ny: grid.ny, u, v })
 }

@@ -56,7 +56,8 @@ pub struct Accuracy {
     pub bias_px: Option<[f64; 2]>,
     /// Share of samples whose visibility was told rightly: occlusion accuracy.
     pub visibility: f64,
-    /// Of the samples called seen, the share that is visible and within 8 px; `None` when none was.
+    /// Of the samples called seen, the share within 8 px; `None` when none was. Whether the feature could be seen there
+    /// is another question, which [`visibility`](Self::visibility) answers: half a leaf can be followed well.
     pub precision: Option<f64>,
     /// Of the visible samples, the share that was called seen and is within 8 px.
     pub recall: f64,
@@ -89,6 +90,8 @@ struct Sums {
     n_all: u64,
     n_told: u64,
     n_seen: u64,
+    /// Of those called seen, within 8 px; and of these, those that are visible.
+    n_near: u64,
     n_right: u64,
     survival: f64,
     n_ok: u64,
@@ -102,6 +105,7 @@ impl Sums {
             let seen = sample.offset_px.is_some();
             self.n_all += 1;
             self.n_seen += u64::from(seen);
+            self.n_near += u64::from(sample.far_px() <= RIGHT_PX);
             self.n_told += u64::from(seen == sample.visible);
             if sample.visible {
                 let error_px = sample.far_px();
@@ -148,7 +152,7 @@ impl Sums {
             axis_rms_px: on_axes(self.squared).map(|squares| squares.map(f64::sqrt)),
             bias_px: on_axes(self.offset),
             visibility: self.n_told as f64 / self.n_all as f64,
-            precision: (self.n_seen > 0).then_some(self.n_right as f64 / self.n_seen as f64),
+            precision: (self.n_seen > 0).then_some(self.n_near as f64 / self.n_seen as f64),
             recall: self.n_right as f64 / n_visible,
             n_samples: self.n_visible,
             n_lost: self.n_visible - self.errors.len() as u64,

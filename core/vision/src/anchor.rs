@@ -104,7 +104,7 @@ impl Default for Params {
             kin_px: 3.0,
             stray_cost: 0.04,
             return_cost: 0.1,
-            patience: 1000,
+            patience: 250,
             max_templates: 3,
         }
     }

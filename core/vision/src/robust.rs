@@ -9,7 +9,7 @@
 //!   step is `x ← x + m(x)`, so to the weighted mean. The printed sign descends.
 //! - errata E6: with `w_i = k_i / Σ k_j` the new `Σ = Σ w_i (x_i - x)(x_i - x)ᵀ / (1 - Σ w_i²)`, centred on that mean;
 //!   the first one is the centred covariance of all samples. Printed without centring.
-//! - errata E7: repeated, `Σ` shrinks as `Σ_data / k` and the mode becomes whichever sample is nearest. The noise of
+//! - errata E7: repeated, `Σ` shrinks as `Σ_data / (k + 1)` and the mode becomes whichever sample is nearest. The noise of
 //!   a measurement, `floor_px²`, is therefore added to each `Σ`, which ends near the geometric mean of both, and a step
 //!   that fewer than `min_effective` samples would decide, `1 / Σ w_i²`, is not taken.
 

@@ -167,7 +167,7 @@ impl Errors {
     /// they are few, also the one that mostly does best.
     ///
     /// Errors are compared as logarithms, because those of a track in calm air and of one in a storm differ by factors;
-    /// what is mostly so counts as much as [`PRIOR_KEYS`] key-frames. A model that missed a key-frame which another one
+    /// what is mostly so counts as much as five key-frames. A model that missed a key-frame which another one
     /// found is not offered first. While nothing is known it is what several runs have found, where there are several:
     /// that is there at once.
     #[must_use]

@@ -62,7 +62,8 @@ pub(crate) const SEED: u64 = 0;
 fn simd() -> &'static str {
     #[cfg(target_arch = "x86_64")]
     {
-        if std::arch::is_x86_feature_detected!("avx512f") {
+        // As the kernels of `honami-vision` ask.
+        if std::arch::is_x86_feature_detected!("avx512f") && std::arch::is_x86_feature_detected!("avx512bw") {
             return "avx512";
         }
         if std::arch::is_x86_feature_detected!("avx2") {

@@ -80,7 +80,7 @@ fn seeding_again_moves_a_point_and_retiring_ends_it() {
 #[test]
 fn a_larger_radius_is_a_larger_window_all_over() {
     let [usual, twice] = [7, 14].map(|radius| Settings { radius, ..Settings::default() }.tracking());
-    assert_eq!(usual, anchor::Params { patience: 250, ..anchor::Params::default() });
+    assert_eq!(usual, anchor::Params::default());
     assert_eq!((twice.radius_px, twice.klt.radius_px), (14, 14));
     assert!((twice.spread_px / usual.spread_px - 2.0).abs() < 1e-6);
 }

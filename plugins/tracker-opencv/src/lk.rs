@@ -19,7 +19,7 @@ pub(crate) struct Lk {
     last: Option<Pyramid>,
 }
 
-/// A pyramid with its gradients, and how many levels OpenCV gave it.
+/// A pyramid with its gradients.
 pub(crate) struct Pyramid {
     levels: Vector<Mat>,
 }

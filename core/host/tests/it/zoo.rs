@@ -82,6 +82,22 @@ fn a_stream_may_be_reversed_reseeded_corrected_and_retired_from() {
 }
 
 #[test]
+fn seeds_that_are_no_places_do_not_reach_the_tracker() {
+    let cx = CallContext::silent();
+    let mut tracker = start(&of_zoo(Kind::Tracker, "drift"), &[]).unwrap();
+    tracker.begin(stream(), &cx).unwrap();
+    for (seeds, want) in [
+        ([point(1, 1.0, 1.0), point(2, f32::NAN, 1.0)], "point 2 has no finite position"),
+        ([point(1, 1.0, f32::INFINITY), point(2, 1.0, 1.0)], "point 1 has no finite position"),
+        ([point(5, 1.0, 1.0), point(5, 2.0, 1.0)], "point 5 is seeded twice"),
+    ] {
+        let refused = tracker.seed(&seeds, &cx).expect_err(want).to_string();
+        assert!(refused.contains(want), "{refused}");
+    }
+    assert_eq!(push(&mut tracker, 0).unwrap()[0].rows, []);
+}
+
+#[test]
 fn births_take_ids_from_the_reserved_range_and_end() {
     let cx = CallContext::silent();
     let mut tracker = start(&of_zoo(Kind::Tracker, "drift"), &["life=2"]).unwrap();

@@ -37,14 +37,15 @@ type Case<'a> = (&'a [bool], &'a [Option<f32>], [f64; 6]);
 #[test]
 fn counts_misses_by_hand() {
     // The first frame is the query and never counts.
-    let cases: [Case<'_>; 7] = [
+    let cases: [Case<'_>; 8] = [
         (&[true, true], &[Some(9.0), Some(0.5)], [1.0, 1.0, 1.0, 1.0, 1.0, 1.0]),
         (&[true, true], &[Some(0.0), Some(3.0)], [0.6, 1.0, 1.0, 1.0, 1.0, 1.0]),
         (&[true, true, true], &[Some(0.0), Some(0.0), None], [0.5, 0.5, 0.0, 0.5, 1.0, 0.5]),
         (&[true, true, true], &[Some(0.0), Some(20.0), Some(0.0)], [0.5, 0.0, 0.0, 1.0, 0.5, 0.5]),
         (&[true, true, false], &[Some(0.0), Some(0.0), None], [1.0, 1.0, 1.0, 1.0, 1.0, 1.0]),
-        // Called seen while it is hidden: no position is right there, however near.
-        (&[true, true, false], &[Some(0.0), Some(0.0), Some(0.0)], [1.0, 1.0, 1.0, 0.5, 0.5, 1.0]),
+        // Called seen while it is hidden: its visibility is told wrongly, its place rightly; and then neither.
+        (&[true, true, false], &[Some(0.0), Some(0.0), Some(0.0)], [1.0, 1.0, 1.0, 0.5, 1.0, 1.0]),
+        (&[true, true, false], &[Some(0.0), Some(0.0), Some(9.0)], [1.0, 1.0, 1.0, 0.5, 0.5, 1.0]),
         // Two of three called seen are right, and two of four visible ones were found.
         (
             &[true; 5],

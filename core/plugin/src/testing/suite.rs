@@ -17,8 +17,9 @@ use crate::{Cx, Error, Listener, Result};
 /// Pictures of 1x1 and 7x5 pixels, flat, saturated and noisy ones, a size that changes; points on borders, far outside,
 /// in the same place, none at all and 100,000; seeding again, retiring, streams that run backward; one thread and four;
 /// a user who stops it at once. A picture less than 8 pixels wide or high, or of another size than those before, may be
-/// refused with [`Error::data`] and a reason; rows may not be missing, doubled, unknown or not
-/// finite; and a push of 100,000 points must ask whether to go on.
+/// refused with [`Error::data`] and a reason; rows may not be doubled, unknown or not finite, nor missing in the first
+/// frame; and a push of 100,000 points must ask whether to go on, and stop wherever the answer is no. Points that are
+/// not finite never get so far: the host refuses them.
 ///
 /// # Panics
 /// Where the tracker breaks the contract, with the case and what it did.
@@ -88,13 +89,14 @@ struct Watched<T> {
     live: BTreeSet<u32>,
     births: std::ops::Range<u32>,
     born: BTreeSet<u32>,
+    has_begun: bool,
 }
 
 impl<T: Tracker> Watched<T> {
     fn begin(params: &T::Params, stream: &Stream) -> Result<Self> {
         let tracker = T::begin(params, stream, &Cx::new(&Deaf))?;
         let births = stream.births.clone();
-        Ok(Self { tracker, live: BTreeSet::new(), births, born: BTreeSet::new() })
+        Ok(Self { tracker, live: BTreeSet::new(), births, born: BTreeSet::new(), has_begun: false })
     }
 
     fn seed(&mut self, seeds: &[Seed]) -> Result<()> {
@@ -143,6 +145,12 @@ impl<T: Tracker> Watched<T> {
             if !is_birth && !self.live.contains(&row.id) {
                 return at("a row of a point that is not live");
             }
+        }
+        // What was seeded before the first push holds there; later a tracker may end what it likes.
+        if !std::mem::replace(&mut self.has_begun, true)
+            && let Some(id) = self.live.difference(&reported).next()
+        {
+            return Err(Error::failed(format!("point {id} has no row in the first frame")));
         }
         self.live = reported;
         Ok(())
@@ -296,20 +304,27 @@ fn many_points<T: Tracker>(params: &T::Params) -> Result<()> {
     let mut watched = Watched::<T>::begin(params, &stream(160, 120))?;
     let place = |id: u32| Seed { id, x: (id % 400) as f32 * 0.4, y: (id / 400) as f32 * 0.48 };
     watched.seed(&(0..N).map(place).collect::<Vec<_>>())?;
+    watched.push(&Picture::moving(160, 120, 0).frame(0), &Deaf)?;
     let patient = Stopper { asked: AtomicUsize::new(0), stop_at: usize::MAX };
-    for t in 0..2 {
-        watched.push(&Picture::moving(160, 120, t).frame(t), &patient)?;
-    }
-    if patient.asked.load(Ordering::Relaxed) == 0 {
+    watched.push(&Picture::moving(160, 120, 1).frame(1), &patient)?;
+    let n_asked = patient.asked.load(Ordering::Relaxed);
+    if n_asked == 0 {
         return Err(Error::data("nobody was asked whether to go on"));
     }
-    let stopper = Stopper { asked: AtomicUsize::new(0), stop_at: 0 };
-    match watched.push(&Picture::moving(160, 120, 2).frame(2), &stopper) {
-        Err(error) if error == Error::cancelled() => Ok(()),
-        Err(error) => Err(Error::data(format!("told to stop it says: {error}"))),
-        Ok(_) if T::LATENCY > 0 => Ok(()),
-        Ok(_) => Err(Error::data("told to stop it went on")),
+    // At the first question, half-way, and at the last one: each answer counts.
+    for stop_at in [0, n_asked / 2, n_asked - 1] {
+        let mut watched = Watched::<T>::begin(params, &stream(160, 120))?;
+        watched.seed(&(0..N).map(place).collect::<Vec<_>>())?;
+        watched.push(&Picture::moving(160, 120, 0).frame(0), &Deaf)?;
+        let stopper = Stopper { asked: AtomicUsize::new(0), stop_at };
+        match watched.push(&Picture::moving(160, 120, 1).frame(1), &stopper) {
+            Err(error) if error == Error::cancelled() => {}
+            Err(error) => return Err(Error::data(format!("told to stop it says: {error}"))),
+            Ok(_) if T::LATENCY > 0 => {}
+            Ok(_) => return Err(Error::data("told to stop it went on")),
+        }
     }
+    Ok(())
 }
 
 fn extras<T: Tracker>(params: &T::Params) -> Result<()> {

@@ -61,6 +61,7 @@ impl Tracker for Faulty {
                 8 => row.x += 0.1,
                 10 if self.n_threads > 1 => row.y += 0.5,
                 11 => out.add(row),
+                13 => continue,
                 _ => {}
             }
             out.add(row);
@@ -88,6 +89,7 @@ fn a_tracker_without_fault_passes_and_each_fault_is_named() {
         (10, "four threads gave other rows"),
         (11, "a point has two rows"),
         (12, "refused without a reason"),
+        (13, "has no row in the first frame"),
     ];
     for (fault, want) in faults {
         let met = std::panic::catch_unwind(|| suite::<Faulty>(&Fault { fault }));
