@@ -216,9 +216,11 @@ fn curves(clips: &[Clip], options: &Options) {
     };
     println!("\n{:24} {:>8} {:>10} {:>12}", "all clips", "agrees %", "worst clip", "µs a feature");
     let (radius_px, search_px) = (options.params.radius_px, options.params.search_px);
-    for share in [0.02, 0.03, 0.05, 0.07, 0.1, 0.15, 0.2] {
-        print!("{:24} ", format!("share {share}"));
-        point(Params { method: Method::Pyramidal { levels: 3, share }, ..options.params });
+    for share in [0.003, 0.005, 0.007, 0.01, 0.02, 0.05, 0.1] {
+        for levels in [2, 3] {
+            print!("{:24} ", format!("share {share}, k {}", levels - 1));
+            point(Params { method: Method::Pyramidal { levels, share }, ..options.params });
+        }
     }
     for radius_px in [5, radius_px, 15, 20] {
         for levels in 1..=4 {

@@ -12,14 +12,16 @@
 //! Costs are whole numbers, so answers are the same bits at every SIMD level and for any number of threads.
 
 mod kernel;
+mod least;
 mod peak;
 mod planes;
 mod search;
+mod template;
 #[cfg(test)]
 mod tests;
 
 pub use planes::Boxes;
-pub use search::Template;
+pub use template::Template;
 
 use crate::klt::State;
 use crate::{Point, simd};
@@ -64,9 +66,9 @@ pub enum Measure {
 }
 
 impl Default for Params {
-    /// Pyramidal, three levels, 7 %; squared differences of a template of 21x21 pixels.
+    /// Pyramidal, two levels, 0.7 %; squared differences of a template of 21x21 pixels.
     fn default() -> Self {
-        let method = Method::Pyramidal { levels: 3, share: 0.07 };
+        let method = Method::Pyramidal { levels: 2, share: 0.007 };
         Self { radius_px: 10, search_px: 32, method, measure: Measure::Ssd, min_contrast: 1.0 }
     }
 }

@@ -51,9 +51,9 @@ params! {
         /// Which displacements are tried.
         strategy: Strategy = "pyramidal" => { label: "Strategy", group: "Tracking" },
         /// Levels of the pyramid; each makes template and search window half as large.
-        levels: i64 = 3 => { label: "Levels", group: "Tracking", min: 1, max: 10, soft_max: 4 },
+        levels: i64 = 2 => { label: "Levels", group: "Tracking", min: 1, max: 10, soft_max: 4 },
         /// Share of the displacements tried on a level, the best of them, that the next finer one starts from.
-        share: f64 = 0.07 => { label: "Share carried down", group: "Tracking", min: 0, max: 1, advanced: true },
+        share: f64 = 0.007 => { label: "Share carried down", group: "Tracking", min: 0, max: 1, advanced: true },
         /// A template whose brightness varies less (standard deviation, gray levels) is flat, and the point lost.
         min_contrast: f64 = 1.0 => {
             label: "Minimum contrast", group: "Tracking", min: 0, max: 128, soft_max: 10, advanced: true,

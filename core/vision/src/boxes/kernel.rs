@@ -18,6 +18,10 @@ use crate::simd::{self, Set};
 /// Pixels of a row that are worked on together.
 const LANES: usize = 32;
 
+/// So few columns of windows are compared one by one: most of a vector of them would be for nothing.
+#[cfg(target_arch = "x86_64")]
+const FEW: usize = 2;
+
 /// Rows that are summed up before a window may be given up.
 const ROWS_A_LOOK: usize = 8;
 
@@ -36,6 +40,11 @@ pub(super) struct Cut {
     side: usize,
     /// `(side, side)`, row-major.
     pixels: Vec<u8>,
+    /// Two neighbours of a row together, the left one in the lower half; 0 beyond the side, and in a row above and
+    /// one beneath. `(side + 2, side / 2)`, the latter rounded up.
+    pairs: Vec<i32>,
+    /// `Σ I²`
+    squares: u32,
 }
 
 /// Sums over a window `J` under a template `I`.
@@ -89,6 +98,17 @@ impl Cut {
         }
         self.pixels.clear();
         self.pixels.extend_from_slice(pixels);
+        self.pairs.clear();
+    }
+
+    /// Makes the pairs of a template that was taken, for [`all_differences`].
+    fn pair(&mut self) {
+        let pair = |two: &[u8]| i32::from(two[0]) | two.get(1).map_or(0, |&right| i32::from(right) << 16);
+        let n = self.side.div_ceil(2);
+        self.pairs.resize(n, 0);
+        self.pixels.chunks_exact(self.side).for_each(|row| self.pairs.extend(row.chunks(2).map(pair)));
+        self.pairs.resize((self.side + 2) * n, 0);
+        self.squares = self.pixels.iter().map(|&p| u32::from(p).pow(2)).sum();
     }
 }
 
@@ -140,7 +160,8 @@ pub(super) fn differences(level: simd::Level, cut: &Cut, plane: &Plane, starts: 
 }
 
 /// [`differences`] as far as the least of them is wanted: a window may be given up after every [`ROWS_A_LOOK`] rows,
-/// once they alone differ by more than the least window before it.
+/// once they alone differ by more than the least window before it. The one that differs least in the first rows is the
+/// first, the others follow in order.
 ///
 /// # Panics
 /// When a window does not lie in the plane.
@@ -165,34 +186,48 @@ pub(super) fn least_differences(
     }
 }
 
-/// [`differences`] of `n` windows side by side, the first at a byte of a plane, onto the end of `out`.
+/// [`differences`] of all windows of some columns and rows, `[columns, rows]`, the first at a byte of a plane; row-major.
 ///
-/// Windows are in the lanes of vectors here, where [`differences`] has a window's pixels: faster for small ones.
+/// Windows are in the lanes of vectors here, where [`differences`] has a window's pixels, and what all rows have in
+/// common is summed up once: `Σ (I - J)² = Σ I² - 2 Σ I J + Σ J²`.
 ///
 /// # Panics
 /// When a window does not lie in the plane.
 #[track_caller]
-pub(super) fn row_of_differences(
+pub(super) fn all_differences(
     level: simd::Level,
-    cut: &Cut,
+    cut: &mut Cut,
     plane: &Plane,
     start: usize,
-    n: usize,
+    size: [usize; 2],
     out: &mut Vec<u32>,
 ) {
+    let [columns, rows] = size;
+    out.clear();
+    out.resize(columns * rows, 0);
+    if out.is_empty() {
+        return;
+    }
+    if cut.pairs.is_empty() {
+        cut.pair();
+    }
     // The last vector of windows is read whole, too.
-    let source = Source::up_to(cut, plane, start + n.next_multiple_of(LANES));
+    let last = start + (rows - 1) * plane.stride + columns.next_multiple_of(LANES);
+    let source = Source::up_to(cut, plane, last);
     match level.set() {
         Set::Scalar => {
-            let starts = start as u32..(start + n) as u32;
-            out.extend(starts.map(|start| difference(cut, source, start, 0..cut.side)));
+            for (y, out) in out.chunks_exact_mut(columns).enumerate() {
+                let start = (start + y * plane.stride) as u32;
+                let windows = out.iter_mut().zip(start..);
+                windows.for_each(|(out, start)| *out = difference(cut, source, start, 0..cut.side));
+            }
         }
         // SAFETY: a level is the proof that the processor has these instructions.
         #[cfg(target_arch = "x86_64")]
-        Set::Avx2 => unsafe { avx2::row_of_differences(cut, source, start, n, out) },
+        Set::Avx2 => unsafe { avx2::all_differences(cut, source, start, size, out) },
         // SAFETY: as above.
         #[cfg(target_arch = "x86_64")]
-        Set::Avx512 => unsafe { avx512::row_of_differences(cut, source, start, n, out) },
+        Set::Avx512 => unsafe { avx512::all_differences(cut, source, start, size, out) },
     }
 }
 
@@ -217,17 +252,21 @@ pub(super) fn sums(level: simd::Level, cut: &Cut, plane: &Plane, starts: &[u32],
 
 /// See [`least_differences`].
 fn least(cut: &Cut, source: Source<'_>, starts: &[u32], out: &mut Vec<u32>) {
-    let mut least = u32::MAX;
+    let looks = cut.side.min(ROWS_A_LOOK);
     for &start in starts {
-        let mut cost = 0;
-        for first in (0..cut.side).step_by(ROWS_A_LOOK) {
-            cost += difference(cut, source, start, first..cut.side.min(first + ROWS_A_LOOK));
-            if cost > least {
-                break;
-            }
+        out.push(difference(cut, source, start, 0..looks));
+    }
+    // The less there is to beat, the sooner others are given up.
+    let first = (0..out.len()).min_by_key(|&i| out[i]);
+    let mut least = u32::MAX;
+    for i in first.into_iter().chain((0..out.len()).filter(|&i| Some(i) != first)) {
+        let mut y = looks;
+        while y < cut.side && out[i] <= least {
+            let end = cut.side.min(y + ROWS_A_LOOK);
+            out[i] += difference(cut, source, starts[i], y..end);
+            y = end;
         }
-        least = least.min(cost);
-        out.push(cost);
+        least = least.min(out[i]);
     }
 }
 

@@ -1,113 +1,12 @@
 //! One thread's search for templates.
 
-use honami_model::picture::Gray;
-
 use super::kernel::{self, Cut, Sums};
+use super::least::Least;
 use super::planes::{Boxes, Plane};
+use super::template::{Template, area, holds, pixel, side};
 use super::{Match, Measure, Method, Params, peak};
 use crate::klt::{Reason, State};
 use crate::{Point, simd};
-
-/// The pixels around a point at every level of a picture, to be looked for in others.
-#[derive(Clone, Debug, Default)]
-pub struct Template {
-    /// Where the point was.
-    from: Point,
-    /// The pixel it was on.
-    pixel: [i32; 2],
-    state: Option<State>,
-    size: (u32, u32),
-    /// Of every level, finest first, row-major.
-    pixels: Vec<u8>,
-    /// Of every level: first pixel in its plane.
-    corners: Vec<[i32; 2]>,
-    radius_px: u32,
-    /// Standard deviation of its brightness, gray levels.
-    contrast: f32,
-}
-
-impl Template {
-    /// Takes the window around a position; whether anything can be looked for, [`find`](super::find) says.
-    pub fn cut(&mut self, boxes: &Boxes, from: Point) {
-        let (width, height) = boxes.size();
-        (self.from, self.size, self.radius_px) = (from, (width, height), boxes.radius_px());
-        self.pixels.clear();
-        self.corners.clear();
-        self.state = if !from.iter().all(|c| c.is_finite()) {
-            Some(State::Lost(Reason::NotFinite))
-        } else if !holds((width, height), from) {
-            Some(State::Outside)
-        } else {
-            None
-        };
-        if self.state.is_some() {
-            self.from = from.map(|c| if c.is_finite() { c } else { 0.0 });
-            return;
-        }
-        self.pixel = pixel((width, height), from);
-        for (level, plane) in boxes.planes.iter().enumerate() {
-            let first = boxes.planes[0].margin - self.radius_px as i32;
-            // The coarse pixel nearest to the template's corner.
-            let corner = self.pixel.map(|c| (c + first + (1 << level >> 1)) >> level);
-            let [x, y] = corner.map(|c| c as usize);
-            let side = side(self.radius_px, level);
-            let rows = plane.data[y * plane.stride + x..].chunks(plane.stride).take(side);
-            rows.for_each(|row| self.pixels.extend_from_slice(&row[..side]));
-            self.corners.push(corner);
-        }
-        let area = area(self.radius_px, 0);
-        self.contrast = (Sums::of(&self.pixels[..area]).spread(area) as f64).sqrt() as f32 / area as f32;
-    }
-}
-
-impl Template {
-    /// The window itself; 0 by 0 pixels where nothing was cut.
-    #[must_use]
-    pub fn window(&self) -> Gray<'_> {
-        let side = if self.pixels.is_empty() { 0 } else { side(self.radius_px, 0) };
-        Gray::packed(&self.pixels[..side * side], side as u32, side as u32)
-    }
-
-    /// How far the point lies beside its middle pixel, pixels.
-    #[must_use]
-    pub fn beside(&self) -> Point {
-        [self.from[0] - self.pixel[0] as f32, self.from[1] - self.pixel[1] as f32]
-    }
-
-    /// Its pixels on a level, row-major.
-    fn pixels(&self, level: usize) -> &[u8] {
-        let start: usize = (0..level).map(|finer| area(self.radius_px, finer)).sum();
-        &self.pixels[start..start + area(self.radius_px, level)]
-    }
-}
-
-/// Side of a template on a level.
-fn side(radius_px: u32, level: usize) -> usize {
-    (2 * radius_px as usize + 1) >> level
-}
-
-/// Pixels of a template on a level.
-fn area(radius_px: u32, level: usize) -> usize {
-    side(radius_px, level).pow(2)
-}
-
-/// Whether a position lies on the pixels of a picture of this size.
-fn holds((width, height): (u32, u32), [x, y]: Point) -> bool {
-    (-0.5..=width as f32 - 0.5).contains(&x) && (-0.5..=height as f32 - 0.5).contains(&y)
-}
-
-/// The pixel nearest to a position.
-fn pixel((width, height): (u32, u32), [x, y]: Point) -> [i32; 2] {
-    let near = |c: f32, n: u32| (c.round() as i32).clamp(0, n as i32 - 1);
-    [near(x, width), near(y, height)]
-}
-
-/// A displacement that was tried on a level, pixels of that level.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Tried {
-    cost: u32,
-    at: [i32; 2],
-}
 
 /// Displacements from the first to the last, along x and along y.
 #[derive(Clone, Copy, Debug)]
@@ -140,6 +39,11 @@ impl Window {
     fn height(&self) -> usize {
         (self.last[1] - self.first[1]) as usize + 1
     }
+
+    /// The displacement of this index, row by row.
+    fn at(&self, i: usize) -> [i32; 2] {
+        [self.first[0] + (i % self.width()) as i32, self.first[1] + (i / self.width()) as i32]
+    }
 }
 
 /// One thread's search: parameters and scratch memory.
@@ -152,10 +56,13 @@ pub(super) struct Search<'a> {
     starts: Vec<u32>,
     costs: Vec<u32>,
     sums: Vec<Sums>,
-    tried: Vec<Tried>,
-    kept: Vec<Tried>,
-    /// A bit for every displacement of a level that is to be tried, whole words a row.
-    chosen: Vec<u64>,
+    /// Displacements that were tried; empty where all of the window were, row by row.
+    places: Vec<[i32; 2]>,
+    /// Those that the next finer level starts from, best first.
+    kept: Vec<[i32; 2]>,
+    /// Whether a displacement of the window was tried, row by row.
+    seen: Vec<bool>,
+    least: Least,
 }
 
 impl<'a> Search<'a> {
@@ -167,9 +74,10 @@ impl<'a> Search<'a> {
             starts: Vec::new(),
             costs: Vec::new(),
             sums: Vec::new(),
-            tried: Vec::new(),
+            places: Vec::new(),
             kept: Vec::new(),
-            chosen: Vec::new(),
+            seen: Vec::new(),
+            least: Least::default(),
         }
     }
 
@@ -193,166 +101,133 @@ impl<'a> Search<'a> {
 
         let guess = pixel(next.size(), guess);
         let window = Window::around(guess, template.pixel, self.params.search_px, next.size());
-        match self.params.method {
-            Method::Exhaustive => self.try_all(template, next, window, 0),
-            Method::Pyramidal { levels, share } => {
-                let top = (levels.clamp(1, next.n_levels()) - 1) as usize;
-                self.try_all(template, next, window, top);
-                for level in (0..top).rev() {
-                    self.keep(share);
-                    self.descend(template, next, window, level);
-                }
-            }
+        let (top, share) = match self.params.method {
+            Method::Exhaustive => (0, 1.0),
+            Method::Pyramidal { levels, share } => ((levels.clamp(1, next.n_levels()) - 1) as usize, share),
+        };
+        self.take(template, top);
+        self.try_all(template, next, window.on(top), top);
+        for level in (0..top).rev() {
+            self.keep(window.on(level + 1), share);
+            self.descend(window.on(level));
+            self.measure(template, next, level, level == 0);
         }
         let far = |at: [i32; 2]| (0..2).map(|i| (template.pixel[i] + at[i] - guess[i]).pow(2)).sum::<i32>();
-        let best = self.tried.iter().min_by_key(|t| (t.cost, far(t.at), t.at[1], t.at[0]));
         // A window is never empty.
-        let Some(&best) = best else { return not_found(template.from, State::Outside) };
-        self.refine(template, next, best)
+        let cost = self.costs.iter().fold(u32::MAX, |least, &cost| least.min(cost));
+        let equal = (0..self.costs.len()).filter(|&i| self.costs[i] == cost).map(|i| self.place(window, i));
+        let Some(at) = equal.min_by_key(|&at| (far(at), at[1], at[0])) else {
+            return not_found(template.from, State::Outside);
+        };
+        self.refine(template, next, at, cost)
+    }
+
+    /// The displacement that a cost belongs to.
+    fn place(&self, window: Window, i: usize) -> [i32; 2] {
+        self.places.get(i).copied().unwrap_or_else(|| window.at(i))
     }
 
     /// The position to a fraction of a pixel, and whether it has left the picture.
-    fn refine(&mut self, template: &Template, next: &Boxes, best: Tried) -> Match {
-        let [dx, dy] = best.at;
-        self.tried.clear();
-        let around = (-1..2).flat_map(|y| (-1..2).map(move |x| [dx + x, dy + y]));
-        self.tried.extend(around.map(|at| Tried { cost: 0, at }));
+    fn refine(&mut self, template: &Template, next: &Boxes, best: [i32; 2], cost: u32) -> Match {
+        let [dx, dy] = best;
+        self.places.clear();
+        self.places.extend((-1..2).flat_map(|y| (-1..2).map(move |x| [dx + x, dy + y])));
         self.measure(template, next, 0, false);
-        let costs = std::array::from_fn(|i| f64::from(self.tried[i].cost));
+        let costs = std::array::from_fn(|i| f64::from(self.costs[i]));
         let more = peak::minimum(&costs).unwrap_or([0.0; 2]);
-        let to = [0, 1].map(|i| template.from[i] + best.at[i] as f32 + more[i] as f32);
+        let to = [0, 1].map(|i| template.from[i] + best[i] as f32 + more[i] as f32);
         let sizes = [next.size().0, next.size().1];
         // It is where it could go no farther.
         let left = |i: usize| {
-            let at = template.pixel[i] + best.at[i];
-            (at == 0 && best.at[i] < 0) || (at + 1 == sizes[i] as i32 && best.at[i] > 0)
+            let at = template.pixel[i] + best[i];
+            (at == 0 && best[i] < 0) || (at + 1 == sizes[i] as i32 && best[i] > 0)
         };
         let outside = left(0) || left(1) || !holds(next.size(), to);
         let state = if outside { State::Outside } else { State::Tracked };
-        Match { to, state, step: best.at, cost: best.cost }
+        Match { to, state, step: best, cost }
     }
 
-    /// Tries all displacements of a window on a level.
+    /// Tries all displacements of a window of a level.
     fn try_all(&mut self, template: &Template, next: &Boxes, window: Window, level: usize) {
-        /// Smaller templates are compared many at a time.
-        const SMALL: usize = 16;
-        let window = window.on(level);
+        /// Smaller templates are compared many at a time; larger ones are given up too soon for that to pay.
+        const SMALL: usize = 32;
         let Window { first, last } = window;
-        let all = (first[1]..=last[1])
-            .flat_map(|y| (first[0]..=last[0]).map(move |x| Tried { cost: 0, at: [x, y] }));
-        self.tried.clear();
-        if self.params.measure == Measure::Ncc || side(template.radius_px, level) >= SMALL {
-            // What is near the guess is often near the answer, and the less there is to beat the sooner others give up.
-            self.tried.push(Tried { cost: 0, at: [0, 1].map(|i| (first[i] + last[i]) / 2) });
-            self.tried.extend(all);
-            self.measure(template, next, level, level == 0);
+        self.places.clear();
+        if self.params.measure == Measure::Ssd && side(template.radius_px, level) < SMALL {
+            let plane = &next.planes[level];
+            let start = start(template, plane, level, first);
+            let size = [window.width(), window.height()];
+            kernel::all_differences(self.simd, &mut self.cuts[level], plane, start, size, &mut self.costs);
             return;
         }
-        self.tried.extend(all);
-        self.take(template, level);
-        let plane = &next.planes[level];
-        self.costs.clear();
-        for y in first[1]..=last[1] {
-            let start = start(template, plane, level, [first[0], y]);
-            kernel::row_of_differences(
-                self.simd,
-                &self.cuts[level],
-                plane,
-                start,
-                window.width(),
-                &mut self.costs,
-            );
-        }
-        self.tried.iter_mut().zip(&self.costs).for_each(|(tried, &cost)| tried.cost = cost);
+        self.places.extend((first[1]..=last[1]).flat_map(|y| (first[0]..=last[0]).map(move |x| [x, y])));
+        self.measure(template, next, level, level == 0);
     }
 
-    /// Keeps the best share of what was tried, at least one; of equal ones the first.
-    fn keep(&mut self, share: f32) {
-        let n = ((self.tried.len() as f32 * share).ceil() as usize).clamp(1, self.tried.len());
-        self.costs.clear();
-        self.costs.extend(self.tried.iter().map(|t| t.cost));
-        let (better, &mut last, _) = self.costs.select_nth_unstable(n - 1);
-        let mut equal = n - better.iter().filter(|&&cost| cost < last).count();
-        // Without branches: which are good enough is anybody's guess.
-        self.kept.clone_from(&self.tried);
-        let mut n_kept = 0;
-        for &tried in &self.tried {
-            let is_last = (tried.cost == last) & (equal > 0);
-            equal -= usize::from(is_last);
-            self.kept[n_kept] = tried;
-            n_kept += usize::from((tried.cost < last) | is_last);
+    /// Keeps the best share of what was tried in a window, at least one; of equal ones the first.
+    fn keep(&mut self, window: Window, share: f32) {
+        let n = ((self.costs.len() as f32 * share).ceil() as usize).clamp(1, self.costs.len());
+        self.least.find(&self.costs, n);
+        self.kept.clear();
+        for i in 0..n {
+            let (_, index) = self.least.found[i];
+            self.kept.push(self.place(window, index as usize));
         }
-        self.kept.truncate(n);
     }
 
-    /// Tries the displacements on a level to which those kept on the coarser one lead.
-    fn descend(&mut self, template: &Template, next: &Boxes, window: Window, level: usize) {
-        let window = window.on(level);
-        let words = (window.width() + 2).div_ceil(64) + 1;
-        self.chosen.clear();
-        self.chosen.resize((window.height() + 2) * words, 0);
+    /// Chooses the displacements of a window to which those kept on the coarser level lead.
+    ///
+    /// Of the four finer pixels of a coarse one the first is where its displacement leads; the other three, and those
+    /// on its other sides, are as near.
+    fn descend(&mut self, window: Window) {
+        self.seen.clear();
+        self.seen.resize(window.width() * window.height(), false);
+        self.places.clear();
         for kept in &self.kept {
-            // Of the four finer pixels of a coarse one the first is where its displacement leads; the other three, and
-            // those on its other sides, are as near. Bits and rows begin one before the window.
-            let [x, y] = [0, 1].map(|i| (2 * kept.at[i] - window.first[i]).max(0) as usize);
-            for row in y..(y + 3).min(window.height() + 2) {
-                let word = &mut self.chosen[row * words + x / 64..];
-                word[0] |= 7 << (x % 64);
-                word[1] |= (7_u128 << (x % 64) >> 64) as u64;
-            }
-        }
-        self.tried.clear();
-        // What is near the best is often the answer, and the less there is to beat the sooner others are given up.
-        let best = self.kept.iter().min_by_key(|kept| kept.cost).map_or([0; 2], |kept| kept.at);
-        let within = |i: usize| (2 * best[i]).clamp(window.first[i], window.last[i]);
-        self.tried.push(Tried { cost: 0, at: [within(0), within(1)] });
-        for y in window.first[1]..=window.last[1] {
-            let row = (y - window.first[1]) as usize + 1;
-            for (i, &word) in self.chosen[row * words..][..words].iter().enumerate() {
-                let mut word = word;
-                while word != 0 {
-                    let x = window.first[0] + (64 * i) as i32 + word.trailing_zeros() as i32 - 1;
-                    word &= word - 1;
-                    if (window.first[0]..=window.last[0]).contains(&x) && self.tried[0].at != [x, y] {
-                        self.tried.push(Tried { cost: 0, at: [x, y] });
-                    }
+            let [columns, rows] = [0, 1].map(|i| {
+                let (first, last) = (window.first[i], window.last[i]);
+                (2 * kept[i] - 1).max(first)..=(2 * kept[i] + 1).min(last)
+            });
+            for (y, x) in rows.flat_map(|y| columns.clone().map(move |x| (y, x))) {
+                let i = (y - window.first[1]) as usize * window.width() + (x - window.first[0]) as usize;
+                if !std::mem::replace(&mut self.seen[i], true) {
+                    self.places.push([x, y]);
                 }
             }
         }
-        self.measure(template, next, level, level == 0);
     }
 
     /// Fills in the costs of displacements on a level: of all, or of those that may be the least.
     fn measure(&mut self, template: &Template, next: &Boxes, level: usize, least: bool) {
-        self.take(template, level);
         let plane = &next.planes[level];
         self.starts.clear();
-        self.starts.extend(self.tried.iter().map(|t| start(template, plane, level, t.at) as u32));
+        self.starts.extend(self.places.iter().map(|&at| start(template, plane, level, at) as u32));
         match self.params.measure {
             Measure::Ssd => {
                 let kernel = if least { kernel::least_differences } else { kernel::differences };
                 kernel(self.simd, &self.cuts[level], plane, &self.starts, &mut self.costs);
-                self.tried.iter_mut().zip(&self.costs).for_each(|(tried, &cost)| tried.cost = cost);
             }
             Measure::Ncc => {
                 let n = area(template.radius_px, level);
                 let sums = Sums::of(template.pixels(level));
                 kernel::sums(self.simd, &self.cuts[level], plane, &self.starts, &mut self.sums);
-                for (tried, window) in self.tried.iter_mut().zip(&self.sums) {
-                    // A flat window is the worst there is.
-                    let correlation = window.correlation(&sums, n).unwrap_or(-1.0);
-                    tried.cost = ((1.0 - correlation) * f64::from(1_u32 << 31)) as u32;
-                }
+                // A flat window is the worst there is.
+                let correlation = |window: &Sums| window.correlation(&sums, n).unwrap_or(-1.0);
+                let cost = |window: &Sums| ((1.0 - correlation(window)) * f64::from(1_u32 << 31)) as u32;
+                self.costs.clear();
+                self.costs.extend(self.sums.iter().map(cost));
             }
         }
     }
 
-    /// Makes a level of the template ready to be compared.
-    fn take(&mut self, template: &Template, level: usize) {
-        if self.cuts.len() <= level {
-            self.cuts.resize_with(level + 1, Cut::default);
+    /// Makes the template ready to be compared, down from a level.
+    fn take(&mut self, template: &Template, top: usize) {
+        if self.cuts.len() <= top {
+            self.cuts.resize_with(top + 1, Cut::default);
         }
-        self.cuts[level].take(template.pixels(level), side(template.radius_px, level));
+        for (level, cut) in self.cuts.iter_mut().enumerate().take(top + 1) {
+            cut.take(template.pixels(level), side(template.radius_px, level));
+        }
     }
 }
 

@@ -290,8 +290,10 @@ fn real(name: &str, radius_px: u32) -> Option<([Vec<f32>; 2], f64)> {
 fn the_jet_of_openpiv_moves_as_openpiv_says() {
     let Some(([u, v], share)) = real("openpiv_exp1_001_*.bmp", 16) else { return };
     let (u, v) = (u[u.len() / 2], v[v.len() / 2]);
-    // OpenPIV's medians with windows of 32 px are (-0.07, 5.03); windows, weights and passes are others here.
-    assert!((u + 0.07).abs() < 0.15 && (v - 5.03).abs() < 0.3 && share > 0.9, "({u}, {v}), {share} known");
+    // OpenPIV's medians with windows of 32 px are (-0.07, 5.03). Those of a plain correlation of the same windows, each
+    // with one in place, are (-0.11, 5.16), and of OpenCV's `matchTemplate` (-0.12, 5.20), which loses no pixels of a
+    // window that moved: that is what is held here.
+    assert!((u + 0.12).abs() < 0.1 && (v - 5.2).abs() < 0.1 && share > 0.9, "({u}, {v}), {share} known");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::arch::x86_64::*;
 use std::ops::Range;
 
-use super::{Cut, LANES, ROWS_A_LOOK, Source, Sums};
+use super::{Cut, FEW, LANES, ROWS_A_LOOK, Source, Sums};
 
 const HALF: usize = LANES / 2;
 
@@ -18,17 +18,21 @@ pub(super) fn differences(cut: &Cut, source: Source<'_>, starts: &[u32], out: &m
 /// See [`super::least_differences`].
 #[target_feature(enable = "avx2")]
 pub(super) fn least_differences(cut: &Cut, source: Source<'_>, starts: &[u32], out: &mut Vec<u32>) {
-    let mut least = u32::MAX;
+    let looks = cut.side.min(ROWS_A_LOOK);
     for &start in starts {
-        let mut cost = 0;
-        for first in (0..cut.side).step_by(ROWS_A_LOOK) {
-            cost += difference(cut, source, start, first..cut.side.min(first + ROWS_A_LOOK));
-            if cost > least {
-                break;
-            }
+        out.push(difference(cut, source, start, 0..looks));
+    }
+    // The less there is to beat, the sooner others are given up.
+    let first = (0..out.len()).min_by_key(|&i| out[i]);
+    let mut least = u32::MAX;
+    for i in first.into_iter().chain((0..out.len()).filter(|&i| Some(i) != first)) {
+        let mut y = looks;
+        while y < cut.side && out[i] <= least {
+            let end = cut.side.min(y + ROWS_A_LOOK);
+            out[i] += difference(cut, source, starts[i], y..end);
+            y = end;
         }
-        least = least.min(cost);
-        out.push(cost);
+        least = least.min(out[i]);
     }
 }
 
@@ -68,45 +72,109 @@ pub(super) fn sums(cut: &Cut, source: Source<'_>, starts: &[u32], out: &mut Vec<
     }
 }
 
-/// See [`super::row_of_differences`]: 16 windows at a time, two of their pixels together.
+/// See [`super::all_differences`]: 16 windows of two rows at a time, two of their pixels together.
+///
+/// A 32-bit lane holds two neighbours. Read from the first pixel on, lanes belong to the windows 0, 2, 4...; from the
+/// second on, to the others.
 #[target_feature(enable = "avx2")]
-pub(super) fn row_of_differences(cut: &Cut, source: Source<'_>, start: usize, n: usize, out: &mut Vec<u32>) {
-    for x in (0..n).step_by(HALF) {
-        let [mut low, mut high] = [_mm256_setzero_si256(); 2];
-        for (y, row) in cut.pixels.chunks_exact(cut.side).enumerate() {
-            let at = start + y * source.stride + x;
-            for (i, pair) in row.chunks(2).enumerate() {
-                let first = apart(source, at + 2 * i, pair[0]);
-                let second =
-                    pair.get(1).map_or(_mm256_setzero_si256(), |&p| apart(source, at + 2 * i + 1, p));
-                let [a, b] = [_mm256_unpacklo_epi16(first, second), _mm256_unpackhi_epi16(first, second)];
-                low = _mm256_add_epi32(low, _mm256_madd_epi16(a, a));
-                high = _mm256_add_epi32(high, _mm256_madd_epi16(b, b));
+pub(super) fn all_differences(
+    cut: &Cut,
+    source: Source<'_>,
+    start: usize,
+    [columns, rows]: [usize; 2],
+    out: &mut [u32],
+) {
+    let mut squares = Vec::with_capacity(rows + cut.side);
+    for x in (0..columns).step_by(HALF) {
+        let n = (columns - x).min(HALF);
+        if n <= FEW || rows < 2 {
+            for y in 0..rows {
+                for x in x..x + n {
+                    let start = (start + y * source.stride + x) as u32;
+                    out[y * columns + x] = difference(cut, source, start, 0..cut.side);
+                }
+            }
+            continue;
+        }
+        sum_squares(cut, source, start + x, rows, &mut squares);
+        for y in (0..rows).step_by(2) {
+            // Of an odd number of rows the last but one is done twice.
+            let y = y.min(rows - 2);
+            let products = products(cut, source, start + y * source.stride + x);
+            for (y, [even, odd]) in (y..).zip(products) {
+                let even = _mm256_sub_epi32(squares[y][0], _mm256_slli_epi32::<1>(even));
+                let odd = _mm256_sub_epi32(squares[y][1], _mm256_slli_epi32::<1>(odd));
+                out[y * columns + x..][..n].copy_from_slice(&in_turn(even, odd)[..n]);
             }
         }
-        let [mut lows, mut highs] = [[0_u32; HALF / 2]; 2];
-        // SAFETY: each array is 32 bytes.
-        unsafe {
-            _mm256_storeu_si256(lows.as_mut_ptr().cast(), low);
-            _mm256_storeu_si256(highs.as_mut_ptr().cast(), high);
-        }
-        // Of every eight windows, the first four are in the one, the others in the other.
-        let mut all = [0; HALF];
-        for ((eight, low), high) in
-            all.chunks_exact_mut(8).zip(lows.chunks_exact(4)).zip(highs.chunks_exact(4))
-        {
-            eight[..4].copy_from_slice(low);
-            eight[4..].copy_from_slice(high);
-        }
-        out.extend_from_slice(&all[..HALF.min(n - x)]);
     }
 }
 
-/// A pixel of the template taken off 16 pixels from a byte on.
+/// `Σ I² + Σ J²` of the windows that start here, and of those in the rows beneath; what is behind them is left over.
 #[inline]
 #[target_feature(enable = "avx2")]
-fn apart(source: Source<'_>, at: usize, pixel: u8) -> __m256i {
-    _mm256_sub_epi16(bytes(source, at), _mm256_set1_epi16(i16::from(pixel)))
+fn sum_squares(cut: &Cut, source: Source<'_>, at: usize, rows: usize, squares: &mut Vec<[__m256i; 2]>) {
+    let mut sums = [_mm256_set1_epi32(cut.squares as i32); 2];
+    squares.clear();
+    for y in 0..rows + cut.side - 1 {
+        let mut row = [_mm256_setzero_si256(); 2];
+        for x in (0..cut.side).step_by(2) {
+            // Of the last pair of an odd side only the left one counts.
+            let counts = _mm256_set1_epi32(if x + 1 < cut.side { -1 } else { 0xffff });
+            for (i, sum) in row.iter_mut().enumerate() {
+                let pair = _mm256_and_si256(bytes(source, at + y * source.stride + x + i), counts);
+                *sum = _mm256_add_epi32(*sum, _mm256_madd_epi16(pair, pair));
+            }
+        }
+        squares.push(row);
+        for i in 0..2 {
+            sums[i] = _mm256_add_epi32(sums[i], row[i]);
+            if y + 1 >= cut.side {
+                // A window is whole; its first row leaves.
+                let first = std::mem::replace(&mut squares[y + 1 - cut.side][i], sums[i]);
+                sums[i] = _mm256_sub_epi32(sums[i], first);
+            }
+        }
+    }
+}
+
+/// `Σ I J` of the windows that start here, and of those a row beneath.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn products(cut: &Cut, source: Source<'_>, at: usize) -> [[__m256i; 2]; 2] {
+    let mut sums = [[_mm256_setzero_si256(); 2]; 2];
+    let n = cut.side.div_ceil(2);
+    for y in 0..=cut.side {
+        // The picture's row lies under one of the template's, and in the lower window under the one before.
+        let (upper, lower) = (&cut.pairs[(y + 1) * n..][..n], &cut.pairs[y * n..][..n]);
+        let at = at + y * source.stride;
+        for i in 0..n {
+            let (upper, lower) = (_mm256_set1_epi32(upper[i]), _mm256_set1_epi32(lower[i]));
+            let (even, odd) = (bytes(source, at + 2 * i), bytes(source, at + 2 * i + 1));
+            sums[0][0] = _mm256_add_epi32(sums[0][0], _mm256_madd_epi16(even, upper));
+            sums[0][1] = _mm256_add_epi32(sums[0][1], _mm256_madd_epi16(odd, upper));
+            sums[1][0] = _mm256_add_epi32(sums[1][0], _mm256_madd_epi16(even, lower));
+            sums[1][1] = _mm256_add_epi32(sums[1][1], _mm256_madd_epi16(odd, lower));
+        }
+    }
+    sums
+}
+
+/// Costs in the order of their windows, of even ones and odd ones.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn in_turn(even: __m256i, odd: __m256i) -> [u32; HALF] {
+    let [low, high] = [_mm256_unpacklo_epi32(even, odd), _mm256_unpackhi_epi32(even, odd)];
+    let mut all = [0; HALF];
+    // SAFETY: either half is 32 bytes.
+    unsafe {
+        _mm256_storeu_si256(all.as_mut_ptr().cast(), _mm256_permute2x128_si256::<0x20>(low, high));
+        _mm256_storeu_si256(
+            all[HALF / 2..].as_mut_ptr().cast(),
+            _mm256_permute2x128_si256::<0x31>(low, high),
+        );
+    }
+    all
 }
 
 /// 16 pixels from a byte on.
