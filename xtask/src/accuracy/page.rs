@@ -166,8 +166,7 @@ impl Page<'_> {
         }
         let columns = ["RubberWhale, px", "dense", "Hydrangea, px", "dense", "Grove2, px", "dense"];
         let words = "End-point error at Harris corners, median (mean), and mean over all pixels of trackers that measure \
-                     dense motion. Goal: Grove2 at corners at most .08 px. OpenCV elsewhere: Farneback .43 / 1.22 / .96 and \
-                     DIS .22 / .25 / .32 dense, its KLT .046 / .341 / .081 at corners.";
+                     dense motion. Goal: Grove2 at corners at most .08 px.";
         self.table("Pairs of pictures with their flow: Middlebury", words, &columns, &rows);
     }
 
@@ -184,8 +183,7 @@ impl Page<'_> {
         }
         let columns = ["L1, rms px", "bias", "L3, rms px", "bias", "L5, rms px", "bias"];
         let words = "A speckle pattern moved by a known fraction of a pixel, in waves that grow shorter; points 16 px apart, \
-                     radius 15 for trackers that have one; rms and bias of the motion to the right. Goal: rms at most .014 px, \
-                     where OpenCV's KLT has .0135, .0138 and .0145.";
+                     radius 15 for trackers that have one; rms and bias of the motion to the right. Goal: rms at most .014 px.";
         self.table("Fractions of a pixel: DIC challenge, sample 14", words, &columns, &rows);
     }
 
