@@ -5,7 +5,7 @@ use honami_vision::field::Grid;
 use honami_vision::klt::{self, State};
 use honami_vision::pyramid::Pyramid;
 
-use crate::picture;
+use crate::{dense, picture};
 
 /// Nodes are a radius apart, so that windows overlap by half: closer ones would mostly see the same. At least, pixels:
 const STEP_PX: u32 = 4;
@@ -14,7 +14,7 @@ const ASTRAY_PX: f32 = 1.0;
 /// Nodes that are followed between two looks at whether to go on.
 const NODES_A_LOOK: usize = 2048;
 
-/// Displacements between two frames; (0, 0) where nothing could be measured: no texture, hidden, or out of the picture.
+/// Displacements between two frames; none where nothing could be measured: no texture, hidden, or out of the picture.
 ///
 /// # Errors
 /// When the user wants to stop.
@@ -34,18 +34,15 @@ pub fn klt_field(
     let moved = |((at, there), back): ((&[f32; 2], &klt::Flow), &klt::Flow)| {
         let is_found = there.state == State::Tracked && back.state == State::Tracked;
         let is_back = (back.to[0] - at[0]).hypot(back.to[1] - at[1]) <= ASTRAY_PX;
-        if is_found && is_back { (there.to[0] - at[0], there.to[1] - at[1]) } else { (0.0, 0.0) }
+        (is_found && is_back).then(|| [there.to[0] - at[0], there.to[1] - at[1]])
     };
-    let (mut u, mut v) = (Vec::with_capacity(nodes.len()), Vec::with_capacity(nodes.len()));
+    let mut vectors = Vec::with_capacity(nodes.len());
     for part in nodes.chunks(NODES_A_LOOK) {
-        cx.progress(u.len() as f64 / nodes.len() as f64, "following a grid")?;
+        cx.progress(vectors.len() as f64 / nodes.len() as f64, "following a grid")?;
         let there = klt::track(&from, &to, part, None, params, max_threads as usize);
         let ends: Vec<_> = there.iter().map(|flow| flow.to).collect();
         let back = klt::track(&to, &from, &ends, None, params, max_threads as usize);
-        for (x, y) in part.iter().zip(&there).zip(&back).map(moved) {
-            u.push(x);
-            v.push(y);
-        }
+        vectors.extend(part.iter().zip(&there).zip(&back).map(moved));
     }
-    Ok(Field { origin: grid.origin, step: grid.step_px, nx: grid.nx, ny: grid.ny, u, v })
+    Ok(dense(grid, vectors))
 }

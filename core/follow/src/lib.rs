@@ -14,14 +14,22 @@ pub use detection::{Corners, Detection};
 pub use losing::Losing;
 pub use particles::{Motion, Particles, Trust};
 
-use honami_plugin::{Error, Frame, Result};
+use honami_plugin::{Error, Field, Frame, Result};
 use honami_vision::Gray;
+use honami_vision::field::Grid;
 
 /// The picture of a frame, as the algorithms take it.
 #[must_use]
 pub fn picture<'a>(frame: &Frame<'a>) -> Gray<'a> {
     let honami_plugin::Gray { data, width, height, stride } = frame.gray;
     Gray { data, width, height, stride }
+}
+
+/// Displacements at the nodes of a grid, row by row, as the host takes them.
+#[must_use]
+pub fn dense(grid: Grid, vectors: impl IntoIterator<Item = Option<[f32; 2]>>) -> Field {
+    let Grid { origin, step_px, nx, ny } = grid;
+    Field { origin, step: step_px, nx, ny, vectors: vectors.into_iter().collect() }
 }
 
 /// Refuses a frame of another size than those before, `(width, height)`.

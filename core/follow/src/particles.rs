@@ -13,7 +13,7 @@ use honami_vision::field::{Drift, Field};
 use honami_vision::ncc::Ncc;
 use honami_vision::{Gray, Point as Place};
 
-use crate::{Detection, Losing, check_size, picture};
+use crate::{Detection, Losing, check_size, dense, picture};
 
 /// Measures dense motion; the parameters of the plugin are its fields.
 pub trait Motion: Params + Clone {
@@ -188,7 +188,7 @@ fn features<M: Motion>(motion: &M, wanted: &Detect<'_>, _: &Cx<'_>) -> Result<Ve
     motion.detection().features(wanted)
 }
 
-/// Displacements between two frames as the host takes them: (0, 0) where nothing could be measured.
+/// Displacements between two frames as the host takes them.
 fn field<M: Motion>(
     motion: &M,
     from: &Frame<'_>,
@@ -200,7 +200,6 @@ fn field<M: Motion>(
     let n_threads = max_threads as usize;
     let [from, to] = [from, to].map(|frame| motion.keep(&picture(frame), n_threads));
     let go_on = |done: f64| cx.progress(done, MEASURING).is_ok();
-    let Field { grid, u, v, .. } =
-        motion.measure(&from, &to, n_threads, &go_on).ok_or_else(Error::cancelled)?;
-    Ok(honami_plugin::Field { origin: grid.origin, step: grid.step_px, nx: grid.nx, ny: grid.ny, u, v })
+    let field = motion.measure(&from, &to, n_threads, &go_on).ok_or_else(Error::cancelled)?;
+    Ok(dense(field.grid, field.vectors()))
 }

@@ -24,8 +24,11 @@ pub(crate) const FEATURES: Schema = Schema {
     required: &[("x", dtype::F32, 1), ("y", dtype::F32, 1), ("score", dtype::F32, 1)],
     optional: &[],
 };
-pub(crate) const VECTORS: Schema =
-    Schema { id: schema::VECTORS, required: &[("u", dtype::F32, 1), ("v", dtype::F32, 1)], optional: &[] };
+pub(crate) const VECTORS: Schema = Schema {
+    id: schema::VECTORS,
+    required: &[("u", dtype::F32, 1), ("v", dtype::F32, 1)],
+    optional: &[("known", dtype::U8, 1)],
+};
 pub(crate) const GRID: Schema = Schema {
     id: schema::GRID,
     required: &[

@@ -251,21 +251,27 @@ fn read_field(reply: &Reply) -> Result<Field, String> {
     let grid = reply.table(&reply::GRID).ok_or("returned without committing honami.grid/1")?;
     let number = |name| grid.required(name).first().copied().unwrap_or(f32::NAN);
     let count = |name| grid.required(name).first().copied().unwrap_or(0);
+    let known = vectors.column::<u8>("known");
+    let (u, v) = (vectors.required::<f32>("u"), vectors.required::<f32>("v"));
+    if !u.iter().chain(v).all(|v| v.is_finite()) {
+        return Err("committed vectors that are not finite".into());
+    }
+    let vector =
+        |(k, (&u, &v)): (usize, (&f32, &f32))| known.is_none_or(|known| known[k] != 0).then_some([u, v]);
     let field = Field {
         origin: [number("gx"), number("gy")],
         step: number("step"),
         nx: count("nx"),
         ny: count("ny"),
-        u: vectors.required("u").to_vec(),
-        v: vectors.required("v").to_vec(),
+        vectors: u.iter().zip(v).enumerate().map(vector).collect(),
     };
     if field.nx as usize * field.ny as usize != vectors.rows() {
         return Err(format!("committed {} vectors on a grid of {}x{}", vectors.rows(), field.nx, field.ny));
     }
-    let finite = field.origin.iter().chain(&field.u).chain(&field.v).all(|v| v.is_finite());
+    let finite = field.origin.iter().all(|v| v.is_finite());
     if finite && field.step.is_finite() && field.step > 0.0 {
         Ok(field)
     } else {
-        Err("committed a field with numbers that are not finite, or without a step".into())
+        Err("committed a grid with numbers that are not finite, or without a step".into())
     }
 }

@@ -309,8 +309,6 @@ pub struct Field {
     pub nx: u32,
     /// Nodes in y.
     pub ny: u32,
-    /// Displacement to the right, pixels, `(ny, nx)` row-major.
-    pub u: Vec<f32>,
-    /// Displacement down, pixels, `(ny, nx)` row-major.
-    pub v: Vec<f32>,
+    /// Displacements right and down, pixels, `(ny, nx)` row-major; `None` where nothing could be measured.
+    pub vectors: Vec<Option<[f32; 2]>>,
 }

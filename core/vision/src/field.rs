@@ -104,6 +104,12 @@ impl Field {
         field
     }
 
+    /// The displacement at each node, row by row; `None` where it is not known.
+    pub fn vectors(&self) -> impl Iterator<Item = Option<[f32; 2]>> + '_ {
+        let vectors = self.u.iter().zip(&self.v).zip(&self.known);
+        vectors.map(|((&u, &v), &is_known)| is_known.then_some([u, v]))
+    }
+
     /// Displacement at a position, pixels: bilinear between the four nodes around it.
     ///
     /// Nodes that are not known leave their weight to the others; `None` where they have more than half of it, or

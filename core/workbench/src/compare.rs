@@ -144,7 +144,7 @@ impl Bench<'_> {
         let row = Row { time, peak_bytes, ..self.judge(name, &spans)? };
         let field = match &self.question.flow {
             Some(flow) if plugin.offers("honami.field/1") => {
-                Some(field::measure(self.media, &mut tracker, flow, self.question.frames.start)?)
+                field::measure(self.media, &mut tracker, flow, self.question.frames.start)?
             }
             _ => None,
         };

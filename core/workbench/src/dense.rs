@@ -64,12 +64,12 @@ impl DenseMeter {
         let field = tracker.field(&from, &to, threads(), &cx)?;
         // The times of two frames differ; backward in time both lengths turn their sign.
         let step_s = to.time_s - from.time_s;
-        let velocity = |(u, v): (&f32, &f32)| [u, v].map(|px| (f64::from(*px) / step_s) as f32);
+        let velocity = |moved: [f32; 2]| moved.map(|px| (f64::from(px) / step_s) as f32);
         Ok(VelocityField {
             origin: field.origin.map(f64::from),
             step_px: f64::from(field.step),
             nx: field.nx as usize,
-            velocities: field.u.iter().zip(&field.v).map(velocity).collect(),
+            velocities: field.vectors.into_iter().map(|moved| moved.map(velocity)).collect(),
         })
     }
 }

@@ -1,6 +1,6 @@
 //! Dense motion: the picture as a set of overlapping squares, each looked for by itself, there and back.
 
-use honami_follow::{check_size, picture};
+use honami_follow::{check_size, dense, picture};
 use honami_plugin::{Cx, Field, Frame, Result};
 use honami_vision::boxes::{self, Boxes};
 use honami_vision::field::Grid;
@@ -14,7 +14,7 @@ const STEP_PX: u32 = 4;
 /// A node whose way there and back ends farther than this from its start has no known motion, pixels.
 const ASTRAY_PX: f32 = 1.0;
 
-/// Displacements between two frames; (0, 0) where nothing could be measured: no texture, hidden, or out of the picture.
+/// Displacements between two frames; none where nothing could be measured: no texture, hidden, or out of the picture.
 pub(crate) fn field(
     settings: &Settings,
     from: &Frame<'_>,
@@ -28,20 +28,17 @@ pub(crate) fn field(
     let grid = Grid::over(from.width, from.height, params.radius_px.max(STEP_PX));
     let [from, to] = [from, to].map(|gray| Boxes::new(&gray, params.levels(), params.radius_px));
     let nodes: Vec<_> = grid.nodes().collect();
-    let (mut u, mut v) = (Vec::new(), Vec::new());
+    let mut vectors = Vec::new();
     for nodes in nodes.chunks(points_a_look(&params)) {
-        cx.progress(u.len() as f64 / grid.len() as f64, "measuring motion")?;
+        cx.progress(vectors.len() as f64 / grid.len() as f64, "measuring motion")?;
         let there = boxes::track(&from, &to, nodes, None, &params, max_threads as usize);
         let ends: Vec<_> = there.iter().map(|found| found.to).collect();
         let back = boxes::track(&to, &from, &ends, None, &params, max_threads as usize);
         for ((at, there), back) in nodes.iter().zip(&there).zip(&back) {
             let is_found = there.state == State::Tracked && back.state == State::Tracked;
             let is_back = (back.to[0] - at[0]).hypot(back.to[1] - at[1]) <= ASTRAY_PX;
-            let moved = [there.to[0] - at[0], there.to[1] - at[1]];
-            let [x, y] = if is_found && is_back { moved } else { [0.0; 2] };
-            u.push(x);
-            v.push(y);
+            vectors.push((is_found && is_back).then(|| [there.to[0] - at[0], there.to[1] - at[1]]));
         }
     }
-    Ok(Field { origin: grid.origin, step: grid.step_px, nx: grid.nx, ny: grid.ny, u, v })
+    Ok(dense(grid, vectors))
 }

@@ -142,9 +142,9 @@ fn dense_motion_is_that_of_the_texture() {
     let [from, to] = [0, 1].map(|t| frames(&clip).nth(t).unwrap());
     let field = dense::field(&Settings::default(), &from, &to, 1, &testing::cx()).unwrap();
     assert_eq!((field.nx, field.ny, field.step), (24, 18, 10.0));
-    let near = |(u, v): (&f32, &f32)| (f64::from(*u) - STEP[0]).hypot(f64::from(*v) - STEP[1]) < 0.4;
-    let known = field.u.iter().zip(&field.v).filter(|&(u, v)| (*u, *v) != (0.0, 0.0)).count();
-    let right = field.u.iter().zip(&field.v).filter(|&pair| near(pair)).count();
+    let near = |[u, v]: &&[f32; 2]| (f64::from(*u) - STEP[0]).hypot(f64::from(*v) - STEP[1]) < 0.4;
+    let known = field.vectors.iter().flatten().count();
+    let right = field.vectors.iter().flatten().filter(near).count();
     // What leaves the picture is not known; nearly all that is known is right.
-    assert!(right > 300 && right * 10 > known * 9, "{right} of {known} known, {} nodes", field.u.len());
+    assert!(right > 300 && right * 10 > known * 9, "{right} of {known} known, {} nodes", field.vectors.len());
 }

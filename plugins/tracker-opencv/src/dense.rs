@@ -87,7 +87,7 @@ fn step(there: &Field, back: Option<&Field>, [x, y]: honami_vision::Point) -> St
     Step { to, is_found: true, fb: home.map(|[back_u, back_v]| (u + back_u).hypot(v + back_v)) }
 }
 
-/// Displacements between two frames at the nodes of a grid; (0, 0) where there and back do not agree.
+/// Displacements between two frames at the nodes of a grid; none where there and back do not agree.
 fn motion<E: Engine>(
     params: &E::Params,
     from: &Frame<'_>,
@@ -110,10 +110,9 @@ fn motion<E: Engine>(
     };
     let moved = nodes.iter().zip(steps).map(|(&(_, from), step)| {
         let is_known = step.fb.is_some_and(|fb| fb <= ASTRAY_PX);
-        if is_known { (step.to[0] - from[0], step.to[1] - from[1]) } else { (0.0, 0.0) }
+        is_known.then(|| [step.to[0] - from[0], step.to[1] - from[1]])
     });
-    let (u, v) = moved.unzip();
-    Ok(honami_plugin::Field { origin: grid.origin, step: grid.step_px, nx: grid.nx, ny: grid.ny, u, v })
+    Ok(dense(grid, moved))
 }
 
 /// Dense inverse search.

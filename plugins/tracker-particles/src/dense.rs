@@ -1,6 +1,6 @@
 //! Dense motion: that of new particles, on a grid.
 
-use honami_follow::{check_size, picture};
+use honami_follow::{check_size, dense, picture};
 use honami_plugin::{Cx, Error, Field, Frame, Result};
 use honami_vision::field::Grid;
 use honami_vision::particles::Swarm;
@@ -11,7 +11,7 @@ use crate::settings::Settings;
 /// Nodes that are as close as this see no more, pixels at least.
 const STEP_PX: u32 = 4;
 
-/// Displacements between two frames; (0, 0) where no particle reaches.
+/// Displacements between two frames; none where no particle reaches.
 pub(crate) fn field(
     settings: &Settings,
     from: &Frame<'_>,
@@ -28,6 +28,5 @@ pub(crate) fn field(
     let flow = swarm.step([&from, &to], max_threads as usize, &mut go_on).ok_or_else(Error::cancelled)?;
     let size = from.picture();
     let grid = Grid::over(size.width, size.height, STEP_PX.max(settings.reach as u32 / 4));
-    let (u, v) = grid.nodes().map(|node| flow.at(node).unwrap_or_default()).map(|[u, v]| (u, v)).unzip();
-    Ok(Field { origin: grid.origin, step: grid.step_px, nx: grid.nx, ny: grid.ny, u, v })
+    Ok(dense(grid, grid.nodes().map(|node| flow.at(node))))
 }

@@ -151,8 +151,8 @@ fn dense_motion_is_that_of_the_scene() {
     let clip = clip(2);
     let [from, to]: [Frame<'_>; 2] = frames(&clip).collect::<Vec<_>>().try_into().unwrap();
     let found = dense::field(&Settings::default(), &from, &to, 2, &testing::cx()).unwrap();
-    let near = |i: &usize| (found.u[*i] - 1.4).hypot(found.v[*i] + 0.7) < 0.25;
-    let n = found.u.len();
+    let near = |[u, v]: &&[f32; 2]| (u - 1.4).hypot(v + 0.7) < 0.25;
+    let n = found.vectors.len();
     assert_eq!(n, found.nx as usize * found.ny as usize);
-    assert!((0..n).filter(near).count() * 10 > 9 * n, "{:?} {:?}", found.u, found.v);
+    assert!(found.vectors.iter().flatten().filter(near).count() * 10 > 9 * n, "{:?}", found.vectors);
 }

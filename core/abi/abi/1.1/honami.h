@@ -130,7 +130,8 @@ typedef struct honami_table {
 #define HONAMI_POINTS "honami.points/1"
 /* x f32, y f32, score f32; best first, at most as many rows as were asked for. */
 #define HONAMI_FEATURES "honami.features/1"
-/* u f32, v f32: displacement in pixels at each node of a grid, (ny, nx) row-major; nx * ny rows. */
+/* u f32, v f32: displacement in pixels at each node of a grid, (ny, nx) row-major; nx * ny rows. Optional: known u8, 0
+ * where nothing could be measured, u and v are 0 there; without it all nodes are known. */
 #define HONAMI_VECTORS "honami.vectors/1"
 /* gx f32, gy f32, step f32, nx u32, ny u32; one row: node (i,j) of the grid lies at (gx + i*step, gy + j*step). */
 #define HONAMI_GRID "honami.grid/1"

@@ -233,7 +233,8 @@ fn a_field_comes_with_its_grid() {
     let (a, b) = (pixels(0), pixels(1));
     let field = tracker.field(&view(&a, 0), &view(&b, 1), 1, &CallContext::silent()).unwrap();
     assert_eq!((field.nx, field.ny, field.origin, field.step), (2, 3, [1.0, 2.0], 4.0));
-    assert_eq!((field.u, field.v), (vec![2.0; 6], vec![0.0; 6]));
+    let moved = Some([2.0, 0.0]);
+    assert_eq!(field.vectors, [moved, moved, moved, moved, moved, None]);
 }
 
 #[test]

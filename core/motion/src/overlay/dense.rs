@@ -14,13 +14,14 @@ pub struct VelocityField {
     pub step_px: f64,
     /// Nodes in x, at least 1.
     pub nx: usize,
-    /// Velocities, px/s, row-major, whole rows of `nx`; 0 where nothing moves, or nothing is known.
-    pub velocities: Vec<[f32; 2]>,
+    /// Velocities, px/s, row-major, whole rows of `nx`; `None` where nothing is known.
+    pub velocities: Vec<Option<[f32; 2]>>,
 }
 
 impl VelocityField {
     /// Velocity at an image point, px/s: bilinear between the nodes round it, and up to half a step beyond the outer
-    /// ones that of the nearest; `None` farther out.
+    /// ones that of the nearest. Nodes that are not known leave their weight to the others; `None` where they have
+    /// more than half of it, and farther out.
     #[must_use]
     pub fn at(&self, point: [f64; 2]) -> Option<[f64; 2]> {
         let place = |axis: usize, n: usize| {
@@ -34,16 +35,24 @@ impl VelocityField {
         };
         let ny = self.velocities.len() / self.nx.max(1);
         let ((columns, right), (rows, down)) = (place(0, self.nx)?, place(1, ny)?);
-        let mix = |[a, b]: [[f64; 2]; 2], part: f64| [0, 1].map(|axis| a[axis] + (b[axis] - a[axis]) * part);
-        let node = |row: usize, column: usize| self.velocities[row * self.nx + column].map(f64::from);
-        Some(mix(rows.map(|row| mix(columns.map(|column| node(row, column)), right)), down))
+        let (mut sum, mut known) = ([0.0; 2], 0.0);
+        for (row, of_row) in rows.into_iter().zip([1.0 - down, down]) {
+            for (column, of_column) in columns.into_iter().zip([1.0 - right, right]) {
+                if let Some(velocity) = self.velocities[row * self.nx + column] {
+                    let weight = of_row * of_column;
+                    sum = [0, 1].map(|axis| sum[axis] + weight * f64::from(velocity[axis]));
+                    known += weight;
+                }
+            }
+        }
+        (known >= 0.5).then(|| sum.map(|c| c / known))
     }
 
     /// The speed that all but a hundredth of the velocities do not pass, px/s; `None` where nothing moves.
     #[must_use]
     pub fn usual_speed(&self) -> Option<f64> {
         let speed = |[u, v]: &[f32; 2]| f64::from(*u).hypot(f64::from(*v));
-        let mut speeds: Vec<f64> = self.velocities.iter().map(speed).collect();
+        let mut speeds: Vec<f64> = self.velocities.iter().flatten().map(speed).collect();
         speeds.sort_by(f64::total_cmp);
         let at = (speeds.len().saturating_sub(1) as f64 * USUAL).round() as usize;
         speeds.get(at).copied().filter(|speed| *speed > 0.0)

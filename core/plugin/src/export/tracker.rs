@@ -335,10 +335,12 @@ unsafe extern "C" fn field<T: Tracker>(
             let (from, to) = (read_frame(input.from)?, read_frame(input.to)?);
             let measure = T::FIELD.ok_or_else(|| Error::unsupported("this tracker measures no field"))?;
             let field = measure(&state.params, &from, &to, input.max_threads.max(1), &Cx::new(call))?;
-            let vectors = [(c"u", dtype::F32, 1), (c"v", dtype::F32, 1)];
-            let mut out = Reserved::new(call, schema::VECTORS, field.u.len().min(field.v.len()), &vectors)?;
-            out.fill(0, field.u.iter().copied());
-            out.fill(1, field.v.iter().copied());
+            let vectors = [(c"u", dtype::F32, 1), (c"v", dtype::F32, 1), (c"known", dtype::U8, 1)];
+            let mut out = Reserved::new(call, schema::VECTORS, field.vectors.len(), &vectors)?;
+            let part = |k: usize| field.vectors.iter().map(move |vector| vector.unwrap_or_default()[k]);
+            out.fill(0, part(0));
+            out.fill(1, part(1));
+            out.fill(2, field.vectors.iter().map(|vector| u8::from(vector.is_some())));
             out.commit()?;
             let (f, n) = (dtype::F32, dtype::U32);
             let grid = [(c"gx", f, 1), (c"gy", f, 1), (c"step", f, 1), (c"nx", n, 1), (c"ny", n, 1)];

@@ -359,8 +359,8 @@ fn extras<T: Tracker>(params: &T::Params) -> Result<()> {
         if let Some(field) = T::FIELD {
             let field = field(params, &frame, &other.frame(1), 2, &Cx::new(&Deaf))?;
             let n = field.nx as usize * field.ny as usize;
-            let finite = field.u.iter().chain(&field.v).chain(&field.origin).all(|v| v.is_finite());
-            if !finite || field.u.len() != n || field.v.len() != n || field.step <= 0.0 {
+            let numbers = field.vectors.iter().flatten().flatten().chain(&field.origin);
+            if !numbers.into_iter().all(|v| v.is_finite()) || field.vectors.len() != n || field.step <= 0.0 {
                 return Err(Error::data(format!("a field of {width}x{height} is damaged")));
             }
         }

@@ -20,17 +20,17 @@ pub struct FieldError {
     pub rms_px: f64,
     /// Share of these pixels that are off by more than a pixel.
     pub over_1px: f64,
-    /// Share of the pixels with a known truth that the tracker's grid reaches.
+    /// Share of the pixels with a known truth of which the tracker knows the motion.
     pub reached: f64,
 }
 
-/// Measures the motion from a frame to the next one and compares it.
+/// Measures the motion from a frame to the next one and compares it; `None` where nothing can be compared.
 pub(super) fn measure(
     media: &Media,
     tracker: &mut Tracker,
     truth: &Flow,
     frame: u32,
-) -> Result<FieldError, WorkbenchError> {
+) -> Result<Option<FieldError>, WorkbenchError> {
     let pictures = [media.frame(frame)?, media.frame(frame + 1)?];
     let [from, to] = [(&pictures[0], frame), (&pictures[1], frame + 1)]
         .map(|(picture, frame)| view(media, picture, frame));
@@ -40,9 +40,9 @@ pub(super) fn measure(
         origin: field.origin.map(f64::from),
         step_px: f64::from(field.step),
         nx: field.nx as usize,
-        velocities: field.u.into_iter().zip(field.v).map(<[f32; 2]>::from).collect(),
+        velocities: field.vectors,
     };
-    error(&field, truth).ok_or(WorkbenchError::NoTruth)
+    Ok(error(&field, truth))
 }
 
 /// `None` where nothing can be compared.
@@ -73,9 +73,9 @@ mod tests {
 
     #[test]
     fn end_point_errors_by_hand() {
-        // The field says (1, 0) everywhere in the left two columns; of the truth one pixel is unknown.
-        let field =
-            VelocityField { origin: [0.0, 0.0], step_px: 1.0, nx: 2, velocities: vec![[1.0, 0.0]; 4] };
+        // The field says (1, 0) everywhere in the left two columns; of the truth two pixels are unknown.
+        let velocities = vec![Some([1.0, 0.0]); 4];
+        let field = VelocityField { origin: [0.0, 0.0], step_px: 1.0, nx: 2, velocities };
         let known = [Some([1.0, 0.0]), Some([1.0, 3.0]), Some([0.0, 0.0]), Some([1.0, 0.5]), None, None];
         let truth = Flow { width: 3, height: 2, vectors: known.to_vec() };
         let wanted = FieldError {
@@ -87,5 +87,9 @@ mod tests {
         };
         assert_eq!(error(&field, &truth), Some(wanted));
         assert_eq!(error(&field, &Flow { width: 1, height: 1, vectors: vec![None] }), None);
+        // What the tracker does not know is no motion of zero: it is not reached.
+        let velocities = vec![Some([1.0, 0.0]), None, None, None];
+        let found = error(&VelocityField { velocities, ..field }, &truth).unwrap();
+        assert_eq!((found.mean_px, found.reached), (0.0, 0.25));
     }
 }

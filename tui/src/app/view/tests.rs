@@ -235,7 +235,7 @@ fn screens_of_motion_and_plots() {
 
 /// The upper half of the picture goes right, the lower left.
 fn halves() -> std::sync::Arc<VelocityField> {
-    let velocities = vec![[1e3, 0.0], [-1e3, 0.0]];
+    let velocities = vec![Some([1e3, 0.0]), Some([-1e3, 0.0])];
     std::sync::Arc::new(VelocityField { origin: [160.0, 0.0], step_px: 400.0, nx: 1, velocities })
 }
 

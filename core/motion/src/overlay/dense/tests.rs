@@ -10,7 +10,7 @@ fn linear(nx: usize, ny: usize) -> VelocityField {
         let place = [(i % nx) as f64, (i / nx) as f64];
         truth([0, 1].map(|axis| origin[axis] + place[axis] * step_px)).map(|v| v as f32)
     };
-    VelocityField { origin, step_px, nx, velocities: (0..nx * ny).map(at).collect() }
+    VelocityField { origin, step_px, nx, velocities: (0..nx * ny).map(at).map(Some).collect() }
 }
 
 fn truth([x, y]: [f64; 2]) -> [f64; 2] {
@@ -34,12 +34,30 @@ fn what_is_linear_is_exact_between_the_nodes_and_held_beyond_them() {
 }
 
 #[test]
+fn what_is_not_known_leaves_its_weight_to_what_is() {
+    let velocities = vec![Some([2.0, 0.0]), None, None, None, Some([8.0, 4.0]), None];
+    let field = VelocityField { origin: [0.0; 2], step_px: 4.0, nx: 3, velocities };
+    for (point, wanted) in [
+        ([0.0, 0.0], Some([2.0, 0.0])),
+        ([1.0, 0.0], Some([2.0, 0.0])),
+        ([3.0, 0.0], None),
+        ([2.0, 2.0], Some([5.0, 2.0])),
+        ([4.0, 3.0], Some([8.0, 4.0])),
+        ([8.0, 4.0], None),
+    ] {
+        assert_eq!(field.at(point), wanted, "{point:?}");
+    }
+    assert_eq!(field.usual_speed(), Some(80.0_f64.sqrt()));
+}
+
+#[test]
 fn the_usual_speed_is_that_of_what_moves() {
-    let mut field = VelocityField { origin: [0.0; 2], step_px: 1.0, nx: 20, velocities: vec![[0.0; 2]; 400] };
+    let mut field =
+        VelocityField { origin: [0.0; 2], step_px: 1.0, nx: 20, velocities: vec![Some([0.0; 2]); 400] };
     assert_eq!(field.usual_speed(), None);
-    field.velocities[..20].fill([3.0, -4.0]);
+    field.velocities[..20].fill(Some([3.0, -4.0]));
     assert_eq!(field.usual_speed(), Some(5.0));
-    field.velocities[399] = [1000.0, 0.0];
+    field.velocities[399] = Some([1000.0, 0.0]);
     assert_eq!(field.usual_speed(), Some(5.0), "one node that went astray");
     assert_eq!(VelocityField { velocities: Vec::new(), ..field }.usual_speed(), None);
 }
@@ -47,7 +65,7 @@ fn the_usual_speed_is_that_of_what_moves() {
 #[test]
 fn each_pixel_takes_the_colour_of_its_own_place() {
     // Two halves that go right and left; the picture shows two image pixels a pixel.
-    let velocities = vec![[10.0, 0.0], [10.0, 0.0], [-5.0, 0.0], [-5.0, 0.0]];
+    let velocities = [[10.0, 0.0], [10.0, 0.0], [-5.0, 0.0], [-5.0, 0.0]].map(Some).to_vec();
     let field = VelocityField { origin: [1.5, 4.0], step_px: 4.0, nx: 4, velocities };
     let mapping = Mapping { gain_s_px: 0.1, dial: Dial::ALL };
     let mut pixels = [[100; 3]; 16];

@@ -54,7 +54,7 @@ fn dense_motion_is_asked_for_measured_and_left_again() {
     let said = "dense motion by klt: measured frame by frame (v f back to the tracks)";
     assert_eq!(line(&state, &[]), format!("review | frame 0 track 1 | said {said}"));
     assert!(state.motion.is_on && state.dense.as_ref().unwrap().field.is_none());
-    let velocities = vec![[0.0, 200.0]; 4];
+    let velocities = vec![Some([0.0, 200.0]); 4];
     let field = Arc::new(VelocityField { origin: [0.0; 2], step_px: 100.0, nx: 2, velocities });
     let full_px_s = state.motion.full_px_s;
     update(&mut state, Msg::Fact(Fact::Dense(Some((0, Arc::clone(&field))))));
