@@ -16,10 +16,19 @@ pub(crate) fn need_compiler() -> anyhow::Result<()> {
 }
 
 /// ffmpeg is wanted: without it the tests of most video formats say that they are skipped.
-pub(crate) fn want_ffmpeg() {
-    if !answers("ffmpeg") && !install("ffmpeg") {
-        eprintln!("ffmpeg is missing: tests that need it say so. To install it: apt-get install ffmpeg");
+pub(crate) fn want_ffmpeg() -> anyhow::Result<()> {
+    if answers("ffmpeg") || install("ffmpeg") {
+        return Ok(());
     }
+    eprintln!("ffmpeg is missing: tests that need it say so. To install it: apt-get install ffmpeg");
+    may_skip("the tests that need ffmpeg")
+}
+
+/// Lets tests be left out for want of a system library, unless `HONAMI_SKIP=never`, as in CI.
+pub(crate) fn may_skip(what: &str) -> anyhow::Result<()> {
+    let never = std::env::var_os("HONAMI_SKIP").is_some_and(|value| value == "never");
+    ensure!(!never, "{what} would be skipped, which HONAMI_SKIP=never forbids");
+    Ok(())
 }
 
 /// Whether a program is there, by its path or on the search path.

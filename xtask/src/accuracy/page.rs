@@ -59,7 +59,7 @@ a part and prints it; `honami compare` measures the same on your clip. Rows of r
 
 All trackers are given the same points, with their default parameters, one thread each. δavg is the share of visible \
 samples within 1, 2, 4, 8 and 16 px of the truth, averaged; lost samples are misses. A tracker that takes more than \
-60 ms a frame is given fewer points, one above 250 ms far fewer and only the first seed: n says how many. Times are of two \
+10 times as long as `klt` is given fewer points, one above 40 times far fewer and only the first seed: n says how many. Times are of two \
 trackers side by side on a machine of two cores; `cargo xtask bench trackers` measures them properly. The row \"static\" \
 tracks nothing.
 ";
