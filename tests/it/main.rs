@@ -7,6 +7,7 @@ mod dense;
 mod edit;
 mod exchange;
 mod home;
+mod isolated;
 mod journal_kill;
 mod locks;
 mod offers;

@@ -14,6 +14,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("honami-abi", &[]),
     ("honami-plugin", &["honami-abi"]),
     ("honami-host", &["honami-abi", "honami-model"]),
+    ("honami-plughost", &["honami-host"]),
     ("honami-model", &[]),
     ("honami-media", &["honami-model"]),
     ("honami-store", &["honami-model"]),

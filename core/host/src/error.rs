@@ -1,5 +1,6 @@
 //! What can go wrong between the workbench and a plugin, in sentences for the user.
 
+use crate::isolated::Ended;
 use crate::manifest::Kind;
 use honami_abi::code;
 use std::path::PathBuf;
@@ -72,6 +73,29 @@ pub enum HostError {
         function: &'static str,
         /// What it did.
         what: String,
+    },
+    /// The plugin's process has ended; what it had answered before stands.
+    #[error("{plugin} {how} in {function}{}", frame.map_or_else(String::new, |frame| format!(" of frame {frame}")))]
+    Ended {
+        /// Its id.
+        plugin: String,
+        /// The function of the ABI.
+        function: &'static str,
+        /// The frame that it was given.
+        frame: Option<i64>,
+        /// By itself, or by whom.
+        how: Ended,
+    },
+    /// The plugin has failed too often lately.
+    #[error(
+        "{plugin} has failed three times within ten minutes and is not started again ({why}); a rebuilt one is, and this \
+         one after `honami plugin retry {plugin}`"
+    )]
+    Quarantined {
+        /// Its id.
+        plugin: String,
+        /// What became of it last.
+        why: String,
     },
     /// The caller asked for what is not possible now.
     #[error("{plugin}: {what}")]

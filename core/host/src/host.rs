@@ -4,15 +4,25 @@ use crate::clusterer::Clusterer;
 use crate::context::CallContext;
 use crate::draft::{Simulator, Structure};
 use crate::error::HostError;
-use crate::instance::{Handle, Request};
+use crate::instance::{Handle, Instance, Request};
+use crate::isolated::Limits;
 use crate::manifest::{Kind, ParamKind};
-use crate::registry::PluginInfo;
+use crate::quarantine::Quarantine;
+use crate::registry::{PluginInfo, Trust};
 use crate::reply::Reply;
 use crate::tracker::Tracker;
-use crate::values::Values;
-use crate::{in_process, store};
-use honami_abi::kind;
+use crate::values::{Value, Values};
+use crate::{in_process, isolated, store};
 use std::path::PathBuf;
+
+/// Where a plugin works.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Hosting {
+    /// In this process: full speed and full trust.
+    InProcess,
+    /// In a process of its own: what it does there cannot hurt this one.
+    Isolated,
+}
 
 /// Where a result came from: what to write beside it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -26,13 +36,15 @@ pub struct Origin {
     /// That it was built for.
     pub abi: (u32, u32),
     /// How far it is kept apart.
-    pub sandbox: &'static str,
+    pub sandbox: String,
 }
 
 /// Starts plugins, from copies of their libraries in a store.
 #[derive(Clone, Debug)]
 pub struct Host {
     store: PathBuf,
+    hosting: Option<Hosting>,
+    limits: Limits,
 }
 
 impl Default for Host {
@@ -42,16 +54,34 @@ impl Default for Host {
 }
 
 impl Host {
-    /// With the store of this user, `$XDG_CACHE_HOME/honami/store`.
+    /// With the store of this user, `$XDG_CACHE_HOME/honami/store`; `$HONAMI_HOSTING` may say where all plugins work,
+    /// `in-process` or `isolated`.
     #[must_use]
     pub fn new() -> Self {
-        Self { store: store::folder_of_user() }
+        let hosting = std::env::var_os("HONAMI_HOSTING").and_then(|word| match word.to_str()? {
+            "in-process" => Some(Hosting::InProcess),
+            "isolated" => Some(Hosting::Isolated),
+            _ => None,
+        });
+        Self { hosting, ..Self::with_store(store::folder_of_user()) }
     }
 
     /// With a store of the caller's; the folder is made when it is first needed.
     #[must_use]
     pub fn with_store(store: PathBuf) -> Self {
-        Self { store }
+        Self { store, hosting: None, limits: Limits::default() }
+    }
+
+    /// Lets all plugins work there; else shipped ones work in this process and others in their own.
+    #[must_use]
+    pub fn hosting(self, hosting: Hosting) -> Self {
+        Self { hosting: Some(hosting), ..self }
+    }
+
+    /// What a plugin may take in a process of its own.
+    #[must_use]
+    pub fn limits(self, limits: Limits) -> Self {
+        Self { limits, ..self }
     }
 
     /// Starts a tracker with these parameter values; those that are missing take their defaults.
@@ -111,6 +141,29 @@ impl Host {
         Ok((Simulator { handle, reply: Reply::default(), n_rows: None }, origin))
     }
 
+    /// Counts a failure of a plugin's process against its library.
+    ///
+    /// # Errors
+    /// [`HostError::Quarantined`] when that was one too many.
+    pub fn blame(&self, origin: &Origin, why: &str) -> Result<(), HostError> {
+        Quarantine::beside(&self.store).blame(&origin.plugin_id, &origin.plugin_sha256, why)
+    }
+
+    /// Lets a plugin start again that has failed too often; whether it was held.
+    ///
+    /// # Errors
+    /// When its file cannot be read, or what is known of it cannot be removed.
+    pub fn retry(&self, info: &PluginInfo) -> Result<bool, HostError> {
+        let (quarantine, sha256) = (Quarantine::beside(&self.store), info.sha256()?);
+        let was_held = quarantine.why(&sha256).is_some();
+        let file_error = |error: std::io::Error| HostError::File {
+            path: quarantine.0.clone(),
+            why: format!("cannot be changed: {error}"),
+        };
+        quarantine.release(&sha256).map_err(file_error)?;
+        Ok(was_held)
+    }
+
     fn start(
         &self,
         info: &PluginInfo,
@@ -129,37 +182,61 @@ impl Host {
             let what = format!("takes only pixels of format {:?}, this honami has gray8", info.caps.pixels);
             return Err(HostError::Usage { plugin: info.id.clone(), what });
         }
-        let library = in_process::load(info, &self.store)?;
+        let (instance, plugin_sha256, sandbox) = self.instance(info, &complete, cx)?;
         let origin = Origin {
             plugin_id: info.id.clone(),
             plugin_version: info.version.clone(),
-            plugin_sha256: library.sha256.clone(),
+            plugin_sha256,
             abi: info.abi,
-            sandbox: "in process",
+            sandbox,
         };
-        let mut handle = Handle::new(info.id.clone(), in_process::create(info, library, cx)?);
+        let mut handle = Handle::new(info.id.clone(), instance);
         let checked: Vec<_> = info
             .params
             .iter()
             .map(|param| {
                 let value = complete.get(&param.id).cloned().unwrap_or_else(|| param.default());
-                Ok((param.id.as_str(), param.check(value)?, kind_of(&param.kind)))
+                Ok((param.id.as_str(), param.check(value)?, param.kind.abi()))
             })
             .collect::<Result<_, HostError>>()?;
         let sent: Vec<_> = checked.iter().map(|(id, value, kind)| (*id, value, *kind)).collect();
         handle.ask(&Request::SetParams(&sent), cx, &mut Reply::default())?;
         Ok((handle, origin))
     }
+
+    /// Makes an instance where it is to work; with the hash of its library and how far it is kept apart.
+    fn instance(
+        &self,
+        info: &PluginInfo,
+        values: &Values,
+        cx: &CallContext<'_>,
+    ) -> Result<(Box<dyn Instance>, String, String), HostError> {
+        let usual = if info.trust == Trust::Shipped { Hosting::InProcess } else { Hosting::Isolated };
+        match self.hosting.unwrap_or(usual) {
+            Hosting::InProcess => {
+                let library = in_process::load(info, &self.store)?;
+                let sha256 = library.sha256.clone();
+                Ok((in_process::create(info, library, cx)?, sha256, "in process".to_owned()))
+            }
+            Hosting::Isolated => {
+                let copy = in_process::keep_same(info, &self.store)?;
+                if let Some(why) = Quarantine::beside(&self.store).why(&copy.sha256) {
+                    return Err(HostError::Quarantined { plugin: info.id.clone(), why });
+                }
+                let read = files_of(info, values);
+                let (instance, sandbox) = isolated::create(info, &copy.path, &read, self.limits, cx)?;
+                Ok((instance, copy.sha256, sandbox))
+            }
+        }
+    }
 }
 
-fn kind_of(param: &ParamKind) -> u32 {
-    match param {
-        ParamKind::Bool { .. } => kind::BOOL,
-        ParamKind::Int(_) => kind::INT,
-        ParamKind::Float(_) => kind::FLOAT,
-        ParamKind::Enum { .. } | ParamKind::String { .. } | ParamKind::Path { .. } => kind::TEXT,
-        ParamKind::Vec2 { .. } => kind::VEC2,
-        ParamKind::Rect { .. } => kind::RECT,
-        ParamKind::Seed { .. } => kind::SEED,
-    }
+/// The files that a plugin was given by name, which it is to open.
+fn files_of(info: &PluginInfo, values: &Values) -> Vec<PathBuf> {
+    let paths = info.params.iter().filter(|param| matches!(param.kind, ParamKind::Path { .. }));
+    let file = |value: &Value| match value {
+        Value::Text(path) if !path.is_empty() => Some(PathBuf::from(path)),
+        _ => None,
+    };
+    paths.filter_map(|param| values.get(&param.id).and_then(file)).collect()
 }

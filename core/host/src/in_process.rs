@@ -5,7 +5,7 @@ mod input;
 mod known;
 mod library;
 
-pub(crate) use library::{Loaded, load};
+pub(crate) use library::{Loaded, keep_same, load, load_copy};
 
 use crate::call::CallDesk;
 use crate::context::CallContext;

@@ -1,11 +1,11 @@
 //! The seam between typed handles and what hosts a plugin: requests go in, unchecked replies come out.
 //!
-//! Handles know only [`Instance`]. Today there is one that calls the library in this process; one that asks another
-//! process would answer the same requests.
+//! Handles know only [`Instance`]: one calls the library in this process, one asks another process.
 
 use crate::context::CallContext;
 use crate::draft::{Gust, Node};
 use crate::error::{Code, HostError};
+use crate::isolated::Ended;
 use crate::reply::{self, Reply, Schema};
 use crate::types::{DetectRequest, FrameView, Point, StreamInfo, Tracks};
 use crate::values::Value;
@@ -99,6 +99,18 @@ impl Handle {
         }
         self.instance.invoke(request, cx, reply);
         let function = request.function();
+        if let Some(how) = reply.ended.take() {
+            self.failed = true;
+            let plugin = self.plugin.clone();
+            if how == Ended::Stopped {
+                return Err(HostError::Cancelled { plugin });
+            }
+            let frame = match request {
+                Request::Push(view) => Some(view.index),
+                _ => None,
+            };
+            return Err(HostError::Ended { plugin, function, frame, how });
+        }
         if let Some(what) = reply.faults.first() {
             return Err(self.misbehaved(function, what.clone()));
         }

@@ -6,8 +6,8 @@
 //! checked: whatever breaks the contract of `honami.h` is a [`HostError::Misbehaved`] with names and numbers, and
 //! nothing of it reaches the caller.
 //!
-//! Handles do not know where a plugin runs. Today it runs in this process, from a copy in the store that is named by its
-//! hash, and is never unloaded.
+//! Handles do not know where a plugin runs: in this process, or in one of its own ([`Hosting`]). Either way it is loaded
+//! from a copy in the store that is named by its hash, and never unloaded.
 
 mod call;
 mod clusterer;
@@ -16,22 +16,28 @@ mod error;
 mod host;
 mod in_process;
 mod instance;
+mod isolated;
 mod manifest;
 mod note;
+mod plughost;
+mod quarantine;
 mod registry;
 mod reply;
 mod store;
 mod tracker;
 mod types;
 mod values;
+mod wire;
 
 pub mod draft;
 
 pub use clusterer::Clusterer;
 pub use context::{CallContext, Flow, Level};
 pub use error::{Code, HostError};
-pub use host::{Host, Origin};
+pub use host::{Host, Hosting, Origin};
+pub use isolated::{Ended, Limits, program};
 pub use manifest::{Caps, Entry, Kind, Numeric, Param, ParamKind};
+pub use plughost::serve;
 pub use registry::{PluginInfo, Registry, SearchPath, Trust};
 pub use tracker::Tracker;
 pub use types::{

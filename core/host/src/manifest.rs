@@ -1,6 +1,7 @@
 //! What a library says of itself before any of its code runs: plugins, parameters, abilities.
 
 use crate::values::{Value, Values};
+use honami_abi::kind;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -181,6 +182,21 @@ pub enum ParamKind {
         /// Unless set.
         default: i64,
     },
+}
+
+impl ParamKind {
+    /// Its number in the header.
+    pub(crate) fn abi(&self) -> u32 {
+        match self {
+            Self::Bool { .. } => kind::BOOL,
+            Self::Int(_) => kind::INT,
+            Self::Float(_) => kind::FLOAT,
+            Self::Enum { .. } | Self::String { .. } | Self::Path { .. } => kind::TEXT,
+            Self::Vec2 { .. } => kind::VEC2,
+            Self::Rect { .. } => kind::RECT,
+            Self::Seed { .. } => kind::SEED,
+        }
+    }
 }
 
 /// Range of a number: hard ends, softer ones for sliders.

@@ -1,5 +1,6 @@
 //! What came back from a call: a code, a text, and tables in memory of the host's.
 
+use crate::isolated::Ended;
 use honami_abi::{dtype, schema};
 use std::ffi::CStr;
 
@@ -88,6 +89,8 @@ pub(crate) struct Reply {
     pub(crate) faults: Vec<String>,
     /// Whether the listener said stop.
     pub(crate) stopped: bool,
+    /// How the plugin's process ended, if it did.
+    pub(crate) ended: Option<Ended>,
     tables: Vec<Table>,
 }
 
@@ -97,6 +100,7 @@ impl Reply {
         self.text.clear();
         self.faults.clear();
         self.stopped = false;
+        self.ended = None;
         for table in &mut self.tables {
             table.clear();
         }
@@ -105,6 +109,11 @@ impl Reply {
     /// The table that was committed for a schema.
     pub(crate) fn table(&self, schema: &Schema) -> Option<&Table> {
         self.tables.iter().find(|table| table.is(schema) && table.committed.is_some())
+    }
+
+    /// The tables that were committed.
+    pub(crate) fn committed(&self) -> impl Iterator<Item = &Table> {
+        self.tables.iter().filter(|table| table.committed.is_some())
     }
 
     /// The place of a schema's table, empty or not.
@@ -248,6 +257,19 @@ impl Table {
         Some(unsafe { std::slice::from_raw_parts(lines.as_ptr().cast::<T>(), n) })
     }
 
+    /// The columns that the host knows, each with the bytes of its committed rows.
+    pub(crate) fn columns(&self) -> impl Iterator<Item = (&'static str, &[u8])> {
+        self.columns.iter().filter_map(|column| {
+            let &(name, dtype, ncomp) = column.known?;
+            let n = self.rows() * dtype::size(dtype)? * ncomp as usize;
+            let lines = &self.lines[column.first_line..column.first_line + column.n_lines];
+            assert!(n <= size_of_val(lines), "rows of column {name} of {}", self.id());
+            // SAFETY: lines are plain bytes, at least n of them.
+            #[allow(unsafe_code, reason = "bytes that the plugin wrote, as they are")]
+            Some((name, unsafe { std::slice::from_raw_parts(lines.as_ptr().cast::<u8>(), n) }))
+        })
+    }
+
     /// A column that the schema requires: `reserve` has seen to it that it is there.
     pub(crate) fn required<T: Element>(&self, name: &'static str) -> &[T] {
         self.column(name).unwrap_or_default()
@@ -262,4 +284,4 @@ pub(crate) trait Element: Copy + 'static {
 macro_rules! elements {
     ($($ty:ty = $dtype:ident),*) => { $( impl Element for $ty { const DTYPE: u32 = dtype::$dtype; } )* };
 }
-elements!(u8 = U8, i32 = I32, u32 = U32, i64 = I64, f32 = F32, f64 = F64);
+elements!(u8 = U8, i32 = I32, u32 = U32, i64 = I64, u64 = U64, f32 = F32, f64 = F64);

@@ -6,10 +6,12 @@
 use crate::error::HostError;
 use rustix::process::geteuid;
 use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
 use std::fs::{self, DirBuilder, File, OpenOptions, Permissions};
 use std::io::{self, Read, Write};
 use std::os::unix::fs::{DirBuilderExt, MetadataExt, OpenOptionsExt, PermissionsExt};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 /// Copies that nobody has made anew for so long are removed when another comes.
@@ -22,6 +24,23 @@ pub(crate) struct Stored {
     pub(crate) path: PathBuf,
     /// Of its content, lower-case hexadecimal.
     pub(crate) sha256: String,
+}
+
+impl Stored {
+    /// A copy that the store has named by its content.
+    pub(crate) fn named(copy: &Path) -> Self {
+        let sha256 = copy.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        Self { path: copy.to_owned(), sha256 }
+    }
+}
+
+/// What tells a file that has not been touched: device, inode, bytes, and when it was written and changed.
+type Identity = (u64, u64, u64, [i64; 4]);
+
+fn identity(path: &Path) -> io::Result<Identity> {
+    let meta = fs::metadata(path)?;
+    let times = [meta.mtime(), meta.mtime_nsec(), meta.ctime(), meta.ctime_nsec()];
+    Ok((meta.dev(), meta.ino(), meta.len(), times))
 }
 
 /// The hash of a file's content, lower-case hexadecimal.
@@ -38,6 +57,22 @@ pub(crate) fn sha256_of(path: &Path) -> Result<String, HostError> {
 /// # Errors
 /// When it cannot be read, or neither folder can be written.
 pub(crate) fn keep(path: &Path, folder: &Path) -> Result<Stored, HostError> {
+    static KEPT: Mutex<BTreeMap<Identity, Stored>> = Mutex::new(BTreeMap::new());
+    let before = identity(path).ok();
+    let kept = || KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+    let known = before.as_ref().and_then(|identity| kept().get(identity).cloned());
+    if let Some(stored) = known.filter(|stored| stored.path.starts_with(folder) && stored.path.exists()) {
+        return Ok(stored);
+    }
+    let stored = keep_now(path, folder)?;
+    // Of a file that was written meanwhile nobody knows which content was read.
+    if let Some(identity) = before.filter(|before| identity(path).ok().as_ref() == Some(before)) {
+        kept().insert(identity, stored.clone());
+    }
+    Ok(stored)
+}
+
+fn keep_now(path: &Path, folder: &Path) -> Result<Stored, HostError> {
     let bytes = read(path)?;
     let sha256 = hex(&bytes);
     let keep_in = |folder: &Path| {

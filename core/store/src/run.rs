@@ -72,6 +72,15 @@ impl std::fmt::Display for RunState {
     }
 }
 
+/// Where a plugin was started again in the middle of a run, from where it had last seen the features.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Seam {
+    /// The first frame that it tracked then.
+    pub frame: u32,
+    /// What became of it before.
+    pub why: String,
+}
+
 /// A run, without its samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunInfo {
@@ -85,6 +94,8 @@ pub struct RunInfo {
     pub tracks: TrackSet,
     /// The frames it has samples in, first to last; so far, while it runs.
     pub found: Range<u32>,
+    /// Where its plugin was started again.
+    pub seams: Vec<Seam>,
 }
 
 /// The pen of a working run: its own connection, to be given to the thread that tracks.
@@ -133,6 +144,16 @@ impl RunWriter {
                 .execute(params![self.run.0, data])?;
             tx.commit()?;
         }
+        Ok(())
+    }
+
+    /// Keeps that the plugin was started again.
+    ///
+    /// # Errors
+    /// What SQLite met.
+    pub fn seam(&mut self, seam: &Seam) -> Result<(), StoreError> {
+        let sql = "INSERT INTO seam (run, frame, why) VALUES (?1, ?2, ?3)";
+        self.conn.execute(sql, params![self.run.0, seam.frame, seam.why])?;
         Ok(())
     }
 

@@ -14,7 +14,7 @@ const APPLICATION_ID: u32 = 0x484F_4E41;
 pub(crate) const BUSY_TIMEOUT: Duration = Duration::from_secs(20);
 
 /// Step n brings schema n to n + 1; a step is never changed once it was released.
-const MIGRATIONS: [&str; 2] = [
+const MIGRATIONS: [&str; 3] = [
     "
     CREATE TABLE state (            -- one row: what changes with every edit
         id          INTEGER PRIMARY KEY CHECK (id = 1),
@@ -80,6 +80,15 @@ const MIGRATIONS: [&str; 2] = [
         state       TEXT NOT NULL,  -- JSON of the program's that wrote it
         time        TEXT NOT NULL
     );
+",
+    "
+    CREATE TABLE seam (             -- where a plugin was started again in the middle of a run
+        id          INTEGER PRIMARY KEY,
+        run         INTEGER NOT NULL REFERENCES run,
+        frame       INTEGER NOT NULL, -- the first that the new one tracked
+        why         TEXT NOT NULL
+    );
+    CREATE INDEX seam_of_run ON seam (run);
 ",
 ];
 

@@ -183,7 +183,8 @@ impl Bench<'_> {
             Ok(())
         };
         let mut numbers = |_| Ok(0..0);
-        let driven = drive::drive(self.media, tracker, plan, &mut numbers, &mut collect, self.progress)?;
+        let driven =
+            drive::drive(self.media, tracker, plan, &mut numbers, &mut collect, None, self.progress)?;
         if driven.end < frames.end {
             return Err(WorkbenchError::Stopped);
         }

@@ -21,7 +21,19 @@ pub struct Finding {
 /// Looks at everything honami can make use of.
 #[must_use]
 pub fn examine(registry: &Registry) -> Vec<Finding> {
-    vec![trackers(registry), opencv(registry), ffmpeg(), cache(), threads()]
+    vec![trackers(registry), processes(), opencv(registry), ffmpeg(), cache(), threads()]
+}
+
+/// Plugins that did not come with honami need a program to work in.
+fn processes() -> Finding {
+    let program = honami_host::program();
+    Finding {
+        what: "own processes",
+        there: program.is_ok(),
+        found: program.map_or_else(|error| error.to_string(), |program| program.display().to_string()),
+        adds: "plugins that did not come with honami",
+        advice: Some("cargo build --release builds honami-plughost beside the program".to_owned()),
+    }
 }
 
 fn trackers(registry: &Registry) -> Finding {

@@ -12,6 +12,7 @@ use honami_media::{FrameRef, Media};
 use honami_model::clip::Clip;
 use honami_model::picture::Gray;
 use honami_model::track::{Quality, Sample, Source, Span, Status, TrackId};
+use honami_store::Seam;
 
 use crate::ear::Ear;
 use crate::error::WorkbenchError;
@@ -72,6 +73,9 @@ pub type Rows = Vec<(TrackId, Sample)>;
 /// Takes the rows of a frame; frames come in order.
 pub type Sink<'a> = &'a mut dyn FnMut(u32, &Rows) -> Result<(), WorkbenchError>;
 
+/// Gives another tracker like the one that has died, unless it has died too often.
+pub type Restart<'a> = &'a mut dyn FnMut(&Seam) -> Result<Tracker, WorkbenchError>;
+
 /// How far it came.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Driven {
@@ -103,7 +107,8 @@ pub fn check_seeds(seeds: &[Seed], clip: &Clip) -> Result<(), WorkbenchError> {
 
 /// Follows the plan and hands every frame's rows to `sink`.
 ///
-/// Where a person stops it, or the tracker fails, the frames before are with the sink already.
+/// When the tracker's process dies another one goes on from where the features were seen last; a frame in which that
+/// dies, too, is left out, and all are lost there. Where a person stops it, or the tracker fails, the frames before are with the sink already.
 ///
 /// # Errors
 /// What the clip, the tracker or the sink met.
@@ -113,6 +118,7 @@ pub fn drive(
     mut plan: Plan,
     numbers: Numbers<'_>,
     sink: Sink<'_>,
+    mut restart: Option<Restart<'_>>,
     progress: &dyn Progress,
 ) -> Result<Driven, WorkbenchError> {
     plan.seeds.sort_by_key(|seed| (seed.frame, seed.track));
@@ -130,6 +136,17 @@ pub fn drive(
             break;
         }
         stopped = ear.call(done, total, |call| ride.step(frame, numbers, call));
+        let mut n_deaths = 0;
+        while let (Err(WorkbenchError::Plugin(HostError::Ended { how, .. })), Some(restart)) =
+            (&stopped, restart.as_mut())
+        {
+            n_deaths += 1;
+            let seam = Seam { frame: ride.board.end, why: how.to_string() };
+            stopped = restart(&seam).and_then(|tracker| {
+                *ride.tracker = tracker;
+                ear.call(done, total, |call| ride.resume(frame, n_deaths > 1, numbers, call))
+            });
+        }
         ride.board.flush(sink)?;
     }
     if stopped.is_ok() {
@@ -188,8 +205,10 @@ impl Ride<'_> {
             let answers = self.tracker.push(&view, call)?;
             self.take(answers, numbers)?;
         }
-        let mut new: Vec<Point> = due(&self.plan.seeds, frame).collect();
-        if let Some(detect) = &self.plan.detect {
+        let placed = self.board.placed.get(&frame).cloned();
+        let is_again = placed.is_some();
+        let mut new: Vec<Point> = placed.unwrap_or_else(|| due(&self.plan.seeds, frame).collect());
+        if let Some(detect) = self.plan.detect.as_ref().filter(|_| !is_again) {
             let again =
                 detect.every.is_some_and(|n| n > 0 && (frame - self.plan.frames.start).is_multiple_of(n));
             if first || again {
@@ -208,6 +227,36 @@ impl Ride<'_> {
         }
         self.step_secs.push(begun.elapsed().as_secs_f64());
         Ok(())
+    }
+
+    /// Gives a new tracker what the one before had seen when it died in frame `fatal`, and goes on with that frame or,
+    /// when that is fatal again, after it.
+    fn resume(
+        &mut self,
+        fatal: u32,
+        is_fatal_again: bool,
+        numbers: Numbers<'_>,
+        call: &CallContext<'_>,
+    ) -> Result<(), WorkbenchError> {
+        let first = self.board.back();
+        // Its own points of before are features like any other now.
+        self.born.clear();
+        self.begin(call)?;
+        if first > self.plan.frames.start {
+            let picture = self.media.frame(first - 1)?;
+            let seen: Vec<Point> = self.board.seen().collect();
+            self.tracker.seed(&seen, call)?;
+            // Where they are there is known already.
+            self.tracker.push(&view(self.media, &picture, first - 1), call)?;
+        }
+        for frame in first..fatal {
+            self.step(frame, numbers, call)?;
+        }
+        if is_fatal_again && fatal > self.plan.frames.start {
+            self.board.lose(fatal);
+            return Ok(());
+        }
+        self.step(fatal, numbers, call)
     }
 
     /// Keeps answers. Points of the tracker's own making become tracks where features may be found; elsewhere nobody
@@ -301,16 +350,28 @@ struct Board {
     placed: BTreeMap<u32, Vec<Point>>,
     /// Where the live points were seen last.
     last: BTreeMap<u32, Point>,
+    /// Where they were seen in the last frame that was handed over.
+    handed: Vec<Point>,
 }
 
 impl Board {
     fn new(first: u32) -> Self {
-        Self { end: first, answered: BTreeMap::new(), placed: BTreeMap::new(), last: BTreeMap::new() }
+        Self {
+            end: first,
+            answered: BTreeMap::new(),
+            placed: BTreeMap::new(),
+            last: BTreeMap::new(),
+            handed: Vec::new(),
+        }
     }
 
     fn take(&mut self, answers: Vec<Points>) {
         for answer in answers {
             let frame = u32::try_from(answer.frame).unwrap_or(u32::MAX);
+            if frame < self.end {
+                // Handed over before a restart.
+                continue;
+            }
             self.last.clear();
             let mut rows = Rows::with_capacity(answer.rows.len());
             for row in answer.rows {
@@ -324,6 +385,21 @@ impl Board {
             }
             self.answered.insert(frame, rows);
         }
+    }
+
+    /// Forgets the answers that were not handed over; the first frame without rows.
+    fn back(&mut self) -> u32 {
+        self.answered.clear();
+        self.last = self.handed.iter().map(|point| (point.id, *point)).collect();
+        self.end
+    }
+
+    /// All are lost in a frame that nobody could look at.
+    fn lose(&mut self, frame: u32) {
+        let (status, source, quality) = (Status::Lost, Source::Tracked, Quality::default());
+        let rows =
+            self.last.values().map(|p| (TrackId(p.id), Sample { x: p.x, y: p.y, status, source, quality }));
+        self.answered.insert(frame, rows.collect());
     }
 
     fn place(&mut self, frame: u32, points: &[Point]) {
@@ -347,6 +423,9 @@ impl Board {
                 rows.push((TrackId(point.id), Sample { x: point.x, y: point.y, status, source, quality }));
             }
             sink(frame, &rows)?;
+            let seen = rows.iter().filter(|(_, sample)| sample.status.is_seen());
+            self.handed =
+                seen.map(|(track, sample)| Point { id: track.0, x: sample.x, y: sample.y }).collect();
             self.end = frame + 1;
         }
         Ok(())

@@ -26,7 +26,7 @@ pub(crate) fn stamp(
         params: all.iter().map(|(id, value)| (id.to_owned(), value.clone())).collect(),
         seed: SEED,
         input_revision: on.0,
-        sandbox: origin.sandbox.to_owned(),
+        sandbox: origin.sandbox,
         simd: simd().to_owned(),
         date: honami_store::now(),
         honami_version: env!("CARGO_PKG_VERSION").to_owned(),

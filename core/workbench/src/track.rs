@@ -6,13 +6,13 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
-use honami_host::{CallContext, Kind, PluginInfo, Tracker, Values};
+use honami_host::{CallContext, Host, Kind, Origin, PluginInfo, Tracker, Values};
 use honami_media::{Media, OpenOptions};
 use honami_model::clip::Clip;
 use honami_model::document::RunId;
 use honami_model::edit::Transaction;
 use honami_model::track::{TrackId, TrackSet};
-use honami_store::{Project, RunHead, RunWriter};
+use honami_store::{Project, RunHead, RunWriter, Seam};
 
 use crate::drive::{self, Detect, Driven, Plan, Rows, Seed};
 use crate::error::WorkbenchError;
@@ -78,7 +78,19 @@ pub struct TrackJob {
     tracker: Tracker,
     plan: Plan,
     writer: RunWriter,
-    plugin: String,
+    maker: Box<Maker>,
+}
+
+/// What a tracker is made from, and again when its process has died.
+struct Maker {
+    host: Host,
+    plugin: PluginInfo,
+    params: Values,
+    origin: Origin,
+}
+
+fn make(host: &Host, plugin: &PluginInfo, params: &Values) -> Result<(Tracker, Origin), WorkbenchError> {
+    Ok(host.tracker(plugin, params, &CallContext::silent())?)
 }
 
 /// A run that has ended; give it to [`finish`].
@@ -157,8 +169,9 @@ fn begin(
     seeds: Vec<Seed>,
     detect: Option<Detect>,
 ) -> Result<TrackJob, WorkbenchError> {
-    let (tracker, origin) =
-        honami_host::Host::new().tracker(plugin, &request.params, &CallContext::silent())?;
+    let (host, params) = (Host::new(), request.params.clone());
+    let (tracker, origin) = make(&host, plugin, &params)?;
+    let maker = Maker { host, plugin: plugin.clone(), params, origin: origin.clone() };
     let head = RunHead {
         provenance: stamp(session.project.revision(), "track", plugin, &request.params, origin),
         tracks: seeds.iter().map(|seed| seed.track).collect(),
@@ -171,7 +184,7 @@ fn begin(
         tracker,
         plan: Plan { frames: request.frames.clone(), seeds, detect, max_threads },
         writer,
-        plugin: plugin.short_name.clone(),
+        maker: Box::new(maker),
     })
 }
 
@@ -185,7 +198,7 @@ impl TrackJob {
         let begun = Instant::now();
         let frames = self.plan.frames.clone();
         let mut kept = Kept { writer: self.writer, first_frame: frames.start, frames: Vec::new() };
-        let driven = kept.track(&self.media, &mut self.tracker, self.plan, progress);
+        let driven = kept.track(&self.media, &mut self.tracker, &mut self.maker, self.plan, progress);
         let run = kept.writer.run();
         let reached = kept.first_frame;
         let (driven, error) = match driven {
@@ -198,7 +211,7 @@ impl TrackJob {
             None => kept.writer.finish()?,
         };
         let seconds = begun.elapsed().as_secs_f64();
-        Ok(TrackDone { run, plugin: self.plugin, frames, driven, seconds, error })
+        Ok(TrackDone { run, plugin: self.maker.plugin.short_name, frames, driven, seconds, error })
     }
 }
 
@@ -214,13 +227,22 @@ impl Kept {
         &mut self,
         media: &Media,
         tracker: &mut Tracker,
+        maker: &mut Maker,
         plan: Plan,
         progress: &dyn Progress,
     ) -> Result<Driven, WorkbenchError> {
         let kept = std::cell::RefCell::new(self);
+        let mut again = |seam: &Seam| {
+            maker.host.blame(&maker.origin, &seam.why)?;
+            kept.borrow_mut().writer.seam(seam)?;
+            // A file that was rebuilt meanwhile is another one, and begins anew.
+            let (tracker, origin) = make(&maker.host, &maker.plugin, &maker.params)?;
+            maker.origin = origin;
+            Ok(tracker)
+        };
         let mut numbers = |n| Ok(kept.borrow_mut().writer.reserve_tracks(n)?);
         let mut sink = |_: u32, rows: &Rows| kept.borrow_mut().add(rows);
-        let driven = drive::drive(media, tracker, plan, &mut numbers, &mut sink, progress);
+        let driven = drive::drive(media, tracker, plan, &mut numbers, &mut sink, Some(&mut again), progress);
         kept.borrow_mut().flush()?;
         driven
     }
@@ -244,7 +266,8 @@ impl Kept {
 /// What the project met.
 pub fn finish(session: &mut Session, done: TrackDone) -> Result<TrackOutcome, WorkbenchError> {
     let TrackDone { run, plugin, frames, driven, seconds, error } = done;
-    let found = session.project.run(run)?.tracks;
+    let info = session.project.run(run)?;
+    let found = info.tracks;
     let n_tracks = found.len();
     let reached = frames.start..driven.end;
     let last = reached.end.saturating_sub(1);
@@ -262,6 +285,9 @@ pub fn finish(session: &mut Session, done: TrackDone) -> Result<TrackOutcome, Wo
         (false, 0) => "nothing was tracked".to_owned(),
         (false, _) => format!("the tracks stay as they were, run {run} is kept beside them"),
     };
+    for Seam { frame, why } in &info.seams {
+        line += &format!("; started again at frame {frame}: it {why}");
+    }
     if stopped {
         line = format!("{plugin}: stopped at frame {}; {kept}", driven.end);
     }

@@ -365,6 +365,11 @@ pub(super) enum Plugin {
         /// Short name or full id.
         name: String,
     },
+    /// Let a plugin start again that has failed three times within ten minutes.
+    Retry {
+        /// Short name or full id.
+        name: String,
+    },
 }
 
 /// A frame rate.

@@ -6,7 +6,7 @@ use std::path::Path;
 use anyhow::Context as _;
 use clap::CommandFactory as _;
 use honami_workbench::doctor;
-use honami_workbench::plugins::{Param, PluginInfo, Registry, Trust};
+use honami_workbench::plugins::{Host, Param, PluginInfo, Registry, Trust};
 use serde_json::json;
 
 use super::args::{Cli, Common, Plugin};
@@ -58,6 +58,13 @@ pub(super) fn plugin(command: &Plugin, common: &Common) -> anyhow::Result<Answer
     match command {
         Plugin::List => Ok(list(&registry)),
         Plugin::Info { name } => info(named(&registry, name)?),
+        Plugin::Retry { name } => {
+            let plugin = named(&registry, name)?;
+            let was_held = Host::new().retry(plugin)?;
+            let words = if was_held { "may start again" } else { "was not held: nothing to do" };
+            let json = json!({ "plugin": plugin.id, "was_held": was_held });
+            Ok(Answer { json, text: format!("{} {words}", plugin.short_name), done: true })
+        }
     }
 }
 

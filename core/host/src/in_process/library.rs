@@ -4,8 +4,9 @@
 
 use super::known::known;
 use crate::error::HostError;
+use crate::note;
 use crate::registry::{PluginInfo, Trust};
-use crate::{note, store};
+use crate::store::{self, Stored};
 use honami_abi as abi;
 use libloading::os::unix::{Library, RTLD_LOCAL, RTLD_NOW};
 use std::collections::BTreeMap;
@@ -54,11 +55,31 @@ pub(crate) fn host_info() -> *const abi::HostInfo {
 
 /// The library of a trusted plugin, as its file is now; its manifest must still be the one that `info` was read from.
 pub(crate) fn load(info: &PluginInfo, folder: &Path) -> Result<Arc<Loaded>, HostError> {
-    static LOADED: Mutex<BTreeMap<String, Arc<Loaded>>> = Mutex::new(BTreeMap::new());
+    open_once(info, keep(info, folder)?)
+}
+
+/// A copy of a trusted plugin's library in the store.
+fn keep(info: &PluginInfo, folder: &Path) -> Result<Stored, HostError> {
     if let Trust::No(why) = &info.trust {
         return Err(HostError::NotTrusted { path: info.library.clone(), why: why.clone() });
     }
-    let stored = store::keep(&info.library, folder)?;
+    store::keep(&info.library, folder)
+}
+
+/// The same of one whose manifest is still the one that `info` was read from.
+pub(crate) fn keep_same(info: &PluginInfo, folder: &Path) -> Result<Stored, HostError> {
+    let stored = keep(info, folder)?;
+    let manifest = note::read(&stored.path)?.map(|(_, json)| json).unwrap_or_default();
+    still(info, &manifest).map(|()| stored)
+}
+
+/// The library of a plugin whose file is a copy in the store already.
+pub(crate) fn load_copy(info: &PluginInfo, copy: &Path) -> Result<Arc<Loaded>, HostError> {
+    open_once(info, Stored::named(copy))
+}
+
+fn open_once(info: &PluginInfo, stored: Stored) -> Result<Arc<Loaded>, HostError> {
+    static LOADED: Mutex<BTreeMap<String, Arc<Loaded>>> = Mutex::new(BTreeMap::new());
     let mut loaded = LOADED.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(library) = loaded.get(&stored.sha256) {
         return still(info, &library.manifest).map(|()| Arc::clone(library));

@@ -3,16 +3,22 @@
 #include "honami.h"
 #include <math.h>
 #include <stdio.h>
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 enum fault {
   NONE, NULL_RECORD, SMALL_RECORD, NULL_CREATE, OTHER_MANIFEST, NO_INSTANCE, NULL_FUNCTION, SMALL_INSTANCE, SMALL_TABLE,
   NULL_TABLE, OTHER_LATENCY, NAN_POSITION, UNKNOWN_ID, TWICE, NO_ROWS, FEWER, NEGATIVE, SILENT, OVERCOMMIT, COMMIT_ONLY,
   COMMIT_TWICE, PAST_THE_END, BAD_STATUS, BAD_QUALITY, WRONG_TYPE, MISSING_COLUMN, OTHER_SCHEMA, TOO_MUCH, PRINTS,
-  UNASKED_CANCEL, AGAIN, SEED_RESULT, REFUSES_PARAMS, COMMIT_RESERVE_COMMIT
+  UNASKED_CANCEL, AGAIN, SEED_RESULT, REFUSES_PARAMS, COMMIT_RESERVE_COMMIT,
+  /* From here on in frame 2: */
+  SEGFAULT, ABORTS, EXITS, LOOPS, SLEEPS, DEAF, FLOODS, ESCAPES, LEAKS, FORKS, SOCKET, FILES, WITHERS,
+  /* or before main: */
+  CTOR_WRITES, CTOR_EXECS, CTOR_DIES
 };
 
 #ifndef KNOWN
@@ -31,6 +37,44 @@ static void *cut(const void *whole, size_t n) {
   char *pages = mmap(NULL, 2 * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (pages == MAP_FAILED || mprotect(pages + page, page, PROT_NONE) != 0) abort();
   return memcpy(pages + page - n, whole, n);
+}
+
+#ifdef CONSTRUCTOR
+static int written = -1, socketed = -1;
+__attribute__((constructor)) static void before_main(void) {
+  char *const nothing[] = {NULL};
+  if (FAULT == CTOR_WRITES) written = open(CONSTRUCTOR, O_CREAT | O_WRONLY, 0600);
+  if (FAULT == CTOR_EXECS) execve("/bin/true", nothing, nothing);
+  if (FAULT == CTOR_DIES) abort();
+  (void)written, (void)socketed;
+}
+#endif
+
+/* What a plugin must not do, in the middle of its work. */
+static honami_code misdeed(const honami_call *call) {
+  volatile int *nowhere = NULL;
+  size_t gigabyte = (size_t)1 << 30;
+  char *memory;
+  switch (FAULT) {
+    case SEGFAULT: case WITHERS: *nowhere = 1; break;
+    case ABORTS: abort();
+    case EXITS: exit(0);
+    case LOOPS: for (;;) *(volatile uint64_t *)&(uint64_t){0} = 1;
+    case SLEEPS: for (;;) sleep(1000);
+    case DEAF: for (;;) call->progress(call, 0.5, "busy"), usleep(1000);
+    case FLOODS: for (;;) puts("and on and on and on");
+    case ESCAPES: puts("\033[2J\033[1;1H\033[31mred\033[0m\007"), fflush(stdout); break;
+    case LEAKS:
+      memory = malloc(gigabyte);
+      if (!memory) return call->fail(call, HONAMI_E_MEMORY, "no memory for a gigabyte");
+      memset(memory, 1, gigabyte);
+      break;
+    case FORKS: if (fork() == 0) for (;;) sleep(1000); else *nowhere = 1; break;
+    case SOCKET: if (socket(AF_INET, SOCK_STREAM, 0) < 0) return call->fail(call, HONAMI_E_IO, "no socket"); break;
+    case FILES: if (open("/etc/passwd", O_RDONLY) < 0) return call->fail(call, HONAMI_E_IO, "no file"); break;
+    default: break;
+  }
+  return HONAMI_OK;
 }
 
 static uint32_t ids[64];
@@ -77,7 +121,8 @@ static honami_code push(honami_instance *instance, const honami_call *call, cons
                         {FAULT == BAD_QUALITY ? "fb" : "whatever", HONAMI_F32, 1, NULL, 0}};
   uint64_t rows = FAULT == TOO_MUCH ? UINT64_MAX : n_points;
   honami_code code;
-  (void)instance, (void)frame;
+  (void)instance;
+  if ((frame->index == 2 || (FAULT == WITHERS && frame->index > 2)) && misdeed(call) < 0) return HONAMI_E_FAILED;
   if (FAULT == NO_ROWS) return HONAMI_OK;
   if (FAULT == NEGATIVE) return call->fail(call, HONAMI_E_DATA, "the frame is too dark");
   if (FAULT == SILENT) return -77;

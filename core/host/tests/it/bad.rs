@@ -1,20 +1,24 @@
 //! Plugins with one fault each: the host names plugin, function and fault, and takes nothing from them.
 
-use crate::tools::{compile, has_cc, named, point, push, start, stream};
-use honami_host::{CallContext, HostError, Points, Registry};
+use crate::tools::{compile, has_cc, host, isolating, named, point, push, start, start_in, stream};
+use honami_host::{CallContext, Host, HostError, Points, Registry};
 use std::path::Path;
 
 const INCLUDE: &str = "../abi/include";
 
-fn bad(fault: &str, more: &[&str]) -> Registry {
+pub(crate) fn bad(fault: &str, more: &[&str]) -> Registry {
     let name = format!("bad-{fault}-{}", more.join("").replace(|c: char| !c.is_alphanumeric(), ""));
     let define = format!("-DFAULT={fault}");
     named(&[&compile("tests/bad/bad.c", &name, INCLUDE, &[&[define.as_str()], more].concat())])
 }
 
-/// Three points through one frame.
+/// Three points through one frame, in this process.
 fn use_it(registry: &Registry) -> Result<Points, HostError> {
-    let mut tracker = start(&registry.plugins()[0], &[])?;
+    use_in(&host(), registry)
+}
+
+fn use_in(host: &Host, registry: &Registry) -> Result<Points, HostError> {
+    let mut tracker = start_in(host, &registry.plugins()[0], &[])?;
     let cx = CallContext::silent();
     tracker.begin(stream(), &cx)?;
     tracker.seed(&[point(3, 1.0, 1.0), point(1, 2.0, 1.5), point(2, 3.0, 2.0)], &cx)?;
@@ -68,8 +72,11 @@ fn a_fault_in_use_is_named() {
     for (fault, wanted) in faults {
         let registry = bad(fault, &[]);
         assert!(registry.problems().is_empty(), "{fault}: {:?}", registry.problems());
-        let got = use_it(&registry).map_err(|error| error.to_string()).expect_err(fault);
-        assert!(got.contains(wanted), "{fault}: wanted {wanted:?}, got {got:?}");
+        // It is told in the same words wherever it happens.
+        for host in [host(), isolating()] {
+            let got = use_in(&host, &registry).map_err(|error| error.to_string()).expect_err(fault);
+            assert!(got.contains(wanted), "{fault}: wanted {wanted:?}, got {got:?}");
+        }
     }
 }
 
@@ -110,8 +117,10 @@ fn what_is_no_fault_is_let_pass() {
     }
     // An unknown column is ignored; a point without a row has ended; what a plugin prints is not in its answer.
     for (fault, rows, ended) in [("NONE", 3, vec![]), ("PRINTS", 3, vec![]), ("FEWER", 1, vec![1, 2])] {
-        let points = use_it(&bad(fault, &[])).unwrap();
-        assert_eq!((points.rows.len(), points.ended), (rows, ended), "{fault}");
+        for host in [host(), isolating()] {
+            let points = use_in(&host, &bad(fault, &[])).unwrap();
+            assert_eq!((points.rows.len(), &points.ended), (rows, &ended), "{fault}");
+        }
     }
 }
 

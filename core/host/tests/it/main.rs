@@ -4,6 +4,7 @@
 
 mod bad;
 mod fossil;
+mod isolated;
 mod registry;
 mod threads;
 mod tools;

@@ -1,7 +1,7 @@
 //! What the tests share: libraries built by cargo and cc, a store of their own, a small stream.
 
 use honami_host::{
-    CallContext, FrameView, Host, HostError, Kind, PluginInfo, Point, Points, Registry, SearchPath,
+    CallContext, FrameView, Host, HostError, Hosting, Kind, PluginInfo, Point, Points, Registry, SearchPath,
     StreamInfo, Tracker, Values,
 };
 use honami_model::picture::Gray;
@@ -30,7 +30,7 @@ pub(crate) fn scratch() -> &'static Path {
 }
 
 pub(crate) fn host() -> Host {
-    Host::with_store(scratch().join("store"))
+    Host::with_store(scratch().join("store")).hosting(Hosting::InProcess)
 }
 
 /// The zoo's library. cargo is asked for the path: a guessed one may be stale.
@@ -56,6 +56,17 @@ pub(crate) fn zoo() -> &'static Path {
         let mut files = artifacts.filter(|a| a["target"]["name"] == "zoo").map(|a| a["filenames"][0].clone());
         PathBuf::from(files.next_back().unwrap().as_str().unwrap())
     })
+}
+
+/// A host whose plugins have processes of their own, in a program that is built when it is first needed.
+pub(crate) fn isolating() -> Host {
+    static BUILT: OnceLock<()> = OnceLock::new();
+    BUILT.get_or_init(|| {
+        let mut cargo = Command::new(env!("CARGO"));
+        let built = cargo.args(["build", "--quiet", "--package", "honami-plughost"]).status().unwrap();
+        assert!(built.success());
+    });
+    host().hosting(Hosting::Isolated)
 }
 
 /// Whether there is a C compiler; says so if not.
@@ -96,11 +107,15 @@ pub(crate) fn of_zoo(kind: Kind, name: &str) -> PluginInfo {
 }
 
 pub(crate) fn start(info: &PluginInfo, settings: &[&str]) -> Result<Tracker, HostError> {
+    start_in(&host(), info, settings)
+}
+
+pub(crate) fn start_in(host: &Host, info: &PluginInfo, settings: &[&str]) -> Result<Tracker, HostError> {
     let mut values = Values::default();
     for setting in settings {
         values.set_text(&info.params, setting)?;
     }
-    Ok(host().tracker(info, &values, &CallContext::silent())?.0)
+    Ok(host.tracker(info, &values, &CallContext::silent())?.0)
 }
 
 pub(crate) fn stream() -> StreamInfo {

@@ -293,7 +293,7 @@ fn clusterings_come_checked_with_their_frame_notes() {
     let cx = CallContext::silent();
     let (mut clusterer, origin) = host().clusterer(&info, &Values::default(), &cx).unwrap();
     assert_eq!(
-        (origin.plugin_id.as_str(), origin.abi, origin.sandbox),
+        (origin.plugin_id.as_str(), origin.abi, origin.sandbox.as_str()),
         ("org.honami.zoo.chain", (1, 1), "in process")
     );
     assert_eq!(origin.plugin_sha256, info.sha256().unwrap());

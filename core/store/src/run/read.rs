@@ -6,7 +6,7 @@ use honami_model::document::RunId;
 use honami_model::track::{Span, TrackId, TrackSet};
 use rusqlite::{OptionalExtension, Row};
 
-use super::{RunHead, RunInfo, RunState, compact};
+use super::{RunHead, RunInfo, RunState, Seam, compact};
 use crate::codec;
 use crate::error::StoreError;
 use crate::project::{Access, Project};
@@ -108,6 +108,13 @@ impl Project {
         }
     }
 
+    fn seams(&self, run: RunId) -> Result<Vec<Seam>, StoreError> {
+        let sql = "SELECT frame, why FROM seam WHERE run = ?1 ORDER BY id";
+        let mut statement = self.conn.prepare_cached(sql)?;
+        let rows = statement.query_map([run.0], |row| Ok(Seam { frame: row.get(0)?, why: row.get(1)? }))?;
+        Ok(rows.collect::<rusqlite::Result<_>>()?)
+    }
+
     fn has_chunks(&self, run: RunId) -> Result<bool, StoreError> {
         let sql = "SELECT EXISTS (SELECT 1 FROM chunk WHERE run = ?1)";
         Ok(self.conn.prepare_cached(sql)?.query_row([run.0], |row| row.get(0))?)
@@ -143,7 +150,7 @@ impl Project {
         let tracks = spans.iter().map(|&(track, ..)| TrackId(track)).collect();
         let start = spans.iter().map(|&(_, first, _)| first).min().unwrap_or(0);
         let end = spans.iter().map(|&(_, first, n)| first.saturating_add(n)).max().unwrap_or(0);
-        Ok(RunInfo { id, state, head, tracks, found: start..end })
+        Ok(RunInfo { id, state, head, tracks, found: start..end, seams: self.seams(id)? })
     }
 }
 

@@ -1,0 +1,268 @@
+//! A plugin's own process: how it begins, what it says, and that it ends.
+
+use crate::wire::memory::{Outbox, Output};
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::fs::{OFlags, fcntl_setfl};
+use rustix::io::{Errno, read};
+use rustix::net::{
+    AddressFamily, SendAncillaryBuffer, SendAncillaryMessage, SendFlags, SocketFlags, SocketType, sendmsg,
+    socketpair,
+};
+use rustix::process::{Pid, PidfdFlags, Signal, kill_process_group, pidfd_open};
+use std::io::{self, IoSlice, Write as _};
+use std::mem::MaybeUninit;
+use std::os::fd::{AsFd, OwnedFd};
+use std::os::unix::net::UnixStream;
+use std::os::unix::process::{CommandExt as _, ExitStatusExt as _};
+use std::path::Path;
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::time::Duration;
+
+/// A process says no longer line than this.
+const LINE_BYTES_MAX: usize = 1 << 20;
+/// What it prints is read in pieces of this size, so that one that prints without end does not keep the host from all else.
+const PRINT_BYTES: usize = 1 << 14;
+
+/// How a process ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Ended {
+    /// By a signal.
+    Signal(i32),
+    /// By itself.
+    Exit(i32),
+    /// By the host, after so many seconds without a sign of life.
+    Silent(u64),
+    /// By the host, because it was asked to stop and did not.
+    Stopped,
+}
+
+impl Ended {
+    fn of(status: ExitStatus) -> Self {
+        status.signal().map_or_else(|| Self::Exit(status.code().unwrap_or(-1)), Self::Signal)
+    }
+}
+
+impl std::fmt::Display for Ended {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Silent(seconds) => write!(f, "was ended after {seconds} s without a sign of life"),
+            Self::Stopped => f.write_str("was ended because it did not stop"),
+            Self::Exit(code) => write!(f, "ended its process with status {code}"),
+            Self::Signal(number) => match signal_name(*number) {
+                Some((name, words)) => write!(f, "died of {name} ({words})"),
+                None => write!(f, "died of signal {number}"),
+            },
+        }
+    }
+}
+
+/// Name and meaning of the signals that plugins die of.
+fn signal_name(number: i32) -> Option<(&'static str, &'static str)> {
+    let known = [
+        (Signal::SEGV, "SIGSEGV", "it used memory that is not its own"),
+        (Signal::ABORT, "SIGABRT", "it gave up"),
+        (Signal::BUS, "SIGBUS", "it used memory that is not there"),
+        (Signal::FPE, "SIGFPE", "a division by zero"),
+        (Signal::ILL, "SIGILL", "an instruction that this processor does not know"),
+        (Signal::KILL, "SIGKILL", "somebody killed it, or memory ran out"),
+        (Signal::SYS, "SIGSYS", "it called what it must not call"),
+        (Signal::TERM, "SIGTERM", "somebody ended it"),
+        (Signal::XCPU, "SIGXCPU", "its time ran out"),
+    ];
+    known.iter().find(|(signal, ..)| signal.as_raw() == number).map(|(_, name, words)| (*name, *words))
+}
+
+/// A process with a plugin, from its start to its end; when it is dropped nothing of it is left.
+pub(crate) struct Process {
+    child: Child,
+    group: Pid,
+    pidfd: OwnedFd,
+    socket: UnixStream,
+    /// What has come of the line that is not whole.
+    heard: Vec<u8>,
+    /// Bytes of `heard` that no newline is in.
+    searched: usize,
+    prints: OwnedFd,
+    /// What has been printed of the line that is not whole.
+    printed: Vec<u8>,
+}
+
+impl Process {
+    /// Starts a program with these arguments in a process group of its own.
+    pub(crate) fn start(program: &Path, args: &[&Path]) -> io::Result<Self> {
+        let (ours, theirs) = socketpair(AddressFamily::UNIX, SocketType::STREAM, SocketFlags::CLOEXEC, None)?;
+        let (prints, print_to) = rustix::pipe::pipe_with(rustix::pipe::PipeFlags::CLOEXEC)?;
+        fcntl_setfl(&prints, OFlags::NONBLOCK)?;
+        fcntl_setfl(&ours, OFlags::NONBLOCK)?;
+        let child = Command::new(program)
+            .args(args)
+            .stdin(Stdio::from(theirs))
+            .stdout(Stdio::from(print_to.try_clone()?))
+            .stderr(Stdio::from(print_to))
+            .process_group(0)
+            // Nothing is to be slipped in before the plugin.
+            .env_remove("LD_PRELOAD")
+            .env_remove("LD_LIBRARY_PATH")
+            .env_remove("LD_AUDIT")
+            .spawn()?;
+        let group = Pid::from_child(&child);
+        let pidfd = pidfd_open(group, PidfdFlags::empty())?;
+        let (heard, printed) = (Vec::new(), Vec::new());
+        Ok(Self { child, group, pidfd, socket: UnixStream::from(ours), heard, searched: 0, prints, printed })
+    }
+
+    /// Says the first line, and hands over the memories.
+    pub(crate) fn greet(&mut self, line: &str, input: &Outbox, output: &Output) -> io::Result<()> {
+        let memories = [input.fd(), output.fd()];
+        let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(2))];
+        let mut control = SendAncillaryBuffer::new(&mut space);
+        control.push(SendAncillaryMessage::ScmRights(&memories));
+        let bytes = [IoSlice::new(line.as_bytes())];
+        let sent = sendmsg(&self.socket, &bytes, &mut control, SendFlags::NOSIGNAL)?;
+        if sent == line.len() { Ok(()) } else { Err(io::ErrorKind::WriteZero.into()) }
+    }
+
+    /// Says a line.
+    pub(crate) fn say(&mut self, line: &str) -> io::Result<()> {
+        let mut left = line.as_bytes();
+        while !left.is_empty() {
+            match self.socket.write(left) {
+                Ok(n) => left = &left[n..],
+                Err(error) if error.kind() == io::ErrorKind::WouldBlock => {
+                    let mut wanted =
+                        [PollFd::new(&self.socket, PollFlags::OUT), PollFd::new(&self.pidfd, PollFlags::IN)];
+                    poll(&mut wanted, None)?;
+                }
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(())
+    }
+
+    /// Waits until it says or prints something, ends, or so much time has passed; whether it has ended. What it said
+    /// before that can still be heard.
+    pub(crate) fn wait(&mut self, at_most: Duration) -> io::Result<bool> {
+        let timeout =
+            Timespec { tv_sec: at_most.as_secs() as i64, tv_nsec: i64::from(at_most.subsec_nanos()) };
+        let mut wanted = [&self.socket as &dyn AsFd, &self.prints, &self.pidfd]
+            .map(|file| PollFd::from_borrowed_fd(file.as_fd(), PollFlags::IN));
+        match poll(&mut wanted, Some(&timeout)) {
+            Ok(_) => Ok(!wanted[2].revents().is_empty()),
+            Err(Errno::INTR) => Ok(false),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// How it has ended.
+    pub(crate) fn end(&mut self) -> io::Result<Ended> {
+        self.child.wait().map(Ended::of)
+    }
+
+    /// The next whole line that it has said, if there is one; it never waits.
+    ///
+    /// # Errors
+    /// When a line is longer than any that is meant.
+    pub(crate) fn line(&mut self) -> io::Result<Option<Vec<u8>>> {
+        loop {
+            if let Some(end) = self.heard[self.searched..].iter().position(|byte| *byte == b'\n') {
+                let rest = self.heard.split_off(self.searched + end + 1);
+                let mut line = std::mem::replace(&mut self.heard, rest);
+                line.pop();
+                self.searched = 0;
+                return Ok(Some(line));
+            }
+            self.searched = self.heard.len();
+            if self.heard.len() > LINE_BYTES_MAX {
+                return Err(io::Error::other("said a line without end"));
+            }
+            let mut piece = [0; 1 << 14];
+            match read(&self.socket, &mut piece) {
+                Ok(0) | Err(Errno::AGAIN | Errno::CONNRESET) => return Ok(None),
+                Ok(n) => self.heard.extend_from_slice(&piece[..n]),
+                Err(Errno::INTR) => {}
+                Err(error) => return Err(error.into()),
+            }
+        }
+    }
+
+    /// Whole lines that it has printed, without what moves a cursor or colours a screen; never more than a piece at once.
+    pub(crate) fn prints(&mut self) -> Vec<String> {
+        let mut piece = [0; PRINT_BYTES];
+        if let Ok(n) = read(&self.prints, &mut piece) {
+            self.printed.extend_from_slice(&piece[..n]);
+        }
+        let mut lines = Vec::new();
+        while let Some(end) = self.printed.iter().position(|byte| *byte == b'\n') {
+            let line: Vec<u8> = self.printed.drain(..=end).collect();
+            lines.push(plain(&line[..end]));
+        }
+        // A line without end is cut.
+        if self.printed.len() >= PRINT_BYTES {
+            lines.push(plain(&std::mem::take(&mut self.printed)));
+        }
+        lines
+    }
+
+    /// Whether a debugger holds it.
+    pub(crate) fn is_traced(&self) -> bool {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", self.group.as_raw_nonzero()));
+        let tracer = status.ok().and_then(|text| {
+            text.lines().find_map(|line| line.strip_prefix("TracerPid:").map(|pid| pid.trim().to_owned()))
+        });
+        tracer.is_some_and(|pid| pid != "0")
+    }
+
+    /// Sends a signal to it and to all that it has started.
+    pub(crate) fn signal(&self, signal: Signal) {
+        // One that has ended already hears nothing, and needs not.
+        kill_process_group(self.group, signal).unwrap_or_default();
+    }
+
+    /// Kills it, and waits for its end.
+    pub(crate) fn kill(&mut self) -> Ended {
+        self.signal(Signal::KILL);
+        self.child.wait().map_or(Ended::Signal(Signal::KILL.as_raw()), Ended::of)
+    }
+}
+
+impl Drop for Process {
+    fn drop(&mut self) {
+        self.kill();
+    }
+}
+
+/// Text without control characters: escape sequences go with their letters and numbers.
+fn plain(bytes: &[u8]) -> String {
+    let text = String::from_utf8_lossy(bytes);
+    let mut plain = String::with_capacity(text.len());
+    let mut letters = text.chars().peekable();
+    while let Some(letter) = letters.next() {
+        match letter {
+            '\u{1b}' => skip_escape(&mut letters),
+            '\t' => plain.push(' '),
+            letter if letter.is_control() => {}
+            letter => plain.push(letter),
+        }
+    }
+    plain
+}
+
+/// Skips what follows an ESC: `[` up to its final letter, `]` and its like up to their terminator, else one letter.
+fn skip_escape(letters: &mut std::iter::Peekable<std::str::Chars<'_>>) {
+    match letters.next() {
+        Some('[') => drop(letters.find(|letter| ('@'..='~').contains(letter))),
+        Some(']' | 'P' | '_' | '^' | 'X') => {
+            while let Some(letter) = letters.next() {
+                if letter == '\u{7}' || (letter == '\u{1b}' && letters.next_if_eq(&'\\').is_some()) {
+                    break;
+                }
+            }
+        }
+        _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,130 @@
+//! The other side of isolation: one plugin, served to the host at standard input until it hangs up.
+//!
+//! `honami-plughost LIBRARY` is little more than [`serve`]. The process keeps nothing: it ends with the host, when the
+//! host says nothing more, and with the plugin.
+
+mod ear;
+mod sandbox;
+
+use crate::context::{CallContext, Flow, Level};
+use crate::error::HostError;
+use crate::in_process;
+use crate::instance::Instance;
+use crate::registry::{PluginInfo, Registry, SearchPath};
+use crate::reply::Reply;
+use crate::wire::memory::{Inbox, Output};
+use crate::wire::{self, Answer, Ask, Columns, Refusal, Tell};
+use ear::Ear;
+
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::Ordering::Relaxed;
+
+/// Serves a plugin of this library, a copy in the store that the host has vouched for; it may read these files, too.
+///
+/// # Errors
+/// When there is no host at standard input, or it says what nobody understands.
+pub fn serve(library: &Path, read: &[PathBuf]) -> io::Result<()> {
+    let (mut ear, hello, [input, output]) = Ear::of_stdin()?;
+    let Ask::Hello { honami: wire::VERSION, plugin, memory_bytes } = serde_json::from_str(&hello)? else {
+        return Err(io::Error::other(format!(
+            "wanted the host's hello, version {}, got {hello}",
+            wire::VERSION
+        )));
+    };
+    sandbox::limit(memory_bytes);
+    let sandbox = sandbox::enter(library, read);
+    ear.end_with_host()?;
+    let (inbox, mut output) = (Inbox::of(&input)?, Output::of(output)?);
+
+    let (info, mut instance) = match make(library, &plugin, &ear, &output) {
+        Ok(made) => made,
+        Err(error) => return ear.tell(&Tell::Refused(refusal(error))),
+    };
+    ear.tell(&Tell::Done(Answer { sandbox: sandbox.word().to_owned(), ..Answer::default() }))?;
+    let mut reply = Reply::default();
+    while let Some(line) = ear.line()? {
+        let ask: Ask = serde_json::from_str(&line)?;
+        let kind_of = |id: &str| info.params.iter().find(|param| param.id == id).map_or(0, |p| p.kind.abi());
+        let heard = wire::hear(&ask, &inbox, kind_of, |request| {
+            with_listener(&ear, &output, |cx| instance.invoke(request, cx, &mut reply));
+        });
+        heard.map_err(io::Error::other)?;
+        let answer = answer(&mut reply, &mut output)?;
+        ear.tell(&Tell::Done(answer))?;
+    }
+    Ok(())
+}
+
+fn make(
+    library: &Path,
+    plugin: &str,
+    ear: &Ear,
+    output: &Output,
+) -> Result<(PluginInfo, Box<dyn Instance>), HostError> {
+    let named = SearchPath { named: vec![library.to_owned()], ..SearchPath::default() };
+    let registry = Registry::scan_path(&named);
+    let info = registry.plugins().iter().find(|info| info.id == plugin).cloned();
+    let info = info.ok_or_else(|| HostError::File {
+        path: library.to_owned(),
+        why: format!("has no plugin {plugin:?}"),
+    })?;
+    let loaded = in_process::load_copy(&info, library)?;
+    let mut made = None;
+    with_listener(ear, output, |cx| made = Some(in_process::create(&info, loaded, cx)));
+    let instance =
+        made.unwrap_or_else(|| Err(HostError::Usage { plugin: plugin.into(), what: "was not made".into() }))?;
+    Ok((info, instance))
+}
+
+fn refusal(error: HostError) -> Refusal {
+    match error {
+        HostError::Failed { code, text, .. } => Refusal::Failed { code: code.0, text },
+        HostError::Misbehaved { function, what, .. } => {
+            Refusal::Misbehaved { function: function.into(), what }
+        }
+        HostError::File { why, .. } => Refusal::Unusable { why },
+        other => Refusal::Unusable { why: other.to_string() },
+    }
+}
+
+/// Makes a call of which the host hears.
+fn with_listener(ear: &Ear, output: &Output, call: impl FnOnce(&CallContext<'_>)) {
+    let last = Mutex::new(String::new());
+    let progress = |fraction: f64, text: &str| {
+        output.beat(fraction);
+        let mut last = last.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        if *last != text {
+            text.clone_into(&mut last);
+            // A host that is gone ends this process anyway.
+            drop(ear.tell(&Tell::At { text: text.to_owned() }));
+        }
+        if output.cancel().load(Relaxed) == 0 { Flow::Continue } else { Flow::Stop }
+    };
+    let log = |level: Level, text: &str| {
+        output.beat(output.fraction());
+        drop(ear.tell(&Tell::Log { level: level as i32, text: text.to_owned() }));
+    };
+    call(&CallContext { progress: &progress, log: &log });
+}
+
+/// Lays the committed tables down where the host sees them.
+fn answer(reply: &mut Reply, output: &mut Output) -> io::Result<Answer> {
+    output.clear();
+    let mut answer = Answer {
+        code: reply.code,
+        text: std::mem::take(&mut reply.text),
+        stopped: reply.stopped,
+        faults: std::mem::take(&mut reply.faults),
+        ..Answer::default()
+    };
+    for table in reply.committed() {
+        let mut columns = Columns { rows: table.rows() as u64, ..Columns::default() };
+        for (name, bytes) in table.columns() {
+            columns.at.insert(name.to_owned(), output.put(bytes)?);
+        }
+        answer.tables.insert(table.id(), columns);
+    }
+    Ok(answer)
+}

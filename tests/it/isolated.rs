@@ -1,0 +1,77 @@
+//! A plugin that dies costs what it was doing: the rest of the run is kept, and goes on.
+
+use std::fs;
+use std::path::PathBuf;
+use std::process::Command;
+
+use honami_tests::{Bench, root, skipped};
+
+/// A tracker that leaves its points where they are, with one fault; `None` without a C compiler.
+fn bad(bench: &Bench, fault: &str) -> Option<PathBuf> {
+    if !Command::new("cc").arg("--version").output().is_ok_and(|output| output.status.success()) {
+        skipped("a C compiler (cc)");
+        return None;
+    }
+    let library = bench.path("bad.so");
+    let output = Command::new("cc")
+        .args(["-O1", "-shared", "-fPIC", "-fvisibility=hidden", "-I"])
+        .arg(root().join("core/abi/include"))
+        .args([format!("-DFAULT={fault}").as_str(), "-o"])
+        .arg(&library)
+        .arg(root().join("core/host/tests/bad/bad.c"))
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    Some(library)
+}
+
+/// A project with a clip of eight frames, and two points to follow.
+fn project(bench: &Bench) {
+    bench.synth("clip.y4m", 8, "--leaves 20");
+    let _said = bench.text("new p.honami clip.y4m");
+    fs::write(bench.path("points.csv"), "id,x,y\n1,20.5,30\n2,60,40.25\n").unwrap();
+}
+
+const TRACK: &str = "track p.honami --plugin bad.so --with bad --points points.csv";
+
+#[test]
+fn a_plugin_that_dies_in_a_frame_loses_that_frame() {
+    let bench = Bench::new();
+    if bad(&bench, "SEGFAULT").is_none() {
+        return;
+    }
+    project(&bench);
+    let said = bench.text(TRACK);
+    let wanted = "started again at frame 2: it died of SIGSEGV (it used memory that is not its own)";
+    assert!(said.contains("2 tracks, frames 0-7") && said.matches(wanted).count() == 2, "{said}");
+    let _said = bench.text("export p.honami tracks out.csv");
+    let table = fs::read_to_string(bench.path("out.csv")).unwrap();
+    let of_track_2 = |line: &&str| line.starts_with("2,");
+    let rows: Vec<Vec<&str>> =
+        table.lines().filter(of_track_2).map(|line| line.split(',').collect()).collect();
+    let seen: Vec<(&str, &str)> = rows.iter().map(|row| (row[1], row[5])).collect();
+    // Status 1 is tracked, 0 lost.
+    assert_eq!(seen, ["01", "11", "20", "31", "41", "51", "61", "71"].map(|pair| pair.split_at(1)));
+    assert!(rows.iter().all(|row| (row[3], row[4]) == ("60", "40.25")), "{table}");
+}
+
+#[test]
+fn a_plugin_that_dies_again_and_again_is_held_until_somebody_lets_it_go_on() {
+    let bench = Bench::new();
+    if bad(&bench, "WITHERS").is_none() {
+        return;
+    }
+    project(&bench);
+    let ran = bench.line(TRACK);
+    assert_eq!(ran.code, Some(1), "{ran:?}");
+    let all = format!("{}{}", ran.stdout, ran.stderr);
+    assert!(all.contains("failed at frame 3, 2 tracks up to there kept"), "{all}");
+    let held = "has failed three times within ten minutes and is not started again";
+    assert!(all.contains(held), "{all}");
+    let again = bench.line(TRACK);
+    assert!(again.code == Some(1) && again.stderr.contains(held), "{again:?}");
+    assert_eq!(bench.text("plugin retry bad --plugin bad.so").trim(), "bad may start again");
+    // Rebuilt, it is another one.
+    bad(&bench, "NONE");
+    assert!(bench.text(TRACK).contains("2 tracks, frames 0-7"));
+}
