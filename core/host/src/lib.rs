@@ -25,6 +25,7 @@ mod registry;
 mod reply;
 mod store;
 mod tracker;
+mod trust;
 mod types;
 mod values;
 mod wire;
@@ -37,9 +38,11 @@ pub use error::{Code, HostError};
 pub use host::{Host, Hosting, Origin};
 pub use isolated::{Ended, Limits, program};
 pub use manifest::{Caps, Entry, Kind, Numeric, Param, ParamKind};
+pub use note::needed;
 pub use plughost::serve;
 pub use registry::{PluginInfo, Registry, SearchPath, Trust};
 pub use tracker::Tracker;
+pub use trust::TrustBook;
 pub use types::{
     Clustering, DetectRequest, Feature, Field, FrameNote, FrameView, Point, PointRow, Points, StreamInfo,
     Tracks,

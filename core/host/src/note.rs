@@ -4,7 +4,7 @@ use crate::error::HostError;
 use crate::manifest::Manifest;
 use object::elf::{self, FileHeader64};
 use object::read::ReadRef;
-use object::read::elf::{FileHeader, ProgramHeader, Sym};
+use object::read::elf::{Dyn, FileHeader, ProgramHeader, Sym};
 use object::{Endianness, ReadCache};
 use std::fs::File;
 use std::path::Path;
@@ -78,6 +78,27 @@ fn exports<'d, R: ReadRef<'d>>(
             Err(format!("is built for ABI {other}, this honami knows ABI {}", honami_abi::ABI_MAJOR))
         }
     }
+}
+
+/// The libraries that a library needs, as the linker has noted them.
+///
+/// # Errors
+/// When the file cannot be read or is no whole library.
+pub fn needed(path: &Path) -> Result<Vec<String>, HostError> {
+    let file_error = |why: String| HostError::File { path: path.to_owned(), why };
+    let broken = |e: object::Error| file_error(format!("is no whole ELF file: {e}"));
+    let file = File::open(path).map_err(|e| file_error(format!("cannot be read: {e}")))?;
+    let data = ReadCache::new(file);
+    let header = FileHeader64::<Endianness>::parse(&data).map_err(broken)?;
+    let endian = header.endian().map_err(broken)?;
+    let sections = header.sections(endian, &data).map_err(broken)?;
+    let Some((dynamic, link)) = sections.dynamic(endian, &data).map_err(broken)? else {
+        return Ok(Vec::new());
+    };
+    let strings = sections.strings(endian, &data, link).map_err(broken)?;
+    let needed = dynamic.iter().filter(|entry| entry.tag(endian) == elf::DT_NEEDED);
+    let names = needed.filter_map(|entry| entry.string(endian, strings).ok());
+    Ok(names.map(|name| String::from_utf8_lossy(name).into_owned()).collect())
 }
 
 fn this_machine() -> Option<elf::Machine> {

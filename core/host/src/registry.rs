@@ -2,6 +2,7 @@
 
 use crate::error::HostError;
 use crate::manifest::{Caps, Kind, Manifest, Param};
+use crate::trust::TrustBook;
 use crate::{note, store};
 use std::collections::BTreeMap;
 use std::fs;
@@ -18,6 +19,8 @@ pub struct SearchPath {
     pub executable: Option<PathBuf>,
     /// Folders of third parties' plugins.
     pub installed: Vec<PathBuf>,
+    /// Which of them may be loaded.
+    pub book: TrustBook,
 }
 
 impl SearchPath {
@@ -37,7 +40,7 @@ impl SearchPath {
             .chain(["/usr/local/lib/honami/plugins", "/usr/lib/honami/plugins"].map(PathBuf::from))
             .collect();
         let executable = std::env::current_exe().ok().and_then(|path| path.canonicalize().ok());
-        Self { named, executable, installed }
+        Self { named, executable, installed, book: TrustBook::of_user() }
     }
 }
 
@@ -48,6 +51,13 @@ pub enum Trust {
     Shipped,
     /// The user named it.
     Named,
+    /// A person has allowed this content.
+    Allowed {
+        /// Of the content, lower-case hexadecimal.
+        sha256: String,
+    },
+    /// The lab trusts it.
+    Lab,
     /// Nobody has vouched for it; says what to do.
     No(String),
 }
@@ -126,11 +136,13 @@ impl Registry {
     #[must_use]
     pub fn scan_path(path: &SearchPath) -> Self {
         let mut registry = Self::default();
+        let denied = || Trust::No("it was denied; `honami plugin allow` allows it".into());
+        let of_named = |file: &Path| if path.book.is_denied(file) { denied() } else { Trust::Named };
         for named in &path.named {
             if named.is_dir() {
-                registry.scan_folder(named, |_| Trust::Named);
+                registry.scan_folder(named, of_named);
             } else {
-                registry.add_file(named, Trust::Named, true);
+                registry.add_file(named, of_named(named), true);
             }
         }
         if let Some((executable, folder)) =
@@ -140,10 +152,8 @@ impl Registry {
                 registry.scan_folder(&folder, |file| shipped(executable, &folder, file));
             }
         }
-        let third_party =
-            "it is a third party's; name it with --plugin PATH or in $HONAMI_PLUGIN_PATH if you trust it";
         for folder in &path.installed {
-            registry.scan_folder(folder, |_| Trust::No(third_party.into()));
+            registry.scan_folder(folder, |file| path.book.of(file));
         }
         registry
     }

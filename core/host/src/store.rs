@@ -35,9 +35,9 @@ impl Stored {
 }
 
 /// What tells a file that has not been touched: device, inode, bytes, and when it was written and changed.
-type Identity = (u64, u64, u64, [i64; 4]);
+pub(crate) type Identity = (u64, u64, u64, [i64; 4]);
 
-fn identity(path: &Path) -> io::Result<Identity> {
+pub(crate) fn identity(path: &Path) -> io::Result<Identity> {
     let meta = fs::metadata(path)?;
     let times = [meta.mtime(), meta.mtime_nsec(), meta.ctime(), meta.ctime_nsec()];
     Ok((meta.dev(), meta.ino(), meta.len(), times))
@@ -97,7 +97,8 @@ fn read(path: &Path) -> Result<Vec<u8>, HostError> {
     Ok(bytes)
 }
 
-fn hex(bytes: &[u8]) -> String {
+/// The hash of bytes, lower-case hexadecimal.
+pub(crate) fn hex(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 

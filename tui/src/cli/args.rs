@@ -365,6 +365,16 @@ pub(super) enum Plugin {
         /// Short name or full id.
         name: String,
     },
+    /// Let a third party's plugin be loaded, as its file is now.
+    Allow {
+        /// Its file, or the name of one that `honami plugin list` shows.
+        plugin: String,
+    },
+    /// Never load this plugin, also when it is named.
+    Deny {
+        /// Its file, or the name of one that `honami plugin list` shows.
+        plugin: String,
+    },
     /// Let a plugin start again that has failed three times within ten minutes.
     Retry {
         /// Short name or full id.

@@ -1,12 +1,13 @@
 //! Commands about honami itself: plugins, doctor, completions, manual.
 
 use std::fs;
-use std::path::Path;
+use std::os::unix::fs::MetadataExt as _;
+use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 use clap::CommandFactory as _;
 use honami_workbench::doctor;
-use honami_workbench::plugins::{Host, Param, PluginInfo, Registry, Trust};
+use honami_workbench::plugins::{Host, Param, PluginInfo, Registry, SearchPath, Trust, TrustBook};
 use serde_json::json;
 
 use super::args::{Cli, Common, Plugin};
@@ -58,6 +59,13 @@ pub(super) fn plugin(command: &Plugin, common: &Common) -> anyhow::Result<Answer
     match command {
         Plugin::List => Ok(list(&registry)),
         Plugin::Info { name } => info(named(&registry, name)?),
+        Plugin::Allow { plugin } => allow(&file(&registry, plugin)),
+        Plugin::Deny { plugin } => {
+            let library = file(&registry, plugin);
+            TrustBook::of_user().deny(&library)?;
+            let text = format!("{} is never loaded, until you allow it", library.display());
+            Ok(Answer { json: json!({ "denied": library }), text, done: true })
+        }
         Plugin::Retry { name } => {
             let plugin = named(&registry, name)?;
             let was_held = Host::new().retry(plugin)?;
@@ -66,6 +74,41 @@ pub(super) fn plugin(command: &Plugin, common: &Common) -> anyhow::Result<Answer
             Ok(Answer { json, text: format!("{} {words}", plugin.short_name), done: true })
         }
     }
+}
+
+/// The file of a plugin: a path, or a name of one that there is.
+fn file(registry: &Registry, plugin: &str) -> PathBuf {
+    let path = Path::new(plugin);
+    if path.is_file() {
+        path.to_owned()
+    } else {
+        named(registry, plugin).map_or(path.to_owned(), |p| p.library.clone())
+    }
+}
+
+/// Allows a library, and says what was allowed.
+fn allow(library: &Path) -> anyhow::Result<Answer> {
+    let needed = honami_workbench::plugins::needed(library)?;
+    let registry =
+        Registry::scan_path(&SearchPath { named: vec![library.to_owned()], ..SearchPath::default() });
+    if let Some(problem) = registry.problems().first() {
+        anyhow::bail!("{problem}");
+    }
+    let sha256 = TrustBook::of_user().allow(library)?;
+    let meta = fs::metadata(library)?;
+    let names: Vec<String> =
+        registry.plugins().iter().map(|plugin| format!("{} ({})", plugin.id, plugin.kind)).collect();
+    let text = format!(
+        "allowed as it is now: {}\n  plugins  {}\n  sha256   {sha256}\n  size     {} bytes, of user {}\n  needs    {}\n\
+         It works in a process of its own. When its file changes it asks again.",
+        library.display(),
+        names.join(", "),
+        meta.len(),
+        meta.uid(),
+        if needed.is_empty() { "no libraries".to_owned() } else { needed.join(", ") },
+    );
+    let json = json!({ "allowed": library, "sha256": sha256, "plugins": names, "needs": needed });
+    Ok(Answer { json, text, done: true })
 }
 
 /// The plugin of that name, whatever its kind.
@@ -125,6 +168,8 @@ fn trust(plugin: &PluginInfo) -> &'static str {
     match plugin.trust {
         Trust::Shipped => "shipped",
         Trust::Named => "named by you",
+        Trust::Allowed { .. } => "allowed by you",
+        Trust::Lab => "allowed by your lab",
         Trust::No(_) => "not trusted",
     }
 }

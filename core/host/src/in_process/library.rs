@@ -63,7 +63,14 @@ fn keep(info: &PluginInfo, folder: &Path) -> Result<Stored, HostError> {
     if let Trust::No(why) = &info.trust {
         return Err(HostError::NotTrusted { path: info.library.clone(), why: why.clone() });
     }
-    store::keep(&info.library, folder)
+    let stored = store::keep(&info.library, folder)?;
+    match &info.trust {
+        Trust::Allowed { sha256 } if *sha256 != stored.sha256 => {
+            let why = "it has changed since you allowed it".into();
+            Err(HostError::NotTrusted { path: info.library.clone(), why })
+        }
+        _ => Ok(stored),
+    }
 }
 
 /// The same of one whose manifest is still the one that `info` was read from.

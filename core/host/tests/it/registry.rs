@@ -1,7 +1,7 @@
 //! The search path: who wins, who is trusted, what is said of the rest.
 
 use crate::tools::{named, scratch, start, zoo};
-use honami_host::{HostError, Kind, Registry, SearchPath, Trust};
+use honami_host::{HostError, Kind, Registry, SearchPath, Trust, TrustBook};
 use std::fs::{self, Permissions};
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
@@ -31,6 +31,7 @@ fn the_first_of_the_search_path_wins() {
         named: vec![given.clone()],
         executable: Some(beside.join("honami")),
         installed: vec![third_party.clone(), scratch().join("nowhere")],
+        ..SearchPath::default()
     };
     let registry = Registry::scan_path(&all);
     assert!(registry.problems().is_empty(), "{:?}", registry.problems());
@@ -43,7 +44,7 @@ fn the_first_of_the_search_path_wins() {
     let refused =
         start(untrusted.find(Kind::Tracker, "drift").unwrap(), &[]).expect_err("not trusted").to_string();
     assert!(
-        refused.contains("c.so is not trusted: it is a third party's; name it with --plugin"),
+        refused.contains("c.so is not trusted: it is a third party's; `honami plugin allow "),
         "{refused}"
     );
 }
@@ -61,6 +62,55 @@ fn beside_the_executable_nobody_else_may_write() {
     fs::set_permissions(beside.join("b.so"), Permissions::from_mode(0o644)).unwrap();
     fs::set_permissions(&beside, Permissions::from_mode(0o777)).unwrap();
     assert!(matches!(trust(&Registry::scan_path(&path))[0].1, Trust::No(_)));
+}
+
+#[test]
+fn what_a_person_allowed_is_loaded_until_it_changes() {
+    let installed = folder("installed", "d.so");
+    let library = installed.join("d.so");
+    let book = TrustBook::in_folder(scratch().join("trust"));
+    let path = SearchPath { installed: vec![installed], book: book.clone(), ..SearchPath::default() };
+    let trusted = || Registry::scan_path(&path).find(Kind::Tracker, "drift").unwrap().clone();
+    assert!(matches!(trusted().trust, Trust::No(_)));
+    let sha256 = book.allow(&library).unwrap();
+    let allowed = trusted();
+    assert_eq!(allowed.trust, Trust::Allowed { sha256 });
+    start(&allowed, &[]).unwrap();
+    // Written anew with the same bytes it is the same; with others it is another, also to who looked before.
+    let bytes = fs::read(&library).unwrap();
+    fs::write(&library, &bytes).unwrap();
+    assert_eq!(trusted().trust, allowed.trust);
+    fs::write(&library, [bytes.as_slice(), b"more"].concat()).unwrap();
+    for info in [allowed, trusted()] {
+        let refused = start(&info, &[]).expect_err("changed").to_string();
+        assert!(refused.contains("d.so is not trusted: it has changed since you allowed it"), "{refused}");
+    }
+    book.deny(&library).unwrap();
+    assert!(matches!(trusted().trust, Trust::No(why) if why.contains("it was denied")));
+    let named = SearchPath { named: vec![library.clone()], book: book.clone(), ..SearchPath::default() };
+    assert!(
+        matches!(&Registry::scan_path(&named).plugins()[0].trust, Trust::No(why) if why.contains("it was denied"))
+    );
+    book.allow(&library).unwrap();
+    assert!(matches!(trusted().trust, Trust::Allowed { .. }));
+}
+
+#[test]
+fn what_others_may_write_cannot_be_allowed() {
+    let installed = folder("shared", "e.so");
+    let library = installed.join("e.so");
+    let book = TrustBook::in_folder(scratch().join("trust-shared"));
+    for (place, mode, usual) in [(&library, 0o646, 0o644), (&installed, 0o777, 0o755)] {
+        fs::set_permissions(place, Permissions::from_mode(mode)).unwrap();
+        let refused = book.allow(&library).expect_err("others may write it").to_string();
+        let wanted = format!("others may write it: chmod go-w {}", place.display());
+        assert!(refused.contains(&wanted), "{refused}");
+        fs::set_permissions(place, Permissions::from_mode(usual)).unwrap();
+    }
+    std::os::unix::fs::symlink(&library, installed.join("link.so")).unwrap();
+    let refused = book.allow(&installed.join("link.so")).expect_err("a link").to_string();
+    assert!(refused.contains("is no file but a link"), "{refused}");
+    book.allow(&library).unwrap();
 }
 
 #[test]

@@ -1,0 +1,195 @@
+//! Which third parties' libraries may be loaded: those whose content a person has allowed, and those of the lab.
+//!
+//! A file is allowed by its path and its content, as direnv does it: one that has changed is a new question. Naming a
+//! file on the command line allows it for that run. Nobody else may be able to change what is allowed: the file and all
+//! folders above it belong to this user or to root, and only they may write them.
+
+use crate::error::HostError;
+use crate::registry::Trust;
+use crate::store::{self, Identity};
+use rustix::process::geteuid;
+use serde::{Deserialize, Serialize};
+use std::fs;
+use std::io;
+use std::os::unix::fs::{MetadataExt as _, PermissionsExt as _};
+use std::path::{Path, PathBuf};
+use std::time::{SystemTime, UNIX_EPOCH};
+
+/// What a lab trusts, for everybody on the machine.
+const OF_THE_LAB: &str = "/etc/honami/trust.toml";
+
+/// What a person has said of libraries, and what their lab says.
+#[derive(Clone, Debug, Default)]
+pub struct TrustBook {
+    /// A file a library.
+    folder: Option<PathBuf>,
+    lab: Lab,
+}
+
+/// The lab's file: contents, and folders whose libraries are trusted while root alone may write them.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default)]
+struct Lab {
+    sha256: Vec<String>,
+    folders: Vec<PathBuf>,
+}
+
+/// What a person has said of the library at a path.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+struct Entry {
+    path: PathBuf,
+    /// Of the content that was allowed; none: it is denied, whatever its content.
+    sha256: Option<String>,
+    /// The file as it was then: while it is this, its content need not be read.
+    identity: Identity,
+    /// Seconds since 1970.
+    said: u64,
+}
+
+impl TrustBook {
+    /// That of this user, `$XDG_DATA_HOME/honami/trust`, and of this machine's lab.
+    #[must_use]
+    pub fn of_user() -> Self {
+        let absolute = |name| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
+        let data =
+            absolute("XDG_DATA_HOME").or_else(|| absolute("HOME").map(|home| home.join(".local/share")));
+        let lab =
+            fs::read_to_string(OF_THE_LAB).ok().filter(|_| only_root_writes(Path::new(OF_THE_LAB)).is_ok());
+        let lab = lab.and_then(|text| toml::from_str(&text).ok()).unwrap_or_default();
+        Self { folder: data.map(|data| data.join("honami/trust")), lab }
+    }
+
+    /// With a folder of the caller's.
+    #[must_use]
+    pub fn in_folder(folder: PathBuf) -> Self {
+        Self { folder: Some(folder), lab: Lab::default() }
+    }
+
+    /// Whether a library that a third party has installed may be loaded.
+    pub(crate) fn of(&self, library: &Path) -> Trust {
+        let entry = self.entry(library);
+        if entry.as_ref().is_some_and(|entry| entry.sha256.is_none()) {
+            return Trust::No("it was denied; `honami plugin allow` allows it".into());
+        }
+        let by_the_lab = || {
+            self.lab
+                .folders
+                .iter()
+                .any(|folder| library.starts_with(folder) && only_root_writes(library).is_ok())
+        };
+        if by_the_lab() {
+            return Trust::Lab;
+        }
+        if !self.lab.sha256.is_empty()
+            && store::sha256_of(library).is_ok_and(|sha256| self.lab.sha256.contains(&sha256))
+        {
+            return Trust::Lab;
+        }
+        let Some(Entry { sha256: Some(sha256), identity, .. }) = entry else {
+            return Trust::No(format!(
+                "it is a third party's; `honami plugin allow {}` if you trust it, or name it with --plugin for once",
+                library.display()
+            ));
+        };
+        if let Err(why) = only_owner_writes(library, geteuid().as_raw()) {
+            return Trust::No(why);
+        }
+        let is_same = store::identity(library).is_ok_and(|now| now == identity)
+            || store::sha256_of(library).is_ok_and(|now| now == sha256);
+        if is_same {
+            return Trust::Allowed { sha256 };
+        }
+        Trust::No(format!(
+            "it has changed since you allowed it; `honami plugin allow {}` if you know why",
+            library.display()
+        ))
+    }
+
+    /// Whether a person has said that it is never to be loaded, also when it is named.
+    pub(crate) fn is_denied(&self, library: &Path) -> bool {
+        self.entry(library).is_some_and(|entry| entry.sha256.is_none())
+    }
+
+    /// Allows a library as it is now; its hash.
+    ///
+    /// # Errors
+    /// [`HostError::NotTrusted`] when others could change it, [`HostError::File`] when it cannot be read or the answer
+    /// not be kept.
+    pub fn allow(&self, library: &Path) -> Result<String, HostError> {
+        let refused = |why| HostError::NotTrusted { path: library.to_owned(), why };
+        only_owner_writes(library, geteuid().as_raw()).map_err(refused)?;
+        let sha256 = store::sha256_of(library)?;
+        self.keep(library, Some(sha256.clone()))?;
+        Ok(sha256)
+    }
+
+    /// Denies a library, whatever its content.
+    ///
+    /// # Errors
+    /// [`HostError::File`] when it is not there or the answer cannot be kept.
+    pub fn deny(&self, library: &Path) -> Result<(), HostError> {
+        self.keep(library, None)
+    }
+
+    fn keep(&self, library: &Path, sha256: Option<String>) -> Result<(), HostError> {
+        let said = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_secs();
+        let kept = || -> io::Result<()> {
+            let path = library.canonicalize()?;
+            let file = self
+                .file(&path)
+                .ok_or_else(|| io::Error::other("there is no home folder to keep that in"))?;
+            let entry = Entry { identity: store::identity(&path)?, path, sha256, said };
+            let folder = file.parent().unwrap_or(Path::new("."));
+            fs::create_dir_all(folder)?;
+            fs::set_permissions(folder, fs::Permissions::from_mode(0o700))?;
+            let part = file.with_extension("part");
+            fs::write(&part, serde_json::to_vec(&entry)?)?;
+            fs::rename(&part, &file)
+        };
+        kept().map_err(|error| HostError::File { path: library.to_owned(), why: error.to_string() })
+    }
+
+    fn entry(&self, library: &Path) -> Option<Entry> {
+        let path = library.canonicalize().ok()?;
+        let entry: Entry = serde_json::from_slice(&fs::read(self.file(&path)?).ok()?).ok()?;
+        (entry.path == path).then_some(entry)
+    }
+
+    fn file(&self, path: &Path) -> Option<PathBuf> {
+        let name = store::hex(path.as_os_str().as_encoded_bytes());
+        self.folder.as_ref().map(|folder| folder.join(format!("{name}.json")))
+    }
+}
+
+fn only_root_writes(path: &Path) -> Result<(), String> {
+    only_owner_writes(path, 0)
+}
+
+/// Whether only root and this user may write a file and the folders above it; else what to do about it.
+fn only_owner_writes(path: &Path, user: u32) -> Result<(), String> {
+    let told = |error: io::Error| format!("{}: {error}", path.display());
+    let link = fs::symlink_metadata(path).map_err(told)?;
+    if !link.is_file() {
+        return Err(format!(
+            "{} is no file but a link or something else: name the file itself",
+            path.display()
+        ));
+    }
+    let path = path.canonicalize().map_err(told)?;
+    for place in path.ancestors() {
+        let meta = fs::metadata(place).map_err(told)?;
+        if meta.uid() != 0 && meta.uid() != user {
+            return Err(format!(
+                "{} belongs to another user: chown it, or copy the plugin elsewhere",
+                place.display()
+            ));
+        }
+        // In a folder with the sticky bit nobody can take away what is another's.
+        let is_shared = meta.is_dir() && meta.mode() & 0o1000 != 0;
+        let by_group = meta.mode() & 0o020 != 0 && meta.gid() != user;
+        if (meta.mode() & 0o002 != 0 || by_group) && !is_shared {
+            return Err(format!("others may write it: chmod go-w {}", place.display()));
+        }
+    }
+    Ok(())
+}
