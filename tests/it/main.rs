@@ -12,6 +12,7 @@ mod journal_kill;
 mod locks;
 mod offers;
 mod opencv;
+mod python;
 mod real_clips;
 mod replay;
 mod retrack;

@@ -75,7 +75,7 @@ pub enum HostError {
         what: String,
     },
     /// The plugin's process has ended; what it had answered before stands.
-    #[error("{plugin} {how} in {function}{}", frame.map_or_else(String::new, |frame| format!(" of frame {frame}")))]
+    #[error("{plugin} {how} in {function}{}{}", of_frame(*frame), after(last_words))]
     Ended {
         /// Its id.
         plugin: String,
@@ -85,6 +85,8 @@ pub enum HostError {
         frame: Option<i64>,
         /// By itself, or by whom.
         how: Ended,
+        /// The last line that it printed; empty for none.
+        last_words: String,
     },
     /// The plugin has failed too often lately.
     #[error(
@@ -105,6 +107,14 @@ pub enum HostError {
         /// What was asked, and what is possible.
         what: String,
     },
+}
+
+fn of_frame(frame: Option<i64>) -> String {
+    frame.map_or_else(String::new, |frame| format!(" of frame {frame}"))
+}
+
+fn after(last_words: &str) -> String {
+    if last_words.is_empty() { String::new() } else { format!("; it last printed: {last_words}") }
 }
 
 /// A failure code of the ABI, shown as a word.

@@ -12,7 +12,7 @@ use crate::registry::{PluginInfo, Trust};
 use crate::reply::Reply;
 use crate::tracker::Tracker;
 use crate::values::{Value, Values};
-use crate::{in_process, isolated, store};
+use crate::{in_process, isolated, script, store};
 use std::path::PathBuf;
 
 /// Where a plugin works.
@@ -211,20 +211,29 @@ impl Host {
         values: &Values,
         cx: &CallContext<'_>,
     ) -> Result<(Box<dyn Instance>, String, String), HostError> {
-        let usual = if info.trust == Trust::Shipped { Hosting::InProcess } else { Hosting::Isolated };
-        match self.hosting.unwrap_or(usual) {
+        let usual = if info.trust == Trust::Shipped && info.exec.is_empty() {
+            Hosting::InProcess
+        } else {
+            Hosting::Isolated
+        };
+        // A program has a process of its own by its nature.
+        match self.hosting.filter(|_| info.exec.is_empty()).unwrap_or(usual) {
             Hosting::InProcess => {
                 let library = in_process::load(info, &self.store)?;
                 let sha256 = library.sha256.clone();
                 Ok((in_process::create(info, library, cx)?, sha256, "in process".to_owned()))
             }
             Hosting::Isolated => {
-                let copy = in_process::keep_same(info, &self.store)?;
+                let copy = if info.exec.is_empty() {
+                    in_process::keep_same(info, &self.store)?
+                } else {
+                    script::keep(info, &self.store)?
+                };
                 if let Some(why) = Quarantine::beside(&self.store).why(&copy.sha256) {
                     return Err(HostError::Quarantined { plugin: info.id.clone(), why });
                 }
                 let read = files_of(info, values);
-                let (instance, sandbox) = isolated::create(info, &copy.path, &read, self.limits, cx)?;
+                let (instance, sandbox) = isolated::create(info, &copy.path, read, self.limits, cx)?;
                 Ok((instance, copy.sha256, sandbox))
             }
         }

@@ -109,7 +109,8 @@ impl Handle {
                 Request::Push(view) => Some(view.index),
                 _ => None,
             };
-            return Err(HostError::Ended { plugin, function, frame, how });
+            let last_words = std::mem::take(&mut reply.last_words);
+            return Err(HostError::Ended { plugin, function, frame, how, last_words });
         }
         if let Some(what) = reply.faults.first() {
             return Err(self.misbehaved(function, what.clone()));

@@ -8,13 +8,16 @@ pub use process::Ended;
 use crate::context::{CallContext, Flow, Level};
 use crate::error::{Code, HostError};
 use crate::instance::{Instance, Request};
+use crate::plughost;
 use crate::registry::PluginInfo;
 use crate::reply::{Reply, Schema};
 use crate::wire::memory::{Outbox, Output};
 use crate::wire::{self, Answer, Ask, Columns, Refusal, Tell};
 use honami_abi::{code, dtype};
+pub(crate) use process::MEMORY;
 use process::Process;
 use rustix::process::Signal;
+use std::ffi::OsString;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering::Relaxed;
@@ -54,13 +57,15 @@ pub(crate) struct Isolated {
     limits: Limits,
     /// What the plugin last said that it is at.
     at: String,
+    /// The last line that it printed.
+    last_words: String,
 }
 
 /// Starts a process for a plugin of the library that the store keeps at `copy`.
 pub(crate) fn create(
     info: &PluginInfo,
     copy: &Path,
-    read: &[PathBuf],
+    read: Vec<PathBuf>,
     limits: Limits,
     cx: &CallContext<'_>,
 ) -> Result<(Box<dyn Instance>, String), HostError> {
@@ -69,22 +74,38 @@ pub(crate) fn create(
         path: program.clone(),
         why: format!("{what} for {}: {error}", info.id),
     };
-    let args: Vec<_> = std::iter::once(copy).chain(read.iter().map(PathBuf::as_path)).collect();
-    let process = Process::start(&program, &args).map_err(|error| failed("cannot be started", error))?;
+    let process = Process::start(&program, &arguments(info, copy, read), limits.memory_bytes)
+        .map_err(|error| failed("cannot be started", error))?;
     let memories = Outbox::new().and_then(|input| Ok((input, Output::new()?)));
     let (input, output) = memories.map_err(|error| failed("no memory to share", error))?;
 
-    let mut made = Isolated { process, input, output, limits, at: String::new() };
-    let hello =
-        Ask::Hello { honami: wire::VERSION, plugin: info.id.clone(), memory_bytes: limits.memory_bytes };
+    let mut made = Isolated { process, input, output, limits, at: String::new(), last_words: String::new() };
+    let hello = Ask::Hello { honami: wire::VERSION, plugin: info.id.clone() };
     match made.say(&hello).and_then(|()| made.listen(cx)).map_err(|error| failed("does not answer", error))? {
         Heard::Answer(Answer { sandbox, .. }) => Ok((Box::new(made), sandbox)),
         Heard::Refusal(refusal) => Err(refused(info, refusal)),
         Heard::End(Ended::Stopped) => Err(HostError::Cancelled { plugin: info.id.clone() }),
-        Heard::End(how) => {
-            Err(HostError::Ended { plugin: info.id.clone(), function: "create", frame: None, how })
-        }
+        Heard::End(how) => Err(HostError::Ended {
+            plugin: info.id.clone(),
+            function: "create",
+            frame: None,
+            how,
+            last_words: made.last_words,
+        }),
     }
+}
+
+/// What the process is told: its library, or the folder of its program and how that is started; then what it may read.
+fn arguments(info: &PluginInfo, copy: &Path, read: Vec<PathBuf>) -> Vec<OsString> {
+    let mut args = Vec::new();
+    if !info.exec.is_empty() {
+        args.push(plughost::EXEC.into());
+        args.push(info.exec.len().to_string().into());
+        args.extend(info.exec.iter().map(OsString::from));
+    }
+    args.push(copy.into());
+    args.extend(read.into_iter().map(OsString::from));
+    args
 }
 
 fn refused(info: &PluginInfo, refusal: Refusal) -> HostError {
@@ -153,7 +174,9 @@ impl Isolated {
                 reply.stopped = answer.stopped;
                 self.take(answer, schemas, reply);
             }
-            Ok(Heard::End(how)) => reply.ended = Some(how),
+            Ok(Heard::End(how)) => {
+                (reply.ended, reply.last_words) = (Some(how), std::mem::take(&mut self.last_words));
+            }
             Ok(Heard::Refusal(_)) => reply.faults.push("its process refuses what it has begun".into()),
             Err(error) => {
                 self.process.kill();
@@ -200,7 +223,7 @@ impl Isolated {
                 }
             }
             if has_ended {
-                self.overhear(cx);
+                while self.overhear(cx) {}
                 return self.process.end().map(Heard::End);
             }
             has_ended = self.process.wait(TICK)?;
@@ -211,11 +234,14 @@ impl Isolated {
         }
     }
 
-    /// Tells the log what was printed.
-    fn overhear(&mut self, cx: &CallContext<'_>) {
+    /// Tells the log what was printed; whether there was something.
+    fn overhear(&mut self, cx: &CallContext<'_>) -> bool {
+        let mut has_heard = false;
         for line in self.process.prints() {
             (cx.log)(Level::Info, &line);
+            (self.last_words, has_heard) = (line, true);
         }
+        has_heard
     }
 
     /// Passes on how far it is, asks whether to go on, and ends what does not live or does not stop.

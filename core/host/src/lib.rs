@@ -23,6 +23,7 @@ mod plughost;
 mod quarantine;
 mod registry;
 mod reply;
+mod script;
 mod store;
 mod tracker;
 mod trust;
@@ -31,6 +32,7 @@ mod values;
 mod wire;
 
 pub mod draft;
+pub mod sdk;
 
 pub use clusterer::Clusterer;
 pub use context::{CallContext, Flow, Level};

@@ -41,6 +41,9 @@ pub(crate) struct Manifest {
     pub(crate) library: LibraryInfo,
     /// What is in it.
     pub(crate) plugins: Vec<PluginManifest>,
+    /// Of a manifest beside a program: how the program is started, its own files by name.
+    #[serde(default)]
+    pub(crate) exec: Vec<String>,
 }
 
 /// Of a library as a whole.

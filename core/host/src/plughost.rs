@@ -1,40 +1,67 @@
 //! The other side of isolation: one plugin, served to the host at standard input until it hangs up.
 //!
-//! `honami-plughost LIBRARY` is little more than [`serve`]. The process keeps nothing: it ends with the host, when the
+//! `honami-plughost` is little more than [`serve`]. The process keeps nothing: it ends with the host, when the
 //! host says nothing more, and with the plugin.
 
 mod ear;
+mod program;
 mod sandbox;
 
 use crate::context::{CallContext, Flow, Level};
 use crate::error::HostError;
 use crate::in_process;
 use crate::instance::Instance;
+use crate::isolated::MEMORY;
 use crate::registry::{PluginInfo, Registry, SearchPath};
 use crate::reply::Reply;
 use crate::wire::memory::{Inbox, Output};
 use crate::wire::{self, Answer, Ask, Columns, Refusal, Tell};
 use ear::Ear;
 
+use sandbox::Programs;
+use std::ffi::OsString;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::Ordering::Relaxed;
 
-/// Serves a plugin of this library, a copy in the store that the host has vouched for; it may read these files, too.
+/// First word of the arguments when the plugin is a program.
+pub(crate) const EXEC: &str = "--exec";
+
+/// What `honami-plughost` does with its arguments: serves a plugin of a library, or becomes a program that does.
 ///
 /// # Errors
-/// When there is no host at standard input, or it says what nobody understands.
-pub fn serve(library: &Path, read: &[PathBuf]) -> io::Result<()> {
+/// When the arguments are not those that a host gives, there is no host at standard input, or it says what nobody
+/// understands.
+pub fn serve(args: impl Iterator<Item = OsString>) -> io::Result<()> {
+    let memory = std::env::var(MEMORY).ok();
+    sandbox::limit(memory.and_then(|bytes| bytes.parse().ok()));
+    let mut args = args.peekable();
+    let mut command = Vec::new();
+    if args.next_if(|word| word == EXEC).is_some() {
+        let n = args.next().and_then(|n| n.to_str()?.parse().ok()).unwrap_or(0);
+        command.extend(args.by_ref().take(n));
+    }
+    let file = args.next().map(PathBuf::from).ok_or_else(|| {
+        io::Error::other("this is the process that plugins run in, and honami starts it: wanted a library")
+    })?;
+    let read: Vec<PathBuf> = args.map(PathBuf::from).collect();
+    match command.split_first() {
+        None => serve_library(&file, &read),
+        Some((program, args)) => Err(program::become_it(&file, program, args, read)),
+    }
+}
+
+/// Serves a plugin of this library, a copy in the store that the host has vouched for; it may read these files, too.
+fn serve_library(library: &Path, read: &[PathBuf]) -> io::Result<()> {
     let (mut ear, hello, [input, output]) = Ear::of_stdin()?;
-    let Ask::Hello { honami: wire::VERSION, plugin, memory_bytes } = serde_json::from_str(&hello)? else {
+    let Ask::Hello { honami: wire::VERSION, plugin } = serde_json::from_str(&hello)? else {
         return Err(io::Error::other(format!(
             "wanted the host's hello, version {}, got {hello}",
             wire::VERSION
         )));
     };
-    sandbox::limit(memory_bytes);
-    let sandbox = sandbox::enter(library, read);
+    let sandbox = sandbox::enter(library, read, Programs::Refused);
     ear.end_with_host()?;
     let (inbox, mut output) = (Inbox::of(&input)?, Output::of(output)?);
 

@@ -3,7 +3,7 @@
 use crate::error::HostError;
 use crate::manifest::{Caps, Kind, Manifest, Param};
 use crate::trust::TrustBook;
-use crate::{note, store};
+use crate::{note, script, store};
 use std::collections::BTreeMap;
 use std::fs;
 use std::os::unix::fs::MetadataExt;
@@ -97,6 +97,8 @@ pub struct PluginInfo {
     pub params: Vec<Param>,
     /// New ids of renamed parameters.
     pub renamed: BTreeMap<String, String>,
+    /// How its program is started, where it is one and no library.
+    pub(crate) exec: Vec<String>,
     /// What all of this was read from, to tell whether the library is still the same when it is loaded.
     pub(crate) manifest: Arc<[u8]>,
 }
@@ -207,7 +209,9 @@ impl Registry {
             .flatten()
             .flatten()
             .map(|entry| entry.path())
-            .filter(|path| path.extension().is_some_and(|extension| extension == "so"))
+            .filter(|path| {
+                path.extension().is_some_and(|extension| extension == "so") || script::is_manifest(path)
+            })
             .collect();
         files.sort();
         for file in files {
@@ -218,7 +222,9 @@ impl Registry {
 
     /// Adds the plugins of a library. One that carries no manifest is no plugin, which is a problem if it was named.
     fn add_file(&mut self, file: &Path, trust: Trust, named: bool) {
-        match note::read(file) {
+        let file = &script::manifest_of(file);
+        let read = if script::is_manifest(file) { script::read(file).map(Some) } else { note::read(file) };
+        match read {
             Ok(Some((manifest, json))) => self.add_manifest(file, &trust, manifest, &json.into()),
             Ok(None) if named => self.problems.push(HostError::File {
                 path: file.to_owned(),
@@ -254,6 +260,7 @@ impl Registry {
                 caps: plugin.caps,
                 params,
                 renamed,
+                exec: manifest.exec.clone(),
                 manifest: Arc::clone(json),
             };
             let hidden = self.plugins.iter().any(|other| other.id == info.id);

@@ -91,6 +91,8 @@ pub(crate) struct Reply {
     pub(crate) stopped: bool,
     /// How the plugin's process ended, if it did.
     pub(crate) ended: Option<Ended>,
+    /// The last line that a process printed which has ended.
+    pub(crate) last_words: String,
     tables: Vec<Table>,
 }
 

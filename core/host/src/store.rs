@@ -4,6 +4,7 @@
 //! old one, and an overwritten file kills the process. Copies that never change cure both.
 
 use crate::error::HostError;
+use crate::script;
 use rustix::process::geteuid;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -38,9 +39,22 @@ impl Stored {
 pub(crate) type Identity = (u64, u64, u64, [i64; 4]);
 
 pub(crate) fn identity(path: &Path) -> io::Result<Identity> {
-    let meta = fs::metadata(path)?;
-    let times = [meta.mtime(), meta.mtime_nsec(), meta.ctime(), meta.ctime_nsec()];
-    Ok((meta.dev(), meta.ino(), meta.len(), times))
+    let of = |path: &Path| {
+        let meta = fs::metadata(path)?;
+        let times = [meta.mtime(), meta.mtime_nsec(), meta.ctime(), meta.ctime_nsec()];
+        io::Result::Ok((meta.dev(), meta.ino(), meta.len(), times))
+    };
+    if !script::is_manifest(path) {
+        return of(path);
+    }
+    // Of several files: those of all, mixed so that none can change unseen.
+    let parts = script::parts(path);
+    let mut mixed = (parts.len() as u64, 0_u64, 0_u64, [0_i64; 4]);
+    for (dev, ino, len, times) in parts.iter().map(|part| of(part)).collect::<io::Result<Vec<_>>>()? {
+        mixed = (mixed.0 ^ dev, mixed.1.rotate_left(7) ^ ino, mixed.2.rotate_left(7) ^ len, mixed.3);
+        mixed.3.iter_mut().zip(times).for_each(|(sum, time)| *sum = sum.rotate_left(7) ^ time);
+    }
+    Ok(mixed)
 }
 
 /// The hash of a file's content, lower-case hexadecimal.
@@ -48,7 +62,22 @@ pub(crate) fn identity(path: &Path) -> io::Result<Identity> {
 /// # Errors
 /// When it cannot be read.
 pub(crate) fn sha256_of(path: &Path) -> Result<String, HostError> {
+    if script::is_manifest(path) {
+        let contents: Vec<Vec<u8>> =
+            script::parts(path).iter().map(|part| read(part)).collect::<Result<_, _>>()?;
+        return Ok(hex_of_parts(&contents));
+    }
     read(path).map(|bytes| hex(&bytes))
+}
+
+/// The hash of several files, lower-case hexadecimal.
+pub(crate) fn hex_of_parts(contents: &[Vec<u8>]) -> String {
+    let mut hasher = Sha256::new();
+    for bytes in contents {
+        hasher.update((bytes.len() as u64).to_le_bytes());
+        hasher.update(bytes);
+    }
+    hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// Reads a library once and keeps that content in the store, or where that cannot be written (a full quota, a home
@@ -114,7 +143,8 @@ fn temporary_folder() -> PathBuf {
     std::env::temp_dir().join(format!("honami-{}", geteuid().as_raw()))
 }
 
-fn keep_bytes(folder: &Path, copy: &Path, bytes: &[u8]) -> io::Result<()> {
+/// Keeps a copy in a folder of this user alone, whole or not at all.
+pub(crate) fn keep_bytes(folder: &Path, copy: &Path, bytes: &[u8]) -> io::Result<()> {
     DirBuilder::new().recursive(true).mode(0o700).create(folder)?;
     let owner = fs::symlink_metadata(folder)?;
     if !owner.is_dir() || owner.uid() != geteuid().as_raw() {

@@ -28,7 +28,6 @@ pub(crate) enum Ask {
     Hello {
         honami: u32,
         plugin: String,
-        memory_bytes: Option<u64>,
     },
     /// Every parameter at once.
     SetParams {

@@ -365,6 +365,14 @@ pub(super) enum Plugin {
         /// Short name or full id.
         name: String,
     },
+    /// Begin a tracker of your own: a folder with a working one to change.
+    New {
+        /// Its name: letters, digits, `-` and `_`.
+        name: String,
+        /// What it is written in.
+        #[arg(long, value_enum, default_value_t = Lang::Python)]
+        lang: Lang,
+    },
     /// Let a third party's plugin be loaded, as its file is now.
     Allow {
         /// Its file, or the name of one that `honami plugin list` shows.
@@ -380,6 +388,13 @@ pub(super) enum Plugin {
         /// Short name or full id.
         name: String,
     },
+}
+
+/// Languages that a plugin can be begun in.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub(super) enum Lang {
+    Python,
+    C,
 }
 
 /// A frame rate.

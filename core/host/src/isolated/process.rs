@@ -9,6 +9,7 @@ use rustix::net::{
     socketpair,
 };
 use rustix::process::{Pid, PidfdFlags, Signal, kill_process_group, pidfd_open};
+use std::ffi::OsString;
 use std::io::{self, IoSlice, Write as _};
 use std::mem::MaybeUninit;
 use std::os::fd::{AsFd, OwnedFd};
@@ -22,6 +23,9 @@ use std::time::Duration;
 const LINE_BYTES_MAX: usize = 1 << 20;
 /// What it prints is read in pieces of this size, so that one that prints without end does not keep the host from all else.
 const PRINT_BYTES: usize = 1 << 14;
+
+/// Environment variable with the bytes that the process may take.
+pub(crate) const MEMORY: &str = "HONAMI_PLUGIN_MEMORY";
 
 /// How a process ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -90,7 +94,7 @@ pub(crate) struct Process {
 
 impl Process {
     /// Starts a program with these arguments in a process group of its own.
-    pub(crate) fn start(program: &Path, args: &[&Path]) -> io::Result<Self> {
+    pub(crate) fn start(program: &Path, args: &[OsString], memory_bytes: Option<u64>) -> io::Result<Self> {
         let (ours, theirs) = socketpair(AddressFamily::UNIX, SocketType::STREAM, SocketFlags::CLOEXEC, None)?;
         let (prints, print_to) = rustix::pipe::pipe_with(rustix::pipe::PipeFlags::CLOEXEC)?;
         fcntl_setfl(&prints, OFlags::NONBLOCK)?;
@@ -105,6 +109,7 @@ impl Process {
             .env_remove("LD_PRELOAD")
             .env_remove("LD_LIBRARY_PATH")
             .env_remove("LD_AUDIT")
+            .envs(memory_bytes.map(|bytes| (MEMORY, bytes.to_string())))
             .spawn()?;
         let group = Pid::from_child(&child);
         let pidfd = pidfd_open(group, PidfdFlags::empty())?;

@@ -55,6 +55,14 @@ const REFUSED: [libc::c_long; 17] = [
     libc::SYS_request_key,
 ];
 
+/// Whether other programs may be started: the plugin itself may be one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Programs {
+    Refused,
+    /// They give up what this process has given up.
+    Allowed,
+}
+
 /// How much of it this system could do, in a word for the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Level {
@@ -84,11 +92,11 @@ pub(super) fn limit(memory_bytes: Option<u64>) {
 }
 
 /// Gives it all up, for this thread and those it starts from now on.
-pub(super) fn enter(library: &Path, read: &[PathBuf]) -> Level {
+pub(super) fn enter(library: &Path, read: &[PathBuf], programs: Programs) -> Level {
     let files = files(library, read).unwrap_or(RulesetStatus::NotEnforced);
-    let calls = calls();
+    let calls = calls(programs);
     match (files, calls) {
-        (RulesetStatus::FullyEnforced, Ok(())) => Level::Full,
+        (RulesetStatus::FullyEnforced, Ok(())) if programs == Programs::Refused => Level::Full,
         (RulesetStatus::NotEnforced, Err(_)) => Level::None,
         _ => Level::Partial,
     }
@@ -109,8 +117,11 @@ fn files(library: &Path, read: &[PathBuf]) -> Result<RulesetStatus, landlock::Ru
     Ok(status.ruleset)
 }
 
-fn calls() -> Result<(), Box<dyn std::error::Error>> {
+fn calls(programs: Programs) -> Result<(), Box<dyn std::error::Error>> {
     let mut rules: BTreeMap<i64, Vec<SeccompRule>> = REFUSED.iter().map(|call| (*call, Vec::new())).collect();
+    if programs == Programs::Allowed {
+        rules.remove(&libc::SYS_execve);
+    }
     let is_local = libc::AF_UNIX.unsigned_abs().into();
     let not_local = SeccompCondition::new(0, SeccompCmpArgLen::Dword, SeccompCmpOp::Ne, is_local)?;
     rules.insert(libc::SYS_socket, vec![SeccompRule::new(vec![not_local])?]);

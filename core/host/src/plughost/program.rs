@@ -1,0 +1,64 @@
+//! Plugins that are programs: the process gives up what it must, and becomes the program.
+
+use super::sandbox::{self, Programs};
+use std::ffi::{OsStr, OsString};
+use std::io;
+use std::os::unix::process::CommandExt as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// Starts a program in place of this one; its own files are in `folder`. Returns only when that is not possible.
+pub(super) fn become_it(
+    folder: &Path,
+    program: &OsStr,
+    args: &[OsString],
+    mut read: Vec<PathBuf>,
+) -> io::Error {
+    let Some(mut program) = find(program) else {
+        return io::Error::other(format!("there is no program {}", program.display()));
+    };
+    if program.file_name().is_some_and(|name| name.to_string_lossy().starts_with("python"))
+        && let Some((real, folders)) = python(&program)
+    {
+        program = real;
+        read.extend(folders);
+    }
+    // A program's libraries lie beside its folder: /opt/it/bin/it, /opt/it/lib.
+    let places = [program.canonicalize().ok(), Some(program.clone())];
+    read.extend(places.iter().flatten().filter_map(|path| path.parent()?.parent().map(Path::to_owned)));
+    read.retain(|path| path.parent().is_some());
+    let level = sandbox::enter(folder, &read, Programs::Allowed);
+    let own = |arg: &OsString| {
+        let file = folder.join(arg);
+        if file.is_file() { file.into_os_string() } else { arg.clone() }
+    };
+    Command::new(program)
+        .args(args.iter().map(own))
+        .env("PYTHONPATH", folder)
+        .env("PYTHONDONTWRITEBYTECODE", "1")
+        .env("HONAMI_SANDBOX", level.word())
+        .exec()
+}
+
+/// A program on the search path of the user, or at its own path.
+fn find(program: &OsStr) -> Option<PathBuf> {
+    let path = Path::new(program);
+    if path.components().count() > 1 {
+        return path.is_absolute().then(|| path.to_owned());
+    }
+    let folders = std::env::var_os("PATH")?;
+    std::env::split_paths(&folders).map(|folder| folder.join(program)).find(|place| place.is_file())
+}
+
+/// The interpreter behind a name, which may be a script that chooses one, and the folders that it imports from.
+fn python(program: &Path) -> Option<(PathBuf, Vec<PathBuf>)> {
+    let said = Command::new(program)
+        .args(["-c", "import sys; print(sys.executable, *sys.path, sep='\\n')"])
+        .stdin(Stdio::null())
+        .stderr(Stdio::null())
+        .output()
+        .ok()?;
+    let text = String::from_utf8(said.stdout).ok()?;
+    let mut lines = text.lines().map(PathBuf::from).filter(|path| path.is_absolute());
+    Some((lines.next()?, lines.collect()))
+}

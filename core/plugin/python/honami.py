@@ -1,0 +1,297 @@
+"""Plugins for honami in Python: one file, standard library and numpy.
+
+    import honami
+
+    class Settings(honami.Params):
+        radius = honami.Int(7, 1, 50, unit="px", doc="Half the side of the window.")
+
+    @honami.tracker("org.me.mine", "My tracker", params=Settings)
+    class Mine:
+        def begin(self, stream): ...         # stream.width, .height, .fps, .max_threads, .seed, .reversed
+        def seed(self, points): ...          # points.id, .x, .y: arrays; they hold in the frame pushed last
+        def push(self, frame): ...           # frame.gray: rows x columns of bytes; .cb, .cr, .index, .time_s
+            return honami.Points(id, x, y, status)
+
+    honami.run()
+
+`self.params` holds the values of the parameters. A tracker may also have `retire(ids)`, `end()`,
+`detect(frame, max_features, mask, points)`, which returns `honami.Features(x, y, score)`, and `field(a, b)`, which
+returns `honami.Field(gx, gy, step, u, v, known)`. Arrays that it is given are gone after the call: copy what you keep.
+
+`python3 mine.py --honami-manifest` writes `mine.honami.json`, from which honami lists the plugin and draws its form
+without running it. Write it anew when parameters change. What is printed is a line of the plugin's log.
+"""
+
+import json
+import mmap
+import os
+import select
+import socket
+import struct
+import sys
+import threading
+import traceback
+from types import SimpleNamespace
+
+import numpy as np
+
+LOST, TRACKED, OCCLUDED, OUTSIDE, REJECTED, NEWBORN = range(6)
+
+_FAILED, _UNSUPPORTED, _DATA, _CANCELLED, _INTERNAL = -1, -2, -5, -8, -10
+_PAGE = 4096
+
+
+class Error(Exception):
+    """The input cannot be worked on; the text is for the user."""
+
+
+class Cancelled(Exception):
+    """The user wants to stop. Let it pass through your code."""
+
+
+class _Param:
+    def __init__(self, kind, default, **more):
+        self.default = default
+        self.schema = {"type": kind, "default": default, **{k: v for k, v in more.items() if v is not None}}
+
+
+def Int(default, min, max, *, unit=None, label=None, group=None, doc=None):
+    return _Param("int", default, min=min, max=max, unit=unit, label=label, group=group, doc=doc)
+
+
+def Float(default, min, max, *, unit=None, label=None, group=None, doc=None):
+    return _Param("float", float(default), min=float(min), max=float(max), unit=unit, label=label, group=group, doc=doc)
+
+
+def Bool(default, *, label=None, group=None, doc=None):
+    return _Param("bool", default, label=label, group=group, doc=doc)
+
+
+def Enum(default, entries, *, label=None, group=None, doc=None):
+    """`entries`: ids with labels, as {"fast": "Fast", "good": "Good"}."""
+    entries = [{"id": id, "label": words} for id, words in entries.items()]
+    return _Param("enum", default, entries=entries, label=label, group=group, doc=doc)
+
+
+def File(default="", *, label=None, group=None, doc=None):
+    """A file that the plugin reads; it can open no others."""
+    return _Param("path", default, mode="open", label=label, group=group, doc=doc)
+
+
+class Params:
+    """Base of a class whose attributes are parameters."""
+
+    @classmethod
+    def _schema(cls):
+        return [{"id": id, **p.schema} for id, p in vars(cls).items() if isinstance(p, _Param)]
+
+    def __init__(self, values):
+        for id, param in vars(type(self)).items():
+            if isinstance(param, _Param):
+                setattr(self, id, values.get(id, param.default))
+
+
+def Points(id, x, y, status, fb=None, ncc=None):
+    """A row a live point: id, position, status; optionally the error there and back, and the likeness."""
+    columns = {"id": (id, "u4"), "x": (x, "f4"), "y": (y, "f4"), "status": (status, "u1")}
+    return {"honami.points/1": {**columns, **_optional(fb=fb, ncc=ncc)}}
+
+
+def Features(x, y, score):
+    """Places worth following, best first."""
+    return {"honami.features/1": {"x": (x, "f4"), "y": (y, "f4"), "score": (score, "f4")}}
+
+
+def Field(gx, gy, step, u, v, known=None):
+    """Displacements at the nodes of a grid: node (i, j) lies at (gx + i step, gy + j step); u, v are rows x columns."""
+    ny, nx = np.shape(u)
+    one = {"gx": ([gx], "f4"), "gy": ([gy], "f4"), "step": ([step], "f4"), "nx": ([nx], "u4"), "ny": ([ny], "u4")}
+    vectors = {"u": (np.ravel(u), "f4"), "v": (np.ravel(v), "f4")}
+    if known is not None:
+        vectors["known"] = (np.ravel(known), "u1")
+    return {"honami.vectors/1": vectors, "honami.grid/1": one}
+
+
+def _optional(**columns):
+    return {name: (values, "f4") for name, values in columns.items() if values is not None}
+
+
+_plugins = {}
+
+
+def tracker(id, name, *, params=Params, doc="", cite=(), deterministic=True):
+    """Makes a class a tracker."""
+
+    def keep(cls):
+        cls.Params = params
+        interfaces = ["honami.tracker/1"] + [f"honami.{f}/1" for f in ("detect", "field") if hasattr(cls, f)]
+        caps = {"latency": 0, "deterministic": deterministic, "parallel_instances": True, "pixels": ["gray8"]}
+        _plugins[id] = cls
+        cls._manifest = {"id": id, "kind": "tracker", "name": name, "doc": doc, "cite": list(cite),
+                         "interfaces": interfaces, "caps": caps, "params": params._schema()}
+        return cls
+
+    return keep
+
+
+def progress(fraction, text=""):
+    """Says how far the work is, 0 to 1; call it every quarter of a second, or the host takes you for dead."""
+    _host.progress(fraction, text)
+
+
+def log(text, level=1):
+    """Writes a line to the log: 0 debug, 1 information, 2 warning, 3 error."""
+    _host.say({"m": "log", "level": level, "text": str(text)})
+
+
+def run(library=None, version="0", license=""):
+    """Serves the host that has started this program, or writes the manifest."""
+    if "--honami-manifest" in sys.argv:
+        return _write_manifest(library, version, license)
+    global _host
+    _host = _Host()
+    _host.serve()
+
+
+def _write_manifest(library, version, license):
+    script = os.path.abspath(sys.argv[0])
+    plugins = [cls._manifest for cls in _plugins.values()]
+    about = {"id": library or plugins[0]["id"], "version": version, "license": license}
+    manifest = {"honami": 1, "abi": [1, 1], "library": about, "plugins": plugins,
+                "exec": ["python3", os.path.basename(script)]}
+    path = os.path.splitext(script)[0] + ".honami.json"
+    with open(path, "w") as file:
+        json.dump(manifest, file, indent=1)
+    print(path)
+
+
+class _Host:
+    """The other end: a line of JSON a message, pictures and columns in two shared memories."""
+
+    def __init__(self):
+        # The plugin is not to find the socket at its standard input.
+        self.socket = socket.socket(fileno=os.dup(0))
+        os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+        sys.stdout.reconfigure(line_buffering=True)
+        threading.Thread(target=self.end_with_host, daemon=True).start()
+        line, memories, _, _ = socket.recv_fds(self.socket, _PAGE, 2)
+        self.hello = json.loads(line)
+        self.input = mmap.mmap(memories[0], 0, access=mmap.ACCESS_READ)
+        self.output_file, self.output = memories[1], mmap.mmap(memories[1], 0)
+        self.used, self.text, self.fraction = _PAGE, "", 0.0
+
+    def end_with_host(self):
+        gone = select.poll()
+        gone.register(self.socket, select.POLLRDHUP)
+        gone.poll()
+        os._exit(0)
+
+    def say(self, message):
+        self.socket.sendall(json.dumps(message).encode() + b"\n")
+
+    def progress(self, fraction, text):
+        beat = struct.unpack_from("<Q", self.output, 8)[0] + 1
+        struct.pack_into("<Qd", self.output, 8, beat, fraction)
+        if text != self.text:
+            self.text = text
+            self.say({"m": "at", "text": text})
+        if struct.unpack_from("<I", self.output, 0)[0]:
+            raise Cancelled
+
+    def serve(self):
+        plugin = _plugins.get(self.hello["plugin"])
+        if plugin is None:
+            why = f"has no plugin {self.hello['plugin']!r}: write its manifest anew"
+            return self.say({"m": "refused", "kind": "unusable", "why": why})
+        self.say({"m": "done", "sandbox": os.environ.get("HONAMI_SANDBOX", "none")})
+        self.instance, self.gone = plugin(), set()
+        self.instance.params = plugin.Params({})
+        for line in self.socket.makefile("rb"):
+            ask = json.loads(line)
+            self.say({"m": "done", **self.answer(ask)})
+
+    def answer(self, ask):
+        try:
+            return {"code": 0, "tables": self.lay_down(getattr(self, "on_" + ask["m"])(ask) or {})}
+        except Cancelled:
+            return {"code": _CANCELLED, "stopped": True}
+        except Error as error:
+            return {"code": _DATA, "text": str(error)}
+        except Exception as error:
+            traceback.print_exc()
+            return {"code": _INTERNAL, "text": "".join(traceback.format_exception_only(error)).strip()}
+
+    def on_set_params(self, ask):
+        self.instance.params = type(self.instance).Params(ask["values"])
+
+    def on_begin(self, ask):
+        self.gone = set()
+        self.call("begin", SimpleNamespace(**ask))
+
+    def on_seed(self, ask):
+        points = self.points(ask["points"])
+        self.gone -= set(points.id.tolist())
+        self.instance.seed(points)
+
+    def on_retire(self, ask):
+        ids = self.column(ask["ids"], "id", "u4")
+        self.gone |= set(ids.tolist())
+        self.call("retire", ids)
+
+    def on_push(self, ask):
+        tables = self.instance.push(self.frame(ask["frame"])) or {}
+        if self.gone and "honami.points/1" in tables:
+            rows = tables["honami.points/1"]
+            live = ~np.isin(rows["id"][0], list(self.gone))
+            tables["honami.points/1"] = {n: (np.asarray(c)[live], kind) for n, (c, kind) in rows.items()}
+        return tables
+
+    def on_end(self, ask):
+        return self.call("end")
+
+    def on_detect(self, ask):
+        mask = self.plane(ask["mask"]) if ask["mask"] else None
+        points = self.points(ask["points"])
+        return self.instance.detect(self.frame(ask["frame"]), ask["max_features"], mask, points)
+
+    def on_field(self, ask):
+        return self.instance.field(self.frame(ask["from"]), self.frame(ask["to"]))
+
+    def call(self, name, *args):
+        return getattr(self.instance, name)(*args) if hasattr(self.instance, name) else None
+
+    def column(self, table, name, kind):
+        return np.frombuffer(self.input, "<" + kind, table["rows"], table["at"][name])
+
+    def points(self, table):
+        return SimpleNamespace(**{n: self.column(table, n, k) for n, k in [("id", "u4"), ("x", "f4"), ("y", "f4")]})
+
+    def plane(self, plane):
+        height, width = plane["height"], plane["width"]
+        return np.frombuffer(self.input, "u1", height * width, plane["at"]).reshape(height, width)
+
+    def frame(self, frame):
+        cb, cr = [self.plane(plane) for plane in frame["chroma"]] if frame.get("chroma") else (None, None)
+        gray = self.plane(frame["gray"])
+        return SimpleNamespace(gray=gray, cb=cb, cr=cr, index=frame["index"], time_s=frame["time_s"])
+
+    def lay_down(self, tables):
+        """Writes result tables where the host reads them."""
+        self.used, said = _PAGE, {}
+        for schema, columns in tables.items():
+            arrays = {n: np.ascontiguousarray(values, "<" + kind) for n, (values, kind) in columns.items()}
+            rows = {len(array) for array in arrays.values()}
+            if len(rows) != 1:
+                raise Error(f"columns of {schema} have {sorted(rows)} rows, wanted the same in all")
+            said[schema] = {"rows": rows.pop(), "at": {n: self.put(array) for n, array in arrays.items()}}
+        return said
+
+    def put(self, array):
+        at, size = self.used, array.nbytes
+        end = (at + size + 63) // 64 * 64
+        if end > len(self.output):
+            os.ftruncate(self.output_file, 1 << (end - 1).bit_length())
+            self.output = mmap.mmap(self.output_file, 0)
+        self.output[at:at + size] = array.tobytes()
+        self.used = end
+        return at

@@ -1,0 +1,79 @@
+//! Plugins in Python: listed without running, run in a process of their own, and told apart when they fail.
+
+use std::fs;
+use std::process::Command;
+
+use honami_tests::{Bench, root, skipped};
+
+/// A folder with the example and its manifest; `None` without numpy.
+fn with_example(change: impl Fn(String) -> String) -> Option<Bench> {
+    let sdk = root().join("core/plugin/python");
+    let has_numpy = Command::new("python3").args(["-c", "import numpy"]).output();
+    if !has_numpy.is_ok_and(|output| output.status.success()) {
+        skipped("python3 with numpy");
+        return None;
+    }
+    let bench = Bench::new();
+    let script = bench.path("template.py");
+    fs::write(&script, change(fs::read_to_string(sdk.join("examples/template.py")).unwrap())).unwrap();
+    let mut python = Command::new("python3");
+    let output = python.arg(&script).arg("--honami-manifest").env("PYTHONPATH", &sdk).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    bench.synth("clip.y4m", 12, "--leaves 40 --wind calm");
+    Some(bench)
+}
+
+#[test]
+fn a_tracker_in_python_is_listed_and_follows_what_moves() {
+    let Some(bench) = with_example(|text| text) else { return };
+    let told = bench.text("plugin info template --plugin template.py");
+    assert!(told.contains("radius") && told.contains("Half the side of the template."), "{told}");
+    let line = "compare clip.y4m --truth clip.truth.csv --with template --plugin template.py --quick";
+    let said = bench.json(line);
+    let share = |row: usize| said["trackers"][row]["delta_avg"].as_f64().unwrap();
+    assert!(share(0) > share(1) + 0.1, "{} of the template, {} of what stands still", share(0), share(1));
+}
+
+#[test]
+fn a_plugin_that_was_just_begun_works_in_every_language() {
+    let Some(bench) = with_example(|text| text) else { return };
+    fs::write(bench.path("points.csv"), "id,x,y\n1,60,60\n").unwrap();
+    for (lang, build) in [
+        ("python", "python3 mine-python/mine-python.py --honami-manifest"),
+        ("c", "cc -std=c99 -shared -fPIC -fvisibility=hidden mine-c/mine-c.c -o mine-c/mine-c.so"),
+    ] {
+        let said = bench.text(&format!("plugin new mine-{lang} --lang {lang}"));
+        assert!(said.contains(build), "{said}");
+        let mut words = build.split(' ');
+        let built =
+            Command::new(words.next().unwrap()).args(words).current_dir(bench.path("")).status().unwrap();
+        assert!(built.success(), "{build}");
+        let file = said.rsplit(' ').next().unwrap().trim();
+        let _said = bench.text(&format!("new {lang}.honami clip.y4m"));
+        let line = format!("track {lang}.honami --plugin {file} --with mine-{lang} --points points.csv");
+        assert!(bench.text(&line).contains("frames 0-11"), "{line}");
+    }
+    assert_eq!(bench.line("plugin new mine-c").code, Some(1), "it is there already");
+}
+
+#[test]
+fn what_python_raises_is_told_in_its_words() {
+    for (push, wanted) in [
+        ("raise honami.Error('too dark for me')", "too dark for me (unusable data)"),
+        ("return 1 / 0", "ZeroDivisionError: division by zero (a fault in the plugin)"),
+        ("return honami.Points([1, 2], [0], [0], [1])", "columns of honami.points/1 have [1, 2] rows"),
+        ("open('/etc/passwd')", "PermissionError: [Errno 13] Permission denied: '/etc/passwd'"),
+        ("import os; os._exit(3)", "ended its process with status 3 in push of frame"),
+    ] {
+        let change = |text: String| {
+            text.replace("status = [self.look", &format!("{push}\n        status = [self.look"))
+        };
+        let Some(bench) = with_example(change) else { return };
+        fs::write(bench.path("points.csv"), "id,x,y\n1,60,60\n").unwrap();
+        let _said = bench.text("new p.honami clip.y4m");
+        let ran = bench.line("track p.honami --plugin template.py --with template --points points.csv");
+        let all = format!("{}{}", ran.stdout, ran.stderr);
+        let held = wanted.contains("status 3") && all.contains("ended its process with status 3");
+        assert!(ran.code == Some(1) && (held || all.contains(wanted)), "{push}: {ran:?}");
+    }
+}
