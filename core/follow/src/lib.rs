@@ -1,18 +1,21 @@
-//! What tracker plugins share: parameters that mean the same in all of them, the detector, and points that follow
-//! dense motion.
+//! What tracker plugins share: parameters that mean the same in all of them, the detector, and points from frame to
+//! frame.
 //!
-//! A parameter group is taken in by `params!` with `..detection: Detection,`. A plugin that measures dense motion
-//! gives a [`Motion`] and exports [`Particles`] of it; one that follows points by itself uses the pieces.
+//! A parameter group is taken in by `params!` with `..detection: Detection,`. A plugin that knows where points of one
+//! frame are in the next gives a [`Method`], one that measures dense motion a [`Motion`], and either exports a
+//! [`Follower`] of it; one whose points are more than places uses the pieces.
 
-mod dense;
 mod detection;
+mod follower;
 mod losing;
-mod particles;
+mod motion;
+mod search;
 
-pub use dense::klt_field;
 pub use detection::{Corners, Detection};
+pub use follower::{Follower, Method, Step, Trust};
 pub use losing::Losing;
-pub use particles::{Motion, Particles, Trust};
+pub use motion::Motion;
+pub use search::{Search, field_there_and_back, klt_field, pyramid, there_and_back, windows};
 
 use honami_plugin::{Error, Field, Frame, Result};
 use honami_vision::Gray;

@@ -36,6 +36,13 @@ impl<'a> Gray<'a> {
             && bytes.is_some_and(|n| n <= self.data.len())
     }
 
+    /// Whether a position `[x, y]`, pixels, lies on the picture, which reaches half a pixel beyond its outermost centres.
+    #[must_use]
+    pub fn holds(&self, [x, y]: [f32; 2]) -> bool {
+        let [right, bottom] = [self.width, self.height].map(|size| size as f32 - 0.5);
+        (-0.5..=right).contains(&x) && (-0.5..=bottom).contains(&y)
+    }
+
     /// One row, `width` bytes.
     ///
     /// # Panics

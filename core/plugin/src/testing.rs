@@ -1,7 +1,9 @@
 //! Runs plugins without a host, for the tests of their crates.
 
+mod clip;
 mod suite;
 
+pub use clip::{Clip, off_px};
 pub use suite::suite;
 
 use crate::clusterer::{Clusterer, Clustering, Tracks};

@@ -6,7 +6,7 @@
 #[cfg(test)]
 mod tests;
 
-use crate::Point;
+use crate::{Gray, Point};
 
 /// Places in even rows and columns over a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -141,17 +141,14 @@ impl Field {
         (known >= 0.5).then(|| sum.map(|c| c / known))
     }
 
-    /// Where a point of the first picture, of this size, is in the second.
+    /// Where a point of the first picture is in the second, which is as large.
     #[must_use]
-    pub fn follow(&self, at: Point, width: u32, height: u32) -> Drift {
-        let inside = |[x, y]: Point| {
-            (-0.5..=width as f32 - 0.5).contains(&x) && (-0.5..=height as f32 - 0.5).contains(&y)
-        };
-        if !inside(at) {
+    pub fn follow(&self, at: Point, picture: &Gray<'_>) -> Drift {
+        if !picture.holds(at) {
             return Drift::Outside;
         }
         let Some([u, v]) = self.at(at) else { return Drift::Unknown };
         let to = [at[0] + u, at[1] + v];
-        if inside(to) { Drift::To(to) } else { Drift::Outside }
+        if picture.holds(to) { Drift::To(to) } else { Drift::Outside }
     }
 }

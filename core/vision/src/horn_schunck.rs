@@ -18,7 +18,7 @@ mod solver;
 mod tests;
 
 use crate::field::{Field, Grid};
-use crate::plane::{Motion, Plane, Scales, bands};
+use crate::plane::{Motion, Plane, Scales, bands, descend};
 use solver::System;
 
 /// How to measure.
@@ -76,18 +76,9 @@ pub fn measure(
     n_threads: usize,
     go_on: &dyn Fn(f64) -> bool,
 ) -> Option<Field> {
-    let pairs: Vec<_> = from.levels().iter().zip(to.levels()).take(params.levels.max(1) as usize).collect();
-    let size = |plane: &Plane| (plane.width, plane.height);
-    assert_eq!(size(pairs[0].0), size(pairs[0].1), "size of the two pictures");
-    let mut motion = Motion::blank(pairs[pairs.len() - 1].0);
-    for (k, &(i, j)) in pairs.iter().enumerate().rev() {
-        if size(i) != size(&motion.u) {
-            motion = motion.doubled(i.width, i.height, n_threads);
-        }
+    let motion = descend([from, to], params.levels, n_threads, go_on, |mut motion, i, j, go_on| {
         for n in 0..params.warps {
-            // A level has four times the pixels of the next coarser one.
-            let before = 0.25_f64.powi(k as i32);
-            let share = |done: f64| before * (0.25 + 0.75 * (f64::from(n) + done) / f64::from(params.warps));
+            let share = |done: f64| (f64::from(n) + done) / f64::from(params.warps);
             let mut system =
                 System::new(&constraint(&motion, i, j, params, n_threads), &motion, params.alpha_gray);
             system.solve(params.max_sweeps, params.tolerance_px, n_threads, &|done| go_on(share(done)))?;
@@ -96,7 +87,8 @@ pub fn measure(
                 motion = Motion { u: motion.u.median(n_threads), v: motion.v.median(n_threads) };
             }
         }
-    }
+        Some(motion)
+    })?;
     let grid = Grid::over(motion.u.width as u32, motion.u.height as u32, params.step_px);
     Some(Field::new(grid, grid.nodes().map(|[x, y]| Some([motion.u.at(x, y), motion.v.at(x, y)]))))
 }

@@ -16,6 +16,7 @@ mod tests;
 mod window;
 
 use crate::pyramid::{Level, Pyramid, border_px};
+use crate::work::{shared, threads};
 use crate::{Point, simd};
 use window::{Sums, Window};
 
@@ -39,6 +40,19 @@ pub struct Params {
 impl Default for Params {
     fn default() -> Self {
         Self { radius_px: 10, levels: 4, max_iterations: 30, epsilon_px: 0.01, min_eigenvalue: 1e-4 }
+    }
+}
+
+impl Params {
+    /// How long one point takes on one thread, roughly, nanoseconds: windows are compared a few times on every level.
+    #[must_use]
+    pub fn cost_ns(&self) -> f64 {
+        const PIXEL_NS: f64 = 0.2;
+        /// Most searches end after fewer steps.
+        const USUAL_STEPS: u32 = 10;
+        let area = f64::from(2 * self.radius_px + 1).powi(2);
+        let looks = 1 + self.max_iterations.min(USUAL_STEPS);
+        PIXEL_NS * area * f64::from(looks) * f64::from(self.levels.max(1))
     }
 }
 
@@ -106,8 +120,6 @@ pub fn track_at(
     params: &Params,
     max_threads: usize,
 ) -> Vec<Flow> {
-    /// Fewer points than this are not worth a thread.
-    const POINTS_A_THREAD: usize = 64;
     let guesses = guesses.unwrap_or(from);
     assert_eq!(from.len(), guesses.len(), "one guess a point");
     let pairs: Vec<_> = prev.levels().iter().zip(next.levels()).take(params.levels.max(1) as usize).collect();
@@ -117,23 +129,12 @@ pub fn track_at(
         assert!(border >= border_px(params.radius_px), "pyramid made for a smaller radius");
     }
 
-    let n_threads = max_threads.min(from.len() / POINTS_A_THREAD).max(1);
-    let chunk = from.len().div_ceil(n_threads).max(1);
-    let run = |from: &[Point], guesses: &[Point], flows: &mut [Flow]| {
-        let mut search = Search { params, window: Window::new(simd, params.radius_px) };
-        for ((flow, &from), &guess) in flows.iter_mut().zip(from).zip(guesses) {
-            *flow = search.follow(&pairs, from, guess);
-        }
-    };
     let mut flows = vec![Flow { to: [0.0; 2], state: State::Lost(Reason::NotFinite) }; from.len()];
-    let mut jobs = flows.chunks_mut(chunk).zip(from.chunks(chunk)).zip(guesses.chunks(chunk));
-    std::thread::scope(|scope| {
-        let first = jobs.next();
-        for ((flows, from), guesses) in jobs {
-            scope.spawn(move || run(from, guesses, flows));
-        }
-        if let Some(((flows, from), guesses)) = first {
-            run(from, guesses, flows);
+    let n_threads = threads(from.len(), params.cost_ns(), max_threads);
+    shared([&mut flows], 1, n_threads, |first, [flows]| {
+        let mut search = Search { params, window: Window::new(simd, params.radius_px) };
+        for ((flow, &from), &guess) in flows.iter_mut().zip(&from[first..]).zip(&guesses[first..]) {
+            *flow = search.follow(&pairs, from, guess);
         }
     });
     flows
@@ -161,7 +162,7 @@ impl Search<'_> {
                 flow.to = flow.to.map(|c| c * 2.0);
             }
         }
-        if flow.state == State::Tracked && !holds(pairs[0].1, flow.to) {
+        if flow.state == State::Tracked && !pairs[0].1.picture().holds(flow.to) {
             flow.state = State::Outside;
         }
         flow
@@ -202,12 +203,6 @@ impl Search<'_> {
 
 /// Two opposite steps that differ by less than this are a swing, pixels (OpenCV's number).
 const SWING_PX: f32 = 0.01;
-
-/// Whether a position lies on the picture's pixels.
-fn holds(level: &Level, [x, y]: Point) -> bool {
-    let (width, height) = (level.width() as f32, level.height() as f32);
-    (-0.5..=width - 0.5).contains(&x) && (-0.5..=height - 0.5).contains(&y)
-}
 
 /// First pixel of a window, and how far the window lies beyond it.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -24,6 +24,7 @@ pub mod robust;
 pub mod sample;
 pub mod simd;
 pub mod texture;
+pub mod work;
 
 /// What everything here looks at.
 pub use honami_model::picture::{Chroma, Gray};

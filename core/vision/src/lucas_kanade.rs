@@ -16,7 +16,7 @@
 mod tests;
 
 use crate::field::{Field, Grid};
-use crate::plane::{Border, Motion, Plane, Scales, bands, gaussian};
+use crate::plane::{Border, Motion, Plane, Scales, bands, descend, gaussian, greater};
 
 /// How to measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,6 +43,10 @@ impl Default for Params {
 /// (Gray levels per pixel)² to the measure of [`Params::min_eigenvalue`]: Scharr's 32², by 2²⁰.
 const UNIT: f32 = 1.0 / 1024.0;
 
+/// What rounding leaves of a matrix that cannot be solved, as a share of its trace; and of one that is nothing, (gray
+/// levels per pixel)². No eigenvalue is taken as less.
+const ROUNDING: f32 = 1e-6;
+
 /// The standard deviation by which pictures are best smoothed, pixels: differences of neighbours are noise without.
 pub const SMOOTHING_PX: f32 = 0.8;
 
@@ -60,26 +64,18 @@ pub fn measure(
     n_threads: usize,
     go_on: &dyn Fn(f64) -> bool,
 ) -> Option<Field> {
-    let pairs: Vec<_> = from.levels().iter().zip(to.levels()).take(params.levels.max(1) as usize).collect();
-    let size = |plane: &Plane| (plane.width, plane.height);
-    assert_eq!(size(pairs[0].0), size(pairs[0].1), "size of the two pictures");
-    let mut motion = Motion::blank(pairs[pairs.len() - 1].0);
     let mut certain = Plane::blank(1, 1);
-    for (k, &(i, j)) in pairs.iter().enumerate().rev() {
-        if size(i) != size(&motion.u) {
-            motion = motion.doubled(i.width, i.height, n_threads);
-        }
+    let motion = descend([from, to], params.levels, n_threads, go_on, |mut motion, i, j, go_on| {
         let windows = Windows::new(i, params, n_threads);
         for n in 0..params.iterations {
-            // A level has four times the pixels of the next coarser one.
-            let done = f64::from(n) / f64::from(params.iterations);
-            if !go_on((0.25 + 0.75 * done) * 0.25_f64.powi(k as i32)) {
+            if !go_on(f64::from(n) / f64::from(params.iterations)) {
                 return None;
             }
             windows.refine(&mut motion, i, j, n_threads);
         }
         certain = windows.certain;
-    }
+        Some(motion)
+    })?;
     let grid = Grid::over(certain.width as u32, certain.height as u32, params.step_px);
     let known = grid.nodes().map(|[x, y]| {
         (certain.at(x, y) >= params.min_eigenvalue).then(|| [motion.u.at(x, y), motion.v.at(x, y)])
@@ -113,23 +109,28 @@ impl Windows {
             let apart = ((xx - yy) * (xx - yy) + 4.0 * *xy * *xy).sqrt();
             *xy = UNIT * (xx + yy - apart) / 2.0;
         }
-        let damping = (params.min_eigenvalue / UNIT).max(f32::MIN_POSITIVE.sqrt());
+        let damping = (params.min_eigenvalue / UNIT).max(ROUNDING);
         Self { weights, gradient, matrix, certain, damping }
     }
 
     /// One step: the second picture warped by the motion so far, and every window solved.
     fn refine(&self, motion: &mut Motion, i: &Plane, j: &Plane, n_threads: usize) {
         let [bx, by] = self.asked(motion, i, j, n_threads);
-        let damping = self.damping;
+        // What goes farther is out of the picture wherever it began, and no motion that was measured.
+        let farthest = (i.width + i.height) as f32;
         bands([&mut motion.u.data, &mut motion.v.data], i.width, n_threads, |first, [u, v]| {
             let [xx, xy, yy] = self.matrix.each_ref().map(|plane| plane.rows(first, u.len()));
             let b = bx.rows(first, u.len()).iter().zip(by.rows(first, u.len()));
             let a = xx.iter().zip(xy).zip(yy);
             for (((u, v), (bx, by)), ((xx, xy), yy)) in u.iter_mut().zip(v).zip(b).zip(a) {
+                let damping = greater(self.damping, ROUNDING * (xx + yy));
                 let (xx, yy) = (xx + damping, yy + damping);
                 let (bx, by) = (bx + damping * *u, by + damping * *v);
                 let scale = 1.0 / (xx * yy - xy * xy);
-                (*u, *v) = ((yy * bx - xy * by) * scale, (xx * by - xy * bx) * scale);
+                let (x, y) = ((yy * bx - xy * by) * scale, (xx * by - xy * bx) * scale);
+                // Not so of what is no number.
+                let is_known = (x.abs() <= farthest) & (y.abs() <= farthest);
+                (*u, *v) = if is_known { (x, y) } else { (*u, *v) };
             }
         });
     }

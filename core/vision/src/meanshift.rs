@@ -15,6 +15,7 @@ mod tests;
 pub use colours::{Bins, Colours};
 
 use crate::Point;
+use crate::work::{shared, threads};
 
 /// How to search.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,6 +27,16 @@ pub struct Params {
     /// Whether regions a tenth smaller and a tenth larger are tried too; a tenth of the difference is then kept, as in
     /// the paper (PAMI 2003, 4.4).
     pub adapts: bool,
+}
+
+impl Params {
+    /// How long a region of this radius takes on one thread, roughly, nanoseconds: it is looked at a few times.
+    #[must_use]
+    pub fn cost_ns(&self, radius_px: f64) -> f64 {
+        const PIXEL_NS: f64 = 20.0;
+        let n_sizes = if self.adapts { 3.0 } else { 1.0 };
+        PIXEL_NS * n_sizes * (2.0 * radius_px + 1.0).powi(2)
+    }
 }
 
 /// A disc in a picture.
@@ -93,25 +104,13 @@ pub fn follow(
     params: &Params,
     max_threads: usize,
 ) -> Vec<Option<Found>> {
-    /// Fewer than this are not worth a thread.
-    const TARGETS_A_THREAD: usize = 32;
-    let n_threads = max_threads.min(targets.len() / TARGETS_A_THREAD).max(1);
-    let chunk = targets.len().div_ceil(n_threads).max(1);
-    let run = |targets: &[Target<'_>], found: &mut [Option<Found>]| {
-        let mut search = Search::new(colours, params);
-        for (found, target) in found.iter_mut().zip(targets) {
-            *found = search.follow(target);
-        }
-    };
+    let largest = targets.iter().map(|target| target.from.radius_px).fold(0.0, f32::max);
+    let n_threads = threads(targets.len(), params.cost_ns(f64::from(largest)), max_threads);
     let mut found = vec![None; targets.len()];
-    let mut jobs = found.chunks_mut(chunk).zip(targets.chunks(chunk));
-    std::thread::scope(|scope| {
-        let first = jobs.next();
-        for (found, targets) in jobs {
-            scope.spawn(move || run(targets, found));
-        }
-        if let Some((found, targets)) = first {
-            run(targets, found);
+    shared([&mut found], 1, n_threads, |first, [found]| {
+        let mut search = Search::new(colours, params);
+        for (found, target) in found.iter_mut().zip(&targets[first..]) {
+            *found = search.follow(target);
         }
     });
     found

@@ -23,6 +23,13 @@ impl Ncc {
         Self { radius_px, first: Vec::new(), second: Vec::new() }
     }
 
+    /// How long it takes to compare two windows, roughly, nanoseconds.
+    #[must_use]
+    pub fn cost_ns(&self) -> f64 {
+        const PIXEL_NS: f64 = 4.0;
+        PIXEL_NS * f64::from(2 * self.radius_px + 1).powi(2)
+    }
+
     /// Cuts a window out of a picture, to be compared with many others.
     ///
     /// `None` where it is flat.

@@ -9,14 +9,15 @@
 //! No particle lives long enough to drift far, and after each frame corners are born (J. Shi, C. Tomasi, CVPR 1994) wherever
 //! none is near, so that their density holds.
 
-mod flow;
+mod spots;
 #[cfg(test)]
 mod tests;
 
-pub use flow::{Flow, Spot};
+pub use spots::{Spot, Spots};
 
 use crate::klt::{self, State};
 use crate::pyramid::Pyramid;
+use crate::work::in_looks;
 use crate::{Gray, Point, detect};
 
 /// How particles live.
@@ -55,9 +56,6 @@ pub struct Swarm {
     n_born: u64,
 }
 
-/// Particles that are followed between two looks at whether to go on.
-const PARTICLES_A_LOOK: usize = 2048;
-
 impl Swarm {
     /// Those of a first picture. Their lives have all lengths, so that not all end at once.
     #[must_use]
@@ -91,15 +89,11 @@ impl Swarm {
         [prev, next]: [&Pyramid; 2],
         max_threads: usize,
         go_on: &mut dyn FnMut(f64) -> bool,
-    ) -> Option<Flow> {
+    ) -> Option<Spots> {
         let from: Vec<Point> = self.living.iter().map(|particle| particle.at).collect();
-        let mut flows = Vec::with_capacity(from.len());
-        for part in from.chunks(PARTICLES_A_LOOK) {
-            if !go_on(flows.len() as f64 / from.len() as f64) {
-                return None;
-            }
-            flows.extend(klt::track(prev, next, part, None, &self.params.klt, max_threads));
-        }
+        let flows = in_looks(&from, self.params.klt.cost_ns(), go_on, |part| {
+            klt::track(prev, next, part, None, &self.params.klt, max_threads)
+        })?;
         let mut spots = Vec::with_capacity(from.len());
         let mut flows = flows.into_iter();
         self.living.retain_mut(|particle| {
@@ -113,7 +107,7 @@ impl Swarm {
             particle.left > 0
         });
         self.bear(&next.picture());
-        Some(Flow::new(spots, self.params.scale_px, self.params.reach_px))
+        Some(Spots::new(spots, self.params.scale_px, self.params.reach_px))
     }
 
     /// Particles at corners away from those that live.

@@ -23,7 +23,8 @@ use honami_model::picture::Gray;
 
 use crate::field::{Field, Grid};
 use crate::sample;
-use correlate::Correlator;
+use crate::work::{in_looks, shared, threads};
+use correlate::{Correlator, Scratch};
 
 /// How to measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -151,40 +152,21 @@ impl Pass {
         n_threads: usize,
         go_on: &dyn Fn(f64) -> bool,
     ) -> Option<Vec<Option<Vector>>> {
-        /// Pixels of windows that are correlated in a few milliseconds.
-        const PIXELS_A_LOOK: usize = 30_000;
+        /// To transform a window there and back, a pixel.
+        const PIXEL_NS: f64 = 100.0;
         let correlator = Correlator::new(self.radius, params.weighting);
         let nodes: Vec<_> = self.grid.nodes().collect();
-        let side = 2 * self.radius as usize + 1;
-        let n_threads = n_threads.max(1);
-        let a_thread = (PIXELS_A_LOOK / (side * side)).max(1);
-        let mut found = vec![None; nodes.len()];
-        let mut benches: Vec<_> = (0..n_threads).map(|_| correlator.bench()).collect();
-        for (i, (nodes, found)) in
-            nodes.chunks(a_thread * n_threads).zip(found.chunks_mut(a_thread * n_threads)).enumerate()
-        {
-            if !go_on((i * a_thread * n_threads) as f64 / self.grid.len() as f64) {
-                return None;
-            }
-            let parts = nodes.chunks(a_thread).zip(found.chunks_mut(a_thread)).zip(&mut benches);
-            let work =
-                |nodes: &[crate::Point], found: &mut [Option<Vector>], bench: &mut correlate::Bench| {
-                    for (&node, found) in nodes.iter().zip(found) {
-                        *found = self.look(from, to, before, &correlator, bench, node);
-                    }
-                };
-            std::thread::scope(|scope| {
-                let mut parts = parts;
-                let first = parts.next();
-                for ((nodes, found), bench) in parts {
-                    scope.spawn(move || work(nodes, found, bench));
-                }
-                if let Some(((nodes, found), bench)) = first {
-                    work(nodes, found, bench);
+        let cost_ns = PIXEL_NS * f64::from(2 * self.radius + 1).powi(2);
+        in_looks(&nodes, cost_ns, &mut |share| go_on(share), |nodes| {
+            let mut found = vec![None; nodes.len()];
+            shared([&mut found], 1, threads(nodes.len(), cost_ns, n_threads), |first, [found]| {
+                let mut scratch = correlator.scratch();
+                for (found, &node) in found.iter_mut().zip(&nodes[first..]) {
+                    *found = self.look(from, to, before, &correlator, &mut scratch, node);
                 }
             });
-        }
-        Some(found)
+            found
+        })
     }
 
     /// Measures at one node.
@@ -194,7 +176,7 @@ impl Pass {
         to: &'p Gray<'p>,
         before: Option<&Field>,
         correlator: &Correlator,
-        bench: &mut correlate::Bench,
+        scratch: &mut Scratch,
         node: crate::Point,
     ) -> Option<Vector> {
         let guess = before.and_then(|field| field.at(node)).unwrap_or([0.0; 2]);
@@ -206,15 +188,15 @@ impl Pass {
         let span = self.radius as f32;
         let reach = span + correlator.reach() as f32;
         let there = [node[0] + shift[0], node[1] + shift[1]];
-        bench.take(correlator, pixels(from, node, span))?;
-        bench.correlate(correlator, pixels(to, there, reach));
+        scratch.take(correlator, pixels(from, node, span))?;
+        scratch.correlate(correlator, pixels(to, there, reach));
         if self.fractions {
-            bench.turn();
-            bench.take(correlator, pixels(to, there, span))?;
-            bench.correlate(correlator, pixels(from, node, reach));
-            bench.meet();
+            scratch.turn();
+            scratch.take(correlator, pixels(to, there, span))?;
+            scratch.correlate(correlator, pixels(from, node, reach));
+            scratch.meet();
         }
-        let peak = bench.peak(correlator)?;
+        let peak = scratch.peak(correlator)?;
         Some(Vector { to: [shift[0] + peak.at[0], shift[1] + peak.at[1]], ratio: peak.ratio })
     }
 }

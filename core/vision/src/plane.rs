@@ -3,14 +3,26 @@
 //! Every pixel is computed by itself in the same order of operations, so that results are the same bits for any number
 //! of threads. A pixel `(x, y)` of a level lies at `(2x, 2y)` of the finer one.
 
-mod bands;
 #[cfg(test)]
 mod tests;
 
 use honami_model::picture::Gray;
 
 use crate::pyramid::mirrored;
-pub(crate) use bands::bands;
+use crate::work::{shared, threads};
+
+/// Calls `work` on bands of rows of several arrays of one size, as [`shared`] does, on as many threads as are worth it.
+pub(crate) fn bands<const N: usize>(
+    arrays: [&mut [f32]; N],
+    width: usize,
+    max_threads: usize,
+    work: impl Fn(usize, [&mut [f32]; N]) + Sync,
+) {
+    /// A filter or a warp takes as long for a value, nanoseconds, or less.
+    const VALUE_NS: f64 = 8.0;
+    let n = arrays.first().map_or(0, |array| array.len());
+    shared(arrays, width, threads(n, VALUE_NS, max_threads), work);
+}
 
 /// A picture of floats: `height` rows of `width`.
 #[derive(Clone, Debug, PartialEq)]
@@ -152,7 +164,7 @@ fn lesser(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
-fn greater(a: f32, b: f32) -> f32 {
+pub(crate) fn greater(a: f32, b: f32) -> f32 {
     if a < b { b } else { a }
 }
 
@@ -251,11 +263,6 @@ impl Scales {
     pub fn picture(&self) -> Gray<'_> {
         Gray::packed(&self.picture, self.levels[0].width as u32, self.levels[0].height as u32)
     }
-
-    /// Full size first.
-    pub(crate) fn levels(&self) -> &[Plane] {
-        &self.levels
-    }
 }
 
 /// Displacements of every pixel, pixels: to the right, and down.
@@ -307,4 +314,33 @@ impl Motion {
         });
         [delta, inside]
     }
+}
+
+/// Motion from one picture to another of its size: from the coarsest level at rest to the finest, each from the solution
+/// of the coarser one (errata E4). `refine` betters the motion of a level, and asks with its share of that level whether
+/// to go on; `None` where `go_on`, told the share of all the work, said no.
+///
+/// # Panics
+/// When the pictures differ in size.
+#[track_caller]
+pub(crate) fn descend(
+    [from, to]: [&Scales; 2],
+    n_levels: u32,
+    n_threads: usize,
+    go_on: &dyn Fn(f64) -> bool,
+    mut refine: impl FnMut(Motion, &Plane, &Plane, &dyn Fn(f64) -> bool) -> Option<Motion>,
+) -> Option<Motion> {
+    let pairs: Vec<_> = from.levels.iter().zip(&to.levels).take(n_levels.max(1) as usize).collect();
+    let size = |plane: &Plane| (plane.width, plane.height);
+    assert_eq!(size(pairs[0].0), size(pairs[0].1), "size of the two pictures");
+    let mut motion = Motion::blank(pairs[pairs.len() - 1].0);
+    for (k, &(i, j)) in pairs.iter().enumerate().rev() {
+        if size(i) != size(&motion.u) {
+            motion = motion.doubled(i.width, i.height, n_threads);
+        }
+        // A level has four times the pixels of the next coarser one.
+        let all = 0.25_f64.powi(k as i32);
+        motion = refine(motion, i, j, &|done| go_on(all * (0.25 + 0.75 * done)))?;
+    }
+    Some(motion)
 }

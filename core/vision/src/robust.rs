@@ -17,14 +17,14 @@ mod region;
 #[cfg(test)]
 mod tests;
 
-pub use region::{Moved, Region, follow};
+pub use region::{Moved, Region, State, follow};
 
 /// How the mode is looked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Params {
     /// Standard deviation of the noise of one displacement, pixels; 0 lets the covariance collapse (errata E7).
     pub floor_px: f64,
-    /// The search ends before a step that fewer samples than this would decide; at least 2 count as 2.
+    /// So many samples must decide, at least 2: fewer have no mode, and the search ends before a step of fewer.
     pub min_effective: f64,
     /// A step shorter than this, and that changes the spread by less, ends the search, pixels.
     pub epsilon_px: f64,
@@ -35,6 +35,14 @@ pub struct Params {
 impl Default for Params {
     fn default() -> Self {
         Self { floor_px: 0.4, min_effective: 3.0, epsilon_px: 1e-3, max_iterations: 50 }
+    }
+}
+
+impl Params {
+    /// So many samples must decide: a single one has no covariance.
+    #[must_use]
+    pub fn least(&self) -> f64 {
+        self.min_effective.max(2.0)
     }
 }
 
@@ -59,8 +67,8 @@ pub struct Mode {
 pub enum Degenerate {
     /// There are none.
     Empty,
-    /// There is one, which has no covariance.
-    Single,
+    /// There are fewer than must decide: [`Params::least`].
+    Few,
     /// All are the same, and the floor is 0.
     Equal,
     /// All lie on a line, and the floor is 0.
@@ -73,7 +81,7 @@ impl std::fmt::Display for Degenerate {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
             Self::Empty => "there are no samples",
-            Self::Single => "a single sample has no covariance",
+            Self::Few => "there are fewer samples than must decide",
             Self::Equal => "all samples are equal: give a floor above 0",
             Self::Collinear => "all samples lie on a line: give a floor above 0",
             Self::NotFinite => "samples must be finite",
@@ -89,9 +97,12 @@ impl std::error::Error for Degenerate {}
 /// [`Degenerate`] for samples without a metric of their own.
 pub fn mode(samples: &[[f64; 2]], params: &Params) -> Result<Mode, Degenerate> {
     let mut now = start(samples, params.floor_px)?;
+    if now.effective < params.least() {
+        return Err(Degenerate::Few);
+    }
     for _ in 0..params.max_iterations {
         let Some(next) = step(samples, &now, params.floor_px) else { break };
-        if next.effective < params.min_effective.max(2.0) {
+        if next.effective < params.least() {
             break;
         }
         let moved = (next.at[0] - now.at[0]).hypot(next.at[1] - now.at[1]);
@@ -112,7 +123,7 @@ pub fn start(samples: &[[f64; 2]], floor_px: f64) -> Result<Mode, Degenerate> {
     let n = samples.len() as f64;
     match samples {
         [] => return Err(Degenerate::Empty),
-        [_] => return Err(Degenerate::Single),
+        [_] => return Err(Degenerate::Few),
         [first, ..] if floor_px <= 0.0 && samples.iter().all(|x| is_same(x, first)) => {
             return Err(Degenerate::Equal);
         }

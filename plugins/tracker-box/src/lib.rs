@@ -14,6 +14,7 @@ use honami_plugin::{
 use honami_vision::boxes::{self, Boxes, Match, Template};
 use honami_vision::klt::State;
 use honami_vision::ncc::Ncc;
+use honami_vision::work;
 use settings::{Settings, Source};
 
 /// Looks for each point's surroundings in every new frame.
@@ -108,13 +109,11 @@ impl Live {
     }
 }
 
-/// Points that are looked for between two looks at whether to go on: some ten milliseconds.
-fn points_a_look(params: &boxes::Params) -> usize {
-    /// Pixels compared in that time.
-    const PIXELS: usize = 200_000_000;
-    let places = (2 * params.search_px as usize + 1).pow(2);
-    let area = (2 * params.radius_px as usize + 1).pow(2);
-    (PIXELS / (places * area)).clamp(1, 2048)
+/// How long it takes at most to look for a point, roughly, nanoseconds: a window is compared at every place.
+fn cost_ns(params: &boxes::Params) -> f64 {
+    const PIXEL_NS: f64 = 0.05;
+    let [places, area] = [params.search_px, params.radius_px].map(|r| f64::from(2 * r + 1).powi(2));
+    PIXEL_NS * places * area
 }
 
 impl BoxMatching {
@@ -123,7 +122,7 @@ impl BoxMatching {
         let Some([now, before]) = &self.pictures else { return Ok(()) };
         let mut live: Vec<_> = self.points.iter_mut().collect();
         let n = live.len();
-        for part in live.chunks_mut(points_a_look(&self.params)) {
+        for part in live.chunks_mut(work::a_look(2.0 * cost_ns(&self.params))) {
             cx.progress(out.rows().len() as f64 / n as f64, "following points")?;
             let seen: Vec<&Live> =
                 part.iter().map(|(_, point)| &**point).filter(|p| p.status == Status::Tracked).collect();

@@ -3,7 +3,7 @@
 #[cfg(test)]
 mod tests;
 
-use honami_follow::{Detection, Losing, Motion, Particles, Trust};
+use honami_follow::{Detection, Follower, Losing, Motion, Trust};
 use honami_plugin::{Info, export, params};
 use honami_vision::Gray;
 use honami_vision::field::Field;
@@ -94,8 +94,12 @@ impl Motion for Settings {
         horn_schunck::measure(from, to, &params, n_threads, go_on)
     }
 
+    fn is_backward(&self) -> bool {
+        self.backward
+    }
+
     fn trust(&self) -> Trust<'_> {
-        Trust { backward: self.backward, radius_px: QUALITY_RADIUS_PX, losing: &self.losing }
+        Trust { radius_px: QUALITY_RADIUS_PX, losing: &self.losing }
     }
 
     fn detection(&self) -> &Detection {
@@ -104,7 +108,7 @@ impl Motion for Settings {
 }
 
 /// Points that follow the smoothest motion.
-type HornSchunck = Particles<Settings>;
+type HornSchunck = Follower<Settings>;
 
 export! {
     library: { id: "org.honami.horn-schunck", version: env!("CARGO_PKG_VERSION"), license: "MIT OR Apache-2.0" },

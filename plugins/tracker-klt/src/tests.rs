@@ -1,7 +1,8 @@
 //! The plugin as a host drives it, on pictures whose motion is known.
 
 use honami_follow::{Detection, Losing};
-use honami_plugin::{Detect, Gray, testing};
+use honami_plugin::testing::{self, Clip};
+use honami_plugin::{Detect, Frame, Gray, Points, Seed, Status, Stream, Tracker};
 use honami_vision::texture;
 
 use super::*;
@@ -10,27 +11,27 @@ mod dense;
 
 const WIDTH: u32 = 240;
 const HEIGHT: u32 = 180;
+const MIDDLE: [f64; 2] = [119.5, 89.5];
 /// Motion from each frame to the next, pixels.
 const STEP: [f64; 2] = [1.7, -0.9];
 
-/// Frames of a texture that drifts; a gray disc, still, hides it around (60, 60) from frame 3 on.
-fn clip(n: usize) -> Vec<Vec<u8>> {
-    let frame = |t: usize| {
-        texture::render(WIDTH, HEIGHT, |x, y| {
-            if t >= 3 && (x - 60.0).hypot(y - 60.0) < 25.0 {
-                return 128.0;
-            }
-            texture::value(2, x - STEP[0] * t as f64, y - STEP[1] * t as f64)
-        })
-    };
-    (0..n).map(frame).collect()
+/// A texture that drifts; a gray disc, still, hides it around (60, 60) from frame 3 on.
+fn clip(n_frames: usize) -> Clip {
+    Clip::new(WIDTH, HEIGHT, n_frames, |x, y, t| {
+        if t >= 3 && (x - 60.0).hypot(y - 60.0) < 25.0 {
+            return 128.0;
+        }
+        texture::value(2, x - STEP[0] * t as f64, y - STEP[1] * t as f64)
+    })
 }
 
-fn frames<'a>(clip: &'a [Vec<u8>]) -> impl Iterator<Item = Frame<'a>> {
-    let frame = |(t, data): (usize, &'a Vec<u8>)| {
-        Frame::new(Gray::packed(data, WIDTH, HEIGHT), t as i64, t as f64 / 25.0)
-    };
-    clip.iter().enumerate().map(frame)
+/// A texture that turns by so many radians a frame.
+fn turning(n_frames: usize, turn: f64) -> Clip {
+    Clip::new(WIDTH, HEIGHT, n_frames, |x, y, t| {
+        let (sin, cos) = (turn * t as f64).sin_cos();
+        let (dx, dy) = (x - MIDDLE[0], y - MIDDLE[1]);
+        texture::value(5, MIDDLE[0] + cos * dx + sin * dy, MIDDLE[1] - sin * dx + cos * dy)
+    })
 }
 
 fn seed(id: u32, x: f32, y: f32) -> Seed {
@@ -39,10 +40,6 @@ fn seed(id: u32, x: f32, y: f32) -> Seed {
 
 fn losing(lose_fb: f64, lose_ncc: f64) -> Settings {
     Settings { losing: Losing { lose_fb, lose_ncc }, ..Settings::default() }
-}
-
-fn truth(from: &Seed, t: usize) -> [f32; 2] {
-    [from.x + (STEP[0] * t as f64) as f32, from.y + (STEP[1] * t as f64) as f32]
 }
 
 #[test]
@@ -56,13 +53,11 @@ fn points_are_followed_measured_lost_and_left() {
     let clip = clip(8);
     let seeds = [seed(4, 150.2, 100.8), seed(9, 57.0, 62.0), seed(7, 232.0, 90.0)];
     let strict = losing(2.0, 0.0);
-    let stream = testing::stream(WIDTH, HEIGHT);
-    let rows = testing::track::<Klt>(&strict, &stream, &seeds, frames(&clip)).unwrap();
-    for (t, rows) in rows[..8].iter().enumerate() {
+    let rows = clip.track::<Klt>(&strict, &seeds).unwrap();
+    for (t, rows) in rows.iter().enumerate() {
         assert_eq!(rows.iter().map(|r| r.id).collect::<Vec<_>>(), [4, 7, 9], "frame {t}");
         let [plain, leaving, hidden] = [rows[0], rows[1], rows[2]];
-        let [x, y] = truth(&seeds[0], t);
-        assert!((plain.x - x).hypot(plain.y - y) < 0.1, "frame {t}: {plain:?} for {x}, {y}");
+        assert!(testing::off_px(&plain, &seeds[0], STEP, t) < 0.1, "frame {t}: {plain:?}");
         assert_eq!(plain.status, Status::Tracked);
         // Quality belongs to a step: the first frame has none.
         assert_eq!((plain.fb.is_some(), plain.ncc.is_some()), (t > 0, t > 0));
@@ -83,7 +78,7 @@ fn seeding_again_revives_and_retiring_ends() {
         Klt::begin(&Settings::default(), &testing::stream(WIDTH, HEIGHT), &testing::cx()).unwrap();
     let push = |tracker: &mut Klt, t: usize| {
         let mut out = Points::default();
-        tracker.push(&frames(&clip).nth(t).unwrap(), &mut out, &testing::cx()).unwrap();
+        tracker.push(&clip.frame(t), &mut out, &testing::cx()).unwrap();
         out.rows().to_vec()
     };
     tracker.seed(&[seed(1, 57.0, 62.0), seed(2, 150.0, 100.0)], &testing::cx()).unwrap();
@@ -99,31 +94,21 @@ fn seeding_again_revives_and_retiring_ends() {
         rows.iter().map(|r| (r.id, r.status)).collect::<Vec<_>>(),
         [(1, Status::Tracked), (3, Status::Tracked)]
     );
-    let [x, y] = truth(&revived, 1);
-    assert!((rows[0].x - x).hypot(rows[0].y - y) < 0.1, "{:?}", rows[0]);
+    assert!(testing::off_px(&rows[0], &revived, STEP, 1) < 0.1, "{:?}", rows[0]);
 }
 
 #[test]
 fn an_affine_window_follows_a_turn_that_translation_drifts_off() {
     const TURN: f64 = 0.08;
-    let middle = [120.0, 90.0];
-    let turned = |angle: f64| {
-        let (sin, cos) = angle.sin_cos();
-        texture::render(WIDTH, HEIGHT, |x, y| {
-            let (dx, dy) = (x - middle[0], y - middle[1]);
-            texture::value(5, middle[0] + cos * dx + sin * dy, middle[1] - sin * dx + cos * dy)
-        })
-    };
-    let clip: Vec<_> = (0..6_u8).map(|t| turned(TURN * f64::from(t))).collect();
+    let clip = turning(6, TURN);
     let seeds: Vec<Seed> =
         (0..40).map(|i| seed(i, 95.0 + 6.0 * (i % 8) as f32, 60.0 + 12.0 * (i / 8) as f32)).collect();
     let off = |settings: &Settings| {
-        let stream = testing::stream(WIDTH, HEIGHT);
-        let rows = testing::track::<Klt>(settings, &stream, &seeds, frames(&clip)).unwrap();
+        let rows = clip.track::<Klt>(settings, &seeds).unwrap();
         let (sin, cos) = (5.0 * TURN).sin_cos();
         let errors = rows[5].iter().zip(&seeds).map(|(row, seed)| {
-            let (dx, dy) = (f64::from(seed.x) - middle[0], f64::from(seed.y) - middle[1]);
-            let want = [middle[0] + cos * dx - sin * dy, middle[1] + sin * dx + cos * dy];
+            let (dx, dy) = (f64::from(seed.x) - MIDDLE[0], f64::from(seed.y) - MIDDLE[1]);
+            let want = [MIDDLE[0] + cos * dx - sin * dy, MIDDLE[1] + sin * dx + cos * dy];
             (f64::from(row.x) - want[0]).hypot(f64::from(row.y) - want[1])
         });
         errors.sum::<f64>() / seeds.len() as f64
@@ -138,8 +123,7 @@ fn limits_lose_points() {
     let clip = clip(2);
     let seeds: Vec<Seed> = (0..40).map(|i| seed(i, 40.0 + 4.0 * i as f32, 40.0 + 2.5 * i as f32)).collect();
     let tracked = |settings: &Settings| {
-        let rows =
-            testing::track::<Klt>(settings, &testing::stream(WIDTH, HEIGHT), &seeds, frames(&clip)).unwrap();
+        let rows = clip.track::<Klt>(settings, &seeds).unwrap();
         rows[1].iter().filter(|r| r.status == Status::Tracked).count()
     };
     assert_eq!(tracked(&Settings::default()), 40);
@@ -154,7 +138,7 @@ fn threads_do_not_change_a_bit() {
     let seeds: Vec<Seed> = (0..300).map(|i| seed(i, (i * 17 % 240) as f32, (i * 29 % 180) as f32)).collect();
     let rows = [1, 2, 7].map(|max_threads| {
         let stream = Stream { max_threads, ..testing::stream(WIDTH, HEIGHT) };
-        testing::track::<Klt>(&Settings::default(), &stream, &seeds, frames(&clip)).unwrap()
+        testing::track::<Klt>(&Settings::default(), &stream, &seeds, clip.frames()).unwrap()
     });
     assert_eq!(rows[0], rows[1]);
     assert_eq!(rows[0], rows[2]);
@@ -163,7 +147,7 @@ fn threads_do_not_change_a_bit() {
 #[test]
 fn detection_minds_mask_points_and_both_maxima() {
     let clip = clip(1);
-    let frame = frames(&clip).next().unwrap();
+    let frame = clip.frame(0);
     // Only the left half; rows of the mask are padded.
     let mask: Vec<u8> = (0..(WIDTH + 3) * HEIGHT).map(|i| u8::from(i % (WIDTH + 3) < 120)).collect();
     let mask = Gray { data: &mask, width: WIDTH, height: HEIGHT, stride: WIDTH as usize + 3 };
@@ -184,7 +168,7 @@ fn a_frame_of_another_size_is_refused() {
     let clip = clip(1);
     let mut tracker =
         Klt::begin(&Settings::default(), &testing::stream(WIDTH, HEIGHT), &testing::cx()).unwrap();
-    let frame = frames(&clip).next().unwrap();
+    let frame = clip.frame(0);
     let mut out = Points::default();
     tracker.push(&frame, &mut out, &testing::cx()).unwrap();
     let smaller = Frame { gray: Gray { width: 100, ..frame.gray }, ..frame };

@@ -3,7 +3,7 @@
 #[cfg(test)]
 mod tests;
 
-use honami_follow::{Detection, Losing, Motion, Particles, Trust};
+use honami_follow::{Detection, Follower, Losing, Motion, Trust};
 use honami_plugin::{Info, export, params};
 use honami_vision::Gray;
 use honami_vision::field::Field;
@@ -76,8 +76,12 @@ impl Motion for Settings {
         lucas_kanade::measure(from, to, &params, n_threads, go_on)
     }
 
+    fn is_backward(&self) -> bool {
+        self.backward
+    }
+
     fn trust(&self) -> Trust<'_> {
-        Trust { backward: self.backward, radius_px: self.radius as u32, losing: &self.losing }
+        Trust { radius_px: self.radius as u32, losing: &self.losing }
     }
 
     fn detection(&self) -> &Detection {
@@ -86,7 +90,7 @@ impl Motion for Settings {
 }
 
 /// Points that follow the motion of their windows.
-type LucasKanade = Particles<Settings>;
+type LucasKanade = Follower<Settings>;
 
 export! {
     library: { id: "org.honami.lucas-kanade", version: env!("CARGO_PKG_VERSION"), license: "MIT OR Apache-2.0" },

@@ -11,7 +11,7 @@ use honami_plugin::{
     Cx, DetectFn, Frame, Info, Point, Points, Result, Seed, Status, Stream, Tracker, export,
 };
 use honami_vision::meanshift::{self, Colours, Found, Histogram, Params, Region, Search, Target};
-use honami_vision::{Chroma, Gray};
+use honami_vision::{Chroma, Gray, work};
 use settings::Settings;
 
 /// Moves each region to where its colours are most like those at its key-frame, then back again.
@@ -87,17 +87,16 @@ impl Tracker for MeanShift {
     }
 }
 
-/// Points that are followed between two looks at whether to go on: some ten milliseconds.
-const POINTS_A_LOOK: usize = 1024;
-
 impl MeanShift {
     /// Adds a row for every point, in the order of their ids.
     fn follow(&mut self, out: &mut Points, cx: &Cx<'_>) -> Result<()> {
         let Some([now, before]) = &self.pictures else { return Ok(()) };
         let mut live: Vec<_> = self.points.iter_mut().collect();
         let n = live.len();
-        for (k, part) in live.chunks_mut(POINTS_A_LOOK).enumerate() {
-            cx.progress((k * POINTS_A_LOOK) as f64 / n as f64, "following regions")?;
+        // There and back.
+        let a_look = work::a_look(2.0 * self.params.cost_ns(self.settings.largest_px()));
+        for part in live.chunks_mut(a_look) {
+            cx.progress(out.rows().len() as f64 / n as f64, "following regions")?;
             learn(before, part, &self.params);
             let steps = steps([before, now], part, &self.params, self.n_threads);
             for ((id, point), step) in part.iter_mut().zip(steps) {
@@ -166,8 +165,8 @@ impl Live {
             return None;
         }
         let started = self.region.at;
-        let radius = settings.region as f32;
-        region.radius_px = region.radius_px.clamp(0.5 * radius, 2.0 * radius);
+        let [smallest, largest] = [0.5 * settings.region, settings.largest_px()].map(|px| px as f32);
+        region.radius_px = region.radius_px.clamp(smallest, largest);
         let centre = Region { radius_px: 0.0, ..region };
         self.status = if reaches_out(&centre, size) { Status::Outside } else { Status::Tracked };
         self.region = region;

@@ -34,6 +34,11 @@ impl Settings {
         Bins { luma: self.luma_bins as u32, chroma: self.chroma_bins as u32 }
     }
 
+    /// How large a region may become, radius in pixels.
+    pub(crate) fn largest_px(&self) -> f64 {
+        if self.adapt { 2.0 * self.region } else { self.region }
+    }
+
     pub(crate) fn search(&self) -> Params {
         Params { max_iterations: self.iterations as u32, epsilon_px: self.epsilon as f32, adapts: self.adapt }
     }

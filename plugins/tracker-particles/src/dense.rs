@@ -5,6 +5,7 @@ use honami_plugin::{Cx, Error, Field, Frame, Result};
 use honami_vision::field::Grid;
 use honami_vision::particles::Swarm;
 use honami_vision::pyramid::Pyramid;
+use honami_vision::work;
 
 use crate::settings::Settings;
 
@@ -24,9 +25,13 @@ pub(crate) fn field(
     let mut swarm = Swarm::new(&params, &picture(from));
     let [from, to] =
         [from, to].map(|frame| Pyramid::new(&picture(frame), params.klt.levels, params.klt.radius_px));
-    let mut go_on = |share: f64| cx.progress(share, "following particles").is_ok();
-    let flow = swarm.step([&from, &to], max_threads as usize, &mut go_on).ok_or_else(Error::cancelled)?;
+    let mut go_on = |share: f64| cx.progress(0.5 * share, "following particles").is_ok();
+    let spots = swarm.step([&from, &to], max_threads as usize, &mut go_on).ok_or_else(Error::cancelled)?;
     let size = from.picture();
     let grid = Grid::over(size.width, size.height, STEP_PX.max(settings.reach as u32 / 4));
-    Ok(dense(grid, grid.nodes().map(|node| flow.at(node))))
+    let nodes: Vec<_> = grid.nodes().collect();
+    let mut go_on = |share: f64| cx.progress(0.5 + 0.5 * share, "measuring motion").is_ok();
+    let at = |part: &[honami_vision::Point]| part.iter().map(|&node| spots.at(node)).collect();
+    let vectors = work::in_looks(&nodes, spots.cost_ns(), &mut go_on, at).ok_or_else(Error::cancelled)?;
+    Ok(dense(grid, vectors))
 }

@@ -15,8 +15,9 @@ use honami_plugin::{
 };
 use honami_vision::Gray;
 use honami_vision::ncc::Ncc;
-use honami_vision::particles::{Flow, Params, Swarm};
+use honami_vision::particles::{Params, Spots, Swarm};
 use honami_vision::pyramid::Pyramid;
+use honami_vision::work;
 use settings::Settings;
 
 /// Moves each point with the particles around it.
@@ -91,7 +92,7 @@ impl Tracker for Particles {
 
     fn push(&mut self, frame: &Frame<'_>, out: &mut Points, cx: &Cx<'_>) -> Result<()> {
         let gray = picture(frame);
-        let flow = match &mut self.seen {
+        let spots = match &mut self.seen {
             None => {
                 let now = Pyramid::new(&gray, self.params.klt.levels, self.params.klt.radius_px);
                 let swarm = Swarm::new(&self.params, &gray);
@@ -108,13 +109,14 @@ impl Tracker for Particles {
         };
         let Some(seen) = &self.seen else { return Ok(()) };
         let pictures = [seen.before.picture(), seen.now.picture()];
+        let a_look = work::a_look(spots.as_ref().map_or(0.0, Spots::cost_ns) + self.ncc.cost_ns());
         for (k, (&id, point)) in self.points.iter_mut().enumerate() {
-            if k % POINTS_A_LOOK == 0 {
+            if k % a_look == 0 {
                 cx.progress(1.0, "moving points")?;
             }
             let mut row = Point::new(id, point.at[0], point.at[1], point.status);
-            if let Some(flow) = flow.as_ref().filter(|_| point.status == Status::Tracked) {
-                carry(&mut row, flow, &pictures, &mut self.ncc);
+            if let Some(spots) = spots.as_ref().filter(|_| point.status == Status::Tracked) {
+                carry(&mut row, spots, &pictures, &mut self.ncc);
                 *point = Live { at: [row.x, row.y], status: row.status };
             }
             out.add(row);
@@ -124,26 +126,19 @@ impl Tracker for Particles {
     }
 }
 
-/// So many points take some milliseconds.
-const POINTS_A_LOOK: usize = 2048;
-
 /// Moves a point, or says why it does not move.
-fn carry(row: &mut Point, flow: &Flow, [before, now]: &[Gray<'_>; 2], ncc: &mut Ncc) {
+fn carry(row: &mut Point, spots: &Spots, [before, now]: &[Gray<'_>; 2], ncc: &mut Ncc) {
     let at = [row.x, row.y];
-    let inside = |[x, y]: honami_vision::Point| {
-        let [width, height] = [now.width, now.height].map(|size| size as f32 - 0.5);
-        (-0.5..=width).contains(&x) && (-0.5..=height).contains(&y)
-    };
-    if !inside(at) {
+    if !now.holds(at) {
         row.status = Status::Outside;
         return;
     }
-    let Some(motion) = flow.at(at) else {
+    let Some(motion) = spots.at(at) else {
         row.status = Status::Lost;
         return;
     };
     let to = [at[0] + motion[0], at[1] + motion[1]];
-    if !inside(to) {
+    if !now.holds(to) {
         row.status = Status::Outside;
         return;
     }

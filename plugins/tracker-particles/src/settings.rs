@@ -1,9 +1,9 @@
 //! The parameters of the plugin, and what they mean to the algorithm.
 
-use honami_follow::Detection;
+use honami_follow::{Detection, Search};
 use honami_plugin::params;
+use honami_vision::detect;
 use honami_vision::particles::Params;
-use honami_vision::{detect, klt};
 
 params! {
     /// What the user may choose.
@@ -26,20 +26,7 @@ params! {
         radius: i64 = 7 => {
             label: "Template radius", group: "Tracking", unit: "px", min: 1, max: 100, soft_max: 31,
         },
-        /// Levels of the pyramid; each doubles the displacement that can be followed.
-        levels: i64 = 4 => { label: "Levels", group: "Tracking", min: 1, max: 10, soft_max: 6 },
-        /// The most steps on each level.
-        iterations: i64 = 30 => {
-            label: "Iterations", group: "Tracking", min: 1, max: 1000, soft_max: 100, advanced: true,
-        },
-        /// A shorter step ends the search on a level.
-        epsilon: f64 = 0.01 => {
-            label: "Epsilon", group: "Tracking", unit: "px", min: 1e-5, max: 1, scale: "log", advanced: true,
-        },
-        /// A template whose gradient matrix has a smaller eigenvalue is flat, and the particle ends (OpenCV's measure).
-        min_eigenvalue: f64 = 1e-4 => {
-            label: "Minimum eigenvalue", group: "Tracking", min: 0, max: 1, advanced: true,
-        },
+        ..search: Search,
         ..detection: Detection,
     }
 }
@@ -47,13 +34,7 @@ params! {
 impl Settings {
     pub(crate) fn swarm(&self) -> Params {
         Params {
-            klt: klt::Params {
-                radius_px: self.radius as u32,
-                levels: self.levels as u32,
-                max_iterations: self.iterations as u32,
-                epsilon_px: self.epsilon as f32,
-                min_eigenvalue: self.min_eigenvalue as f32,
-            },
+            klt: self.search.klt(self.radius),
             corners: detect::Params {
                 method: detect::Method::ShiTomasi,
                 max_corners: self.particles as usize,

@@ -3,7 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Mutex;
 
-use honami_plugin::{Gray, Listener, testing};
+use honami_follow::Search;
+use honami_plugin::Listener;
+use honami_plugin::testing::{self, Clip};
 use honami_vision::texture;
 
 use super::*;
@@ -13,30 +15,19 @@ const HEIGHT: u32 = 120;
 /// Motion from each frame to the next, pixels.
 const STEP: [f64; 2] = [1.4, -0.7];
 
-/// Frames of a texture that drifts.
-fn clip(n: usize) -> Vec<Vec<u8>> {
-    let frame = |t: usize| {
-        texture::render(WIDTH, HEIGHT, |x, y| {
-            texture::value(2, x - STEP[0] * t as f64, y - STEP[1] * t as f64)
-        })
-    };
-    (0..n).map(frame).collect()
-}
-
-fn frames(clip: &[Vec<u8>]) -> impl Iterator<Item = Frame<'_>> {
-    clip.iter()
-        .enumerate()
-        .map(|(t, data)| Frame::new(Gray::packed(data, WIDTH, HEIGHT), t as i64, t as f64 / 25.0))
+fn clip(n_frames: usize) -> Clip {
+    Clip::drifting(WIDTH, HEIGHT, n_frames, STEP, |x, y| texture::value(2, x, y))
 }
 
 fn settings() -> Settings {
-    Settings { life: 5, spacing: 10.0, reach: 25.0, levels: 2, ..Settings::default() }
+    let search = Search { levels: 2, ..Search::default() };
+    Settings { life: 5, spacing: 10.0, reach: 25.0, search, ..Settings::default() }
 }
 
 fn track(settings: &Settings, births: std::ops::Range<u32>, seeds: &[Seed], n: usize) -> Vec<Vec<Point>> {
     let clip = clip(n);
     let stream = Stream { births, ..testing::stream(WIDTH, HEIGHT) };
-    let mut rows = testing::track::<Particles>(settings, &stream, seeds, frames(&clip)).unwrap();
+    let mut rows = testing::track::<Particles>(settings, &stream, seeds, clip.frames()).unwrap();
     rows.truncate(n);
     rows
 }
@@ -53,8 +44,7 @@ fn points_move_with_the_particles_around_them() {
     for (t, rows) in rows.iter().enumerate() {
         let ids: Vec<u32> = rows.iter().map(|row| row.id).collect();
         assert_eq!(ids, [4, 9], "without numbers for births there are only the seeded");
-        let truth = [60.2 + STEP[0] * t as f64, 70.8 + STEP[1] * t as f64];
-        let error = (f64::from(rows[0].x) - truth[0]).hypot(f64::from(rows[0].y) - truth[1]);
+        let error = testing::off_px(&rows[0], &seeds[0], STEP, t);
         assert!(rows[0].status == Status::Tracked && error < 0.3, "frame {t}: {:?}, {error} px off", rows[0]);
         assert_eq!(rows[0].ncc.is_some(), t > 0, "quality belongs to a step");
         assert_eq!(rows[1].status, if t < 5 { Status::Tracked } else { Status::Outside }, "frame {t}");
@@ -106,7 +96,7 @@ fn when_numbers_run_out_it_warns_once_and_goes_on() {
     let mut tracker = Particles::begin(&settings(), &stream, &cx).unwrap();
     tracker.seed(&[Seed { id: 3, x: 80.0, y: 60.0 }], &cx).unwrap();
     let mut known = BTreeSet::new();
-    for frame in frames(&clip) {
+    for frame in clip.frames() {
         let mut out = Points::default();
         tracker.push(&frame, &mut out, &cx).unwrap();
         let rows = out.rows();
@@ -132,7 +122,7 @@ fn a_particle_that_is_retired_or_moved_by_hand_is_none_any_more() {
     let mut tracker = Particles::begin(&settings(), &stream, &testing::cx()).unwrap();
     let push = |tracker: &mut Particles, t: usize| {
         let mut out = Points::default();
-        tracker.push(&frames(&clip).nth(t).unwrap(), &mut out, &testing::cx()).unwrap();
+        tracker.push(&clip.frame(t), &mut out, &testing::cx()).unwrap();
         out.rows().to_vec()
     };
     let first = push(&mut tracker, 0);
@@ -149,7 +139,7 @@ fn a_particle_that_is_retired_or_moved_by_hand_is_none_any_more() {
 #[test]
 fn dense_motion_is_that_of_the_scene() {
     let clip = clip(2);
-    let [from, to]: [Frame<'_>; 2] = frames(&clip).collect::<Vec<_>>().try_into().unwrap();
+    let [from, to] = [0, 1].map(|t| clip.frame(t));
     let found = dense::field(&Settings::default(), &from, &to, 2, &testing::cx()).unwrap();
     let near = |[u, v]: &&[f32; 2]| (u - 1.4).hypot(v + 0.7) < 0.25;
     let n = found.vectors.len();

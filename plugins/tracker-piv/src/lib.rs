@@ -3,7 +3,7 @@
 #[cfg(test)]
 mod tests;
 
-use honami_follow::{Detection, Losing, Motion, Particles, Trust};
+use honami_follow::{Detection, Follower, Losing, Motion, Trust};
 use honami_plugin::{Info, choice, export, params};
 use honami_vision::Gray;
 use honami_vision::field::Field;
@@ -98,8 +98,12 @@ impl Motion for Settings {
         piv::measure(&Self::kept(from), &Self::kept(to), &params, n_threads, go_on)
     }
 
+    fn is_backward(&self) -> bool {
+        self.backward
+    }
+
     fn trust(&self) -> Trust<'_> {
-        Trust { backward: self.backward, radius_px: self.radius as u32, losing: &self.losing }
+        Trust { radius_px: self.radius as u32, losing: &self.losing }
     }
 
     fn detection(&self) -> &Detection {
@@ -108,7 +112,7 @@ impl Motion for Settings {
 }
 
 /// Points that follow the motion of windows.
-type Piv = Particles<Settings>;
+type Piv = Follower<Settings>;
 
 export! {
     library: { id: "org.honami.piv", version: env!("CARGO_PKG_VERSION"), license: "MIT OR Apache-2.0" },

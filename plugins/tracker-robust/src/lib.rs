@@ -4,38 +4,15 @@ mod settings;
 #[cfg(test)]
 mod tests;
 
-use std::collections::BTreeMap;
-
-use honami_follow::{check_size, picture};
-use honami_plugin::{
-    Cx, DetectFn, Error, Frame, Info, Point, Points, Result, Seed, Status, Stream, Tracker, export,
-};
-use honami_vision::klt::State;
-use honami_vision::ncc::Ncc;
+use honami_follow::{Detection, Follower, Method, Step, Trust, pyramid};
+use honami_plugin::{Cx, Error, Info, Result, export};
+use honami_vision::field::Drift;
 use honami_vision::pyramid::Pyramid;
-use honami_vision::robust::{self, Moved, Region};
+use honami_vision::robust::{self, Moved, State};
+use honami_vision::{Gray, Point};
 use settings::Settings;
 
-/// Moves each point as most of the nodes around it move.
-struct Robust {
-    settings: Settings,
-    region: Region,
-    n_threads: usize,
-    /// Of the frame pushed last, and of the one before it (whose memory the next frame takes).
-    pyramids: Option<[Pyramid; 2]>,
-    points: BTreeMap<u32, Live>,
-    ncc: Ncc,
-}
-
-/// A point that has not been retired. Once it is lost or outside it stays so, where it was seen last.
-#[derive(Clone, Copy)]
-struct Live {
-    at: honami_vision::Point,
-    status: Status,
-}
-
-impl Tracker for Robust {
-    type Params = Settings;
+impl Method for Settings {
     const INFO: Info = Info {
         id: "org.honami.robust",
         name: "Robust regions",
@@ -46,96 +23,64 @@ impl Tracker for Robust {
         cite: &["Diener 2009, 2.5.2", "Fukunaga, Hostetler 1975", "Parzen 1962", "Bouguet 2000"],
         ..Info::NEW
     };
-    const DETECT: Option<DetectFn<Settings>> =
-        Some(|settings, wanted, _| settings.detection.features(wanted));
+    type Kept = Pyramid;
 
-    fn begin(settings: &Settings, stream: &Stream, _: &Cx<'_>) -> Result<Self> {
-        let region = settings.tracking();
-        Ok(Self {
-            settings: settings.clone(),
-            region,
-            n_threads: stream.max_threads as usize,
-            pyramids: None,
-            points: BTreeMap::new(),
-            ncc: Ncc::new(region.radius_px),
-        })
+    fn keep(&self, picture: &Gray<'_>, spare: Option<Pyramid>, _: usize) -> Pyramid {
+        pyramid(picture, spare, &self.region().klt)
     }
 
-    fn seed(&mut self, seeds: &[Seed], _: &Cx<'_>) -> Result<()> {
-        self.points.extend(seeds.iter().map(|s| (s.id, Live { at: [s.x, s.y], status: Status::Tracked })));
-        Ok(())
+    fn kept(kept: &Pyramid) -> Gray<'_> {
+        kept.picture()
     }
 
-    fn retire(&mut self, ids: &[u32]) {
-        for id in ids {
-            self.points.remove(id);
-        }
-    }
-
-    fn push(&mut self, frame: &Frame<'_>, out: &mut Points, cx: &Cx<'_>) -> Result<()> {
-        let gray = picture(frame);
-        let Some([last, spare]) = &mut self.pyramids else {
-            let klt = &self.region.klt;
-            let first = Pyramid::new(&gray, klt.levels, klt.radius_px);
-            self.pyramids = Some([first.clone(), first]);
-            self.points.iter().for_each(|(&id, p)| out.add(Point::new(id, p.at[0], p.at[1], p.status)));
-            return Ok(());
-        };
-        let before = last.picture();
-        check_size(frame, (before.width, before.height))?;
-        std::mem::swap(last, spare);
-        last.fill(&gray);
-        self.follow(out, cx)
-    }
-}
-
-/// Rows between two looks at whether to go on: some ten milliseconds of correlation.
-const ROWS_A_LOOK: usize = 4096;
-
-impl Robust {
-    /// Adds a row for every point, in the order of their ids.
-    fn follow(&mut self, out: &mut Points, cx: &Cx<'_>) -> Result<()> {
-        let Some([now, before]) = &self.pyramids else { return Ok(()) };
-        let is_seen = |p: &Live| p.status == Status::Tracked;
-        let from: Vec<_> = self.points.values().filter(|p| is_seen(p)).map(|p| p.at).collect();
-        let is_backward = self.settings.is_backward();
-        let pass = |pictures, from: &[honami_vision::Point], what| -> Result<Vec<Moved>> {
+    fn follow(
+        &self,
+        [before, now]: [&Pyramid; 2],
+        from: &[Point],
+        n_threads: usize,
+        cx: &Cx<'_>,
+    ) -> Result<Vec<Step>> {
+        let region = self.region();
+        let pass = |pictures, from: &[Point], what| {
             let mut go_on = |share: f64| cx.progress(share, what).is_ok();
-            robust::follow(pictures, from, &self.region, self.n_threads, &mut go_on)
-                .ok_or_else(Error::cancelled)
+            robust::follow(pictures, from, &region, n_threads, &mut go_on).ok_or_else(Error::cancelled)
         };
-        let there = pass([before, now], &from, "following regions")?;
-        let back = if is_backward {
+        let there = pass([before, now], from, "following regions")?;
+        let back = if self.is_backward() {
             let ends: Vec<_> = there.iter().map(|moved| moved.to).collect();
             pass([now, before], &ends, "following regions back")?
         } else {
             Vec::new()
         };
-        let mut steps = there.iter().enumerate();
-        for (k, (&id, point)) in self.points.iter_mut().enumerate() {
-            if k % ROWS_A_LOOK == 0 {
-                cx.progress(1.0, "comparing regions")?;
-            }
-            let mut row = Point::new(id, point.at[0], point.at[1], point.status);
-            if is_seen(point)
-                && let Some((k, moved)) = steps.next()
-            {
-                if moved.state == State::Tracked {
-                    let home = back.get(k).filter(|home| home.state == State::Tracked);
-                    row.fb = home.map(|home| (home.to[0] - row.x).hypot(home.to[1] - row.y));
-                    row.ncc = self.ncc.compare(&before.picture(), point.at, &now.picture(), moved.to);
-                }
-                row.status = self.settings.judge(moved, row.fb, row.ncc);
-                if row.status == Status::Tracked {
-                    [row.x, row.y] = moved.to;
-                }
-                *point = Live { at: [row.x, row.y], status: row.status };
-            }
-            out.add(row);
-        }
-        Ok(())
+        let step = |(k, moved): (usize, &Moved)| {
+            let home = back.get(k).filter(|home| home.state == State::Tracked);
+            Step { to: self.judge(moved), home: home.map(|home| home.to) }
+        };
+        Ok(there.iter().enumerate().map(step).collect())
+    }
+
+    fn trust(&self) -> Trust<'_> {
+        Trust { radius_px: self.region as u32, losing: &self.losing }
+    }
+
+    fn detection(&self) -> &Detection {
+        &self.detection
     }
 }
+
+impl Settings {
+    /// Where the region of a point went, if enough of it agrees.
+    fn judge(&self, moved: &Moved) -> Drift {
+        match moved.state {
+            State::Tracked if moved.share >= self.lose_share => Drift::To(moved.to),
+            State::Outside => Drift::Outside,
+            State::Tracked | State::Lost(_) => Drift::Unknown,
+        }
+    }
+}
+
+/// Moves each point as most of the nodes around it move.
+type Robust = Follower<Settings>;
 
 export! {
     library: { id: "org.honami.robust", version: env!("CARGO_PKG_VERSION"), license: "MIT OR Apache-2.0" },

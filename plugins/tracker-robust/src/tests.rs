@@ -1,39 +1,22 @@
 //! The plugin as a host drives it, on pictures whose motion is known.
 
 use honami_follow::Losing;
-use honami_plugin::{Gray, testing};
+use honami_plugin::{Point, Seed, Status, testing};
 use honami_vision::texture;
 
 use super::*;
 
-const WIDTH: u32 = 200;
-const HEIGHT: u32 = 150;
 /// Motion from each frame to the next, pixels: of the ground, and of what passes over it.
 const GROUND: [f64; 2] = [0.8, 0.5];
 const PASSING: [f64; 2] = [-2.4, 0.3];
 
-/// Frames of a texture that drifts; right of x = 100, below y = 80, another one passes.
-fn clip(n: usize) -> Vec<Vec<u8>> {
-    let moved =
-        |seed, x: f64, y: f64, by: [f64; 2], t: f64| texture::value(seed, x - by[0] * t, y - by[1] * t);
-    let frame = |t: usize| {
-        texture::render(WIDTH, HEIGHT, |x, y| {
-            let passes = x > 100.0 && y > 80.0;
-            if passes { moved(7, x, y, PASSING, t as f64) } else { moved(2, x, y, GROUND, t as f64) }
-        })
-    };
-    (0..n).map(frame).collect()
-}
-
-fn frames(clip: &[Vec<u8>]) -> impl Iterator<Item = Frame<'_>> {
-    clip.iter()
-        .enumerate()
-        .map(|(t, data)| Frame::new(Gray::packed(data, WIDTH, HEIGHT), t as i64, t as f64 / 25.0))
-}
-
-fn track(settings: &Settings, seeds: &[Seed], n: usize) -> Vec<Vec<Point>> {
-    let clip = clip(n);
-    testing::track::<Robust>(settings, &testing::stream(WIDTH, HEIGHT), seeds, frames(&clip)).unwrap()
+/// Over a texture that drifts; right of x = 100, below y = 80, another one passes.
+fn track(settings: &Settings, seeds: &[Seed], n_frames: usize) -> Vec<Vec<Point>> {
+    let clip = testing::Clip::new(200, 150, n_frames, |x, y, t| {
+        let (seed, by) = if x > 100.0 && y > 80.0 { (7, PASSING) } else { (2, GROUND) };
+        texture::value(seed, x - by[0] * t as f64, y - by[1] * t as f64)
+    });
+    clip.track::<Robust>(settings, seeds).unwrap()
 }
 
 #[test]
@@ -46,11 +29,10 @@ fn it_bears_whatever_a_host_hands_it() {
 fn what_passes_over_a_region_does_not_carry_it_away() {
     let seeds = [Seed { id: 4, x: 60.0, y: 60.0 }, Seed { id: 9, x: 130.0, y: 72.5 }];
     let rows = track(&Settings { region: 14, step: 3, backward: true, ..Settings::default() }, &seeds, 7);
-    for (t, rows) in rows[..7].iter().enumerate() {
+    for (t, rows) in rows.iter().enumerate() {
         assert_eq!(rows.iter().map(|r| r.id).collect::<Vec<_>>(), [4, 9], "frame {t}");
         for (row, seed) in rows.iter().zip(&seeds) {
-            let truth = [f64::from(seed.x) + GROUND[0] * t as f64, f64::from(seed.y) + GROUND[1] * t as f64];
-            let error = (f64::from(row.x) - truth[0]).hypot(f64::from(row.y) - truth[1]);
+            let error = testing::off_px(row, seed, GROUND, t);
             assert!(error < 0.4 && row.status == Status::Tracked, "frame {t}: {row:?}, {error} px off");
             // Quality belongs to a step: the first frame has none.
             assert_eq!((row.fb.is_some(), row.ncc.is_some()), (t > 0, t > 0));

@@ -18,7 +18,7 @@ use crate::plane::{Motion, Plane, bands};
 /// falls from L² (at 1) to L as it nears 2.
 const RELAXATION: f32 = 1.9;
 
-/// Sweeps between two looks at how far pixels are off, and at whether to go on.
+/// Sweeps between two looks at how far pixels are off.
 const SWEEPS_A_LOOK: u32 = 8;
 
 /// Values of the pixels of either colour. Row y of colour c has the pixels `x = 2k + (y + c) % 2`; where that is
@@ -72,29 +72,25 @@ impl System {
         system
     }
 
-    /// Sweeps until pixels are off by less than the tolerance, root of the mean square, or so many times; says how far
-    /// they are off. `None` where `go_on`, told the share of the sweeps, said no.
+    /// Sweeps until pixels are off by less than the tolerance, root of the mean square, or so many times; `None` where
+    /// `go_on`, told the share of the sweeps, said no.
     pub(super) fn solve(
         &mut self,
         max_sweeps: u32,
         tolerance_px: f32,
         n_threads: usize,
         go_on: &dyn Fn(f64) -> bool,
-    ) -> Option<f32> {
-        let mut off = f32::INFINITY;
+    ) -> Option<()> {
         for n in 0..max_sweeps {
-            if n % SWEEPS_A_LOOK == 0 {
-                if !go_on(f64::from(n) / f64::from(max_sweeps)) {
-                    return None;
-                }
-                off = self.off_px();
-                if off <= tolerance_px {
-                    break;
-                }
+            if !go_on(f64::from(n) / f64::from(max_sweeps)) {
+                return None;
+            }
+            if n % SWEEPS_A_LOOK == 0 && self.off_px() <= tolerance_px {
+                break;
             }
             self.sweep(RELAXATION, n_threads);
         }
-        Some(off)
+        Some(())
     }
 
     /// Sets every pixel once.

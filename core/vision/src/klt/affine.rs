@@ -16,6 +16,7 @@ use honami_model::picture::Gray;
 
 use super::{Flow, Params, State};
 use crate::pyramid::Pyramid;
+use crate::work::{shared, threads};
 use crate::{Point, sample};
 
 /// Steps at most; one that goes on longer swings.
@@ -41,32 +42,27 @@ pub fn refine(
     params: &Params,
     max_threads: usize,
 ) {
-    /// Fewer points than this are not worth a thread.
-    const POINTS_A_THREAD: usize = 16;
     assert_eq!(from.len(), flows.len(), "one flow a point");
-    let n_threads = max_threads.min(from.len() / POINTS_A_THREAD).max(1);
-    let chunk = from.len().div_ceil(n_threads).max(1);
-    let run = |from: &[Point], flows: &mut [Flow]| {
-        let (prev, next) = (prev.picture(), next.picture());
+    let (prev, next) = (prev.picture(), next.picture());
+    let n_threads = threads(from.len(), cost_ns(params), max_threads);
+    shared([flows], 1, n_threads, |first, [flows]| {
         let mut window = Window::default();
-        for (flow, &from) in flows.iter_mut().zip(from).filter(|(flow, _)| flow.state == State::Tracked) {
+        let points = flows.iter_mut().zip(&from[first..]);
+        for (flow, &from) in points.filter(|(flow, _)| flow.state == State::Tracked) {
             if window.cut(&prev, from, params.radius_px)
                 && let Some(to) = window.search(&next, flow.to, params)
             {
                 flow.to = to;
             }
         }
-    };
-    std::thread::scope(|scope| {
-        let mut jobs = from.chunks(chunk).zip(flows.chunks_mut(chunk));
-        let first = jobs.next();
-        for (from, flows) in jobs {
-            scope.spawn(move || run(from, flows));
-        }
-        if let Some((from, flows)) = first {
-            run(from, flows);
-        }
     });
+}
+
+/// How long one point takes on one thread, roughly, nanoseconds.
+#[must_use]
+pub fn cost_ns(params: &Params) -> f64 {
+    const PIXEL_NS: f64 = 30.0;
+    PIXEL_NS * f64::from(2 * params.radius_px + 1).powi(2)
 }
 
 /// Where a window is, and how it lies there.

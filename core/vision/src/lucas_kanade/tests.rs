@@ -33,6 +33,43 @@ fn one_step_on_a_saddle_is_what_the_sums_give_by_hand() {
 }
 
 #[test]
+fn without_a_limit_what_cannot_be_solved_stays_finite_and_near() {
+    let (width, height) = (48, 40);
+    let picture = |value: &dyn Fn(f32, f32) -> f32| {
+        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x as f32, y as f32)));
+        Plane { width, height, data: pixels.map(|(x, y)| value(x, y)).collect() }
+    };
+    type Brightness = fn(f32, f32) -> f32;
+    let flat: Brightness = |_, _| 90.0;
+    let edge: Brightness = |x, y| if x + y < 40.0 { 0.0 } else { 255.0 };
+    let moved: Brightness = |x, y| if x + y < 43.0 { 0.0 } else { 255.0 };
+    let dot: Brightness = |x, y| if (x, y) == (20.0, 20.0) { 255.0 } else { 0.0 };
+    let faint: Brightness = |x, _| 90.0 + 1e-6 * x;
+    for (i, (before, after)) in
+        [(flat, edge), (edge, flat), (edge, moved), (dot, edge), (faint, edge), (edge, dot)]
+            .iter()
+            .enumerate()
+    {
+        for radius_px in [1, 7] {
+            let (before, after) = (picture(before), picture(after));
+            let params = Params { radius_px, min_eigenvalue: 0.0, ..Params::default() };
+            let windows = Windows::new(&before, &params, 1);
+            let mut motion = Motion::blank(&before);
+            for _ in 0..100 {
+                windows.refine(&mut motion, &before, &after, 1);
+            }
+            let farthest = motion
+                .u
+                .data
+                .iter()
+                .chain(&motion.v.data)
+                .fold(0.0, |most: f32, c| if c.is_finite() { most.max(c.abs()) } else { f32::INFINITY });
+            assert!(farthest <= 88.0, "pair {i}, radius {radius_px}: {farthest} px");
+        }
+    }
+}
+
+#[test]
 fn known_motion_is_found() {
     let limits = [0.001, 0.03, 0.03, 0.05, 0.07, 0.07];
     for (pair, limit) in moved().iter().zip(limits) {

@@ -25,7 +25,7 @@ fn frame(t: u32) -> Pyramid {
     Pyramid::new(&Gray::packed(&data, WIDTH, HEIGHT), 2, 6)
 }
 
-fn step(swarm: &mut Swarm, prev: &Pyramid, next: &Pyramid) -> Flow {
+fn step(swarm: &mut Swarm, prev: &Pyramid, next: &Pyramid) -> Spots {
     swarm.step([prev, next], 1, &mut |_| true).unwrap()
 }
 
@@ -96,24 +96,24 @@ fn the_flow_is_that_of_the_scene() {
     let blank = vec![90; (WIDTH * HEIGHT) as usize];
     let blank = Gray::packed(&blank, WIDTH, HEIGHT);
     assert!(Swarm::new(&params(), &blank).living().is_empty());
-    assert_eq!(Flow::new(Vec::new(), 1.0, 20.0).at([3.0, 4.0]), None);
+    assert_eq!(Spots::new(Vec::new(), 1.0, 20.0).at([3.0, 4.0]), None);
 }
 
 /// By hand: two particles, one steady, one that changed by one scale, at known distances.
 #[test]
 fn weights_are_those_of_the_formula() {
     let spot = |x: f32, right: f32, change_px| Spot { at: [x, 10.0], motion: [right, 0.0], change_px };
-    let flow = Flow::new(vec![spot(10.0, 1.0, Some(0.0)), spot(20.0, 3.0, Some(2.0))], 2.0, 20.0);
+    let flow = Spots::new(vec![spot(10.0, 1.0, Some(0.0)), spot(20.0, 3.0, Some(2.0))], 2.0, 20.0);
     // Kernels (1 - 16/400)² and (1 - 36/400)², weights 1 and 1/e.
     let (a, b) = (0.96_f64.powi(2), 0.91_f64.powi(2) * (-1.0_f64).exp());
     let wanted = (a + 3.0 * b) / (a + b);
     let [found, _] = flow.at([14.0, 10.0]).unwrap();
     assert!((f64::from(found) - wanted).abs() < 1e-6, "{found}, not {wanted}");
     // One with a single displacement weighs as much as one that changed by the scale.
-    let other = Flow::new(vec![spot(10.0, 1.0, Some(0.0)), spot(20.0, 3.0, None)], 2.0, 20.0);
+    let other = Spots::new(vec![spot(10.0, 1.0, Some(0.0)), spot(20.0, 3.0, None)], 2.0, 20.0);
     assert_eq!(other.at([14.0, 10.0]), flow.at([14.0, 10.0]));
     // However unsteady, those that are there decide.
-    let wild = Flow::new(vec![spot(10.0, 1.0, Some(500.0)), spot(20.0, 3.0, Some(900.0))], 1.0, 20.0);
+    let wild = Spots::new(vec![spot(10.0, 1.0, Some(500.0)), spot(20.0, 3.0, Some(900.0))], 1.0, 20.0);
     assert_eq!(wild.at([14.0, 10.0]), Some([1.0, 0.0]));
 }
 
@@ -136,7 +136,7 @@ fn errors_that_are_uncorrelated_in_time_weigh_little() {
                 })
                 .collect();
             let error = |scale_px: f64| {
-                let [x, y] = Flow::new(spots.clone(), scale_px, 25.0).at([0.0, 0.0]).unwrap();
+                let [x, y] = Spots::new(spots.clone(), scale_px, 25.0).at([0.0, 0.0]).unwrap();
                 (f64::from(x) - 2.0).powi(2) + (f64::from(y) + 1.0).powi(2)
             };
             weighted += error(1.0);

@@ -55,12 +55,11 @@ impl Correlator {
         let sum: f32 = weights.iter().sum();
         weights.iter_mut().for_each(|w| *w /= sum);
         let mut correlator = Self { side, size, forth, back, weights, spectrum: Vec::new() };
-        let mut bench = correlator.bench();
+        let Scratch { mut template, mut turned, mut lines, .. } = correlator.scratch();
         for (i, &w) in correlator.weights.iter().enumerate() {
-            bench.template[i / side * size + i % side] = Complex32::new(w, 0.0);
+            template[i / side * size + i % side] = Complex32::new(w, 0.0);
         }
-        let Bench { mut template, mut turned, mut scratch, .. } = bench;
-        transform(&*correlator.forth, size, &mut template, &mut turned, &mut scratch);
+        transform(&*correlator.forth, size, &mut template, &mut turned, &mut lines);
         correlator.spectrum = template.iter().map(Complex32::conj).collect();
         correlator
     }
@@ -71,15 +70,15 @@ impl Correlator {
     }
 
     /// Memory to work in.
-    pub(super) fn bench(&self) -> Bench {
+    pub(super) fn scratch(&self) -> Scratch {
         let blank = vec![Complex32::ZERO; self.size * self.size];
-        let scratch = self.forth.get_inplace_scratch_len().max(self.back.get_inplace_scratch_len());
-        Bench {
+        let lines = self.forth.get_inplace_scratch_len().max(self.back.get_inplace_scratch_len());
+        Scratch {
             template: blank.clone(),
             picture: blank.clone(),
             sums: blank.clone(),
             turned: blank,
-            scratch: vec![Complex32::ZERO; scratch],
+            lines: vec![Complex32::ZERO; lines],
             map: Vec::new(),
             forth: Vec::new(),
             power: 0.0,
@@ -88,12 +87,12 @@ impl Correlator {
 }
 
 /// One thread's memory.
-pub(super) struct Bench {
+pub(super) struct Scratch {
     template: Vec<Complex32>,
     picture: Vec<Complex32>,
     sums: Vec<Complex32>,
     turned: Vec<Complex32>,
-    scratch: Vec<Complex32>,
+    lines: Vec<Complex32>,
     /// Correlation at every displacement, row-major, `2 reach + 1` a row.
     map: Vec<f32>,
     /// The same of the way there, while that back is measured.
@@ -102,7 +101,7 @@ pub(super) struct Bench {
     power: f32,
 }
 
-impl Bench {
+impl Scratch {
     /// Takes the window to look for, `pixel(x, y)` from its first one on; `None` where it is flat.
     pub(super) fn take(
         &mut self,
@@ -123,7 +122,7 @@ impl Bench {
         if self.power < FLAT_GRAY * FLAT_GRAY {
             return None;
         }
-        transform(&*correlator.forth, *size, &mut self.template, &mut self.turned, &mut self.scratch);
+        transform(&*correlator.forth, *size, &mut self.template, &mut self.turned, &mut self.lines);
         Some(())
     }
 
@@ -140,15 +139,15 @@ impl Bench {
             let gray = value.re - mean;
             *value = Complex32::new(gray, gray * gray);
         }
-        transform(&*correlator.forth, size, &mut self.picture, &mut self.turned, &mut self.scratch);
+        transform(&*correlator.forth, size, &mut self.picture, &mut self.turned, &mut self.lines);
         for ((sum, picture), weight) in self.sums.iter_mut().zip(&self.picture).zip(&correlator.spectrum) {
             *sum = picture * weight;
         }
         for (picture, template) in self.picture.iter_mut().zip(&self.template) {
             *picture *= template.conj();
         }
-        transform(&*correlator.back, size, &mut self.sums, &mut self.turned, &mut self.scratch);
-        transform(&*correlator.back, size, &mut self.picture, &mut self.turned, &mut self.scratch);
+        transform(&*correlator.back, size, &mut self.sums, &mut self.turned, &mut self.lines);
+        transform(&*correlator.back, size, &mut self.picture, &mut self.turned, &mut self.lines);
 
         let scale = 1.0 / (size * size) as f32;
         let n = 2 * correlator.reach() + 1;
@@ -184,7 +183,7 @@ impl Bench {
 }
 
 #[cfg(test)]
-impl Bench {
+impl Scratch {
     pub(super) fn map(&self) -> &[f32] {
         &self.map
     }
@@ -196,15 +195,15 @@ fn transform(
     size: usize,
     data: &mut Vec<Complex32>,
     turned: &mut Vec<Complex32>,
-    scratch: &mut [Complex32],
+    lines: &mut [Complex32],
 ) {
-    fft.process_with_scratch(data, scratch);
+    fft.process_with_scratch(data, lines);
     for (y, row) in data.chunks_exact(size).enumerate() {
         for (x, value) in row.iter().enumerate() {
             turned[x * size + y] = *value;
         }
     }
-    fft.process_with_scratch(turned, scratch);
+    fft.process_with_scratch(turned, lines);
     std::mem::swap(data, turned);
 }
 

@@ -156,14 +156,14 @@ fn correlation_is_its_definition() {
     for weighting in [Weighting::Uniform, Weighting::Gaussian] {
         let radius = 6;
         let correlator = Correlator::new(radius, weighting);
-        let mut bench = correlator.bench();
+        let mut scratch = correlator.scratch();
         let reach = correlator.reach();
         let second = |x: usize, y: usize| texture::value(5, x as f64 * 2.0, y as f64 * 2.0) as f32;
         let first = |x: usize, y: usize| 20.0 + 0.5 * second(x + reach + 2, y + reach - 1);
-        bench.take(&correlator, first).unwrap();
-        bench.correlate(&correlator, second);
-        let found = bench.peak(&correlator).unwrap();
-        let map = bench.map();
+        scratch.take(&correlator, first).unwrap();
+        scratch.correlate(&correlator, second);
+        let found = scratch.peak(&correlator).unwrap();
+        let map = scratch.map();
         let side = 2 * radius as usize + 1;
         let weights: Vec<f64> = (0..side * side)
             .map(|i| {
@@ -198,17 +198,17 @@ fn correlation_is_its_definition() {
 fn there_and_back_no_side_is_favoured() {
     // A window against itself: its peak is at rest, whatever is to be seen beside it.
     let correlator = Correlator::new(6, Weighting::Gaussian);
-    let mut bench = correlator.bench();
+    let mut scratch = correlator.scratch();
     let reach = correlator.reach();
     let around = |x: usize, y: usize| texture::value(8, x as f64, y as f64) as f32;
     for _ in 0..2 {
-        bench.turn();
-        bench.take(&correlator, |x, y| around(x + reach, y + reach)).unwrap();
-        bench.correlate(&correlator, around);
+        scratch.turn();
+        scratch.take(&correlator, |x, y| around(x + reach, y + reach)).unwrap();
+        scratch.correlate(&correlator, around);
     }
-    let one_way = bench.peak(&correlator).unwrap();
-    bench.meet();
-    let both = bench.peak(&correlator).unwrap();
+    let one_way = scratch.peak(&correlator).unwrap();
+    scratch.meet();
+    let both = scratch.peak(&correlator).unwrap();
     assert!(both.at[0].hypot(both.at[1]) < 1e-3, "{both:?}");
     assert!(one_way.at[0].hypot(one_way.at[1]) > 10.0 * both.at[0].hypot(both.at[1]), "{one_way:?}");
 }
@@ -224,6 +224,43 @@ fn what_is_not_known_is_filled_from_its_neighbours() {
     );
     let nothing = Field::new(grid, [None; 4]);
     assert_eq!(validate::filled(nothing.clone()), nothing);
+}
+
+/// All nodes looked at again for every ring: what `filled` is, said as plainly as can be.
+fn filled_plainly(mut field: Field) -> Field {
+    let Grid { nx, ny, .. } = field.grid;
+    loop {
+        let before = field.clone();
+        for (i, (x, y)) in (0..ny).flat_map(|y| (0..nx).map(move |x| (x, y))).enumerate() {
+            let near = |j: &usize| {
+                let (column, row) = ((j % nx as usize) as u32, (j / nx as usize) as u32);
+                before.known[*j] && column.abs_diff(x).max(row.abs_diff(y)) == 1
+            };
+            let around: Vec<usize> = (0..before.known.len()).filter(near).collect();
+            if !before.known[i] && !around.is_empty() {
+                let mean = |of: &[f32]| around.iter().map(|&j| of[j]).sum::<f32>() / around.len() as f32;
+                (field.u[i], field.v[i], field.known[i]) = (mean(&before.u), mean(&before.v), true);
+            }
+        }
+        if field == before {
+            return field;
+        }
+    }
+}
+
+#[test]
+fn filling_ring_by_ring_is_filling_all_of_it_again_and_again() {
+    for (nx, ny, share) in [(1, 1, 0.0), (9, 7, 0.9), (13, 11, -0.5), (16, 3, -0.9), (12, 12, -0.97)] {
+        for seed in 0..8 {
+            let grid = Grid { origin: [0.0; 2], step_px: 1.0, nx, ny };
+            let vectors = (0..grid.len() as i64).map(|i| {
+                let drawn = |k: i64| texture::hash(seed, i, k) as f32;
+                (drawn(0) < share).then(|| [9.0 * drawn(1), 9.0 * drawn(2)])
+            });
+            let field = Field::new(grid, vectors);
+            assert_eq!(validate::filled(field.clone()), filled_plainly(field), "{nx}x{ny}, seed {seed}");
+        }
+    }
 }
 
 #[test]

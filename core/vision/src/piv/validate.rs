@@ -36,23 +36,20 @@ pub(super) fn validate(grid: Grid, found: &[Option<Vector>], params: &Params) ->
 }
 
 /// The field with every node that is not known at the mean of its neighbours, ring by ring: where to look next.
-pub(super) fn filled(mut field: Field) -> Field {
-    loop {
-        let vectors: Vec<Option<[f32; 2]>> =
-            (0..field.known.len()).map(|i| field.known[i].then_some([field.u[i], field.v[i]])).collect();
-        let mut is_done = true;
-        for i in (0..vectors.len()).filter(|&i| vectors[i].is_none()) {
-            let around = around(&field.grid, &vectors, i);
-            if !around.is_empty() {
-                let mean = |axis: usize| around.iter().map(|v| v[axis]).sum::<f32>() / around.len() as f32;
-                (field.u[i], field.v[i], field.known[i]) = (mean(0), mean(1), true);
-                is_done = false;
-            }
-        }
-        if is_done {
-            return field;
-        }
+pub(super) fn filled(field: Field) -> Field {
+    let mut vectors: Vec<Option<[f32; 2]>> =
+        (0..field.known.len()).map(|i| field.known[i].then_some([field.u[i], field.v[i]])).collect();
+    let mut ring: Vec<usize> = (0..vectors.len()).filter(|&i| vectors[i].is_none()).collect();
+    while !ring.is_empty() {
+        let found: Vec<_> =
+            ring.iter().filter_map(|&i| Some((i, mean(&around(&field.grid, &vectors, i))?))).collect();
+        found.iter().for_each(|&(i, vector)| vectors[i] = Some(vector));
+        let next = found.iter().flat_map(|&(i, _)| neighbours(&field.grid, i));
+        ring = next.filter(|&i| vectors[i].is_none()).collect();
+        ring.sort_unstable();
+        ring.dedup();
     }
+    Field::new(field.grid, vectors)
 }
 
 /// How far a vector is from the median of its neighbours, in their own measure; 0 where there are too few.
@@ -66,14 +63,24 @@ fn residual(vector: [f32; 2], around: &[[f32; 2]]) -> f32 {
     away(vector) / (usual + NOISE_PX)
 }
 
-/// The vectors of the eight nodes around one, without those that are not known.
-fn around(grid: &Grid, vectors: &[Option<[f32; 2]>], i: usize) -> Vec<[f32; 2]> {
+/// The eight nodes around one, or fewer at the border.
+fn neighbours(grid: &Grid, i: usize) -> impl Iterator<Item = usize> + use<> {
     let (nx, ny) = (grid.nx as usize, grid.ny as usize);
     let (x, y) = (i % nx, i / nx);
     let rows = y.saturating_sub(1)..(y + 2).min(ny);
-    let nodes =
-        rows.flat_map(|row| (x.saturating_sub(1)..(x + 2).min(nx)).map(move |column| row * nx + column));
-    nodes.filter(|&j| j != i).filter_map(|j| vectors[j]).collect()
+    let columns = x.saturating_sub(1)..(x + 2).min(nx);
+    rows.flat_map(move |row| columns.clone().map(move |column| row * nx + column)).filter(move |&j| j != i)
+}
+
+/// Their vectors, without those that are not known.
+fn around(grid: &Grid, vectors: &[Option<[f32; 2]>], i: usize) -> Vec<[f32; 2]> {
+    neighbours(grid, i).filter_map(|j| vectors[j]).collect()
+}
+
+/// `None` of nothing.
+fn mean(vectors: &[[f32; 2]]) -> Option<[f32; 2]> {
+    let of = |axis: usize| vectors.iter().map(|v| v[axis]).sum::<f32>() / vectors.len() as f32;
+    (!vectors.is_empty()).then(|| [of(0), of(1)])
 }
 
 /// Median along x and along y.

@@ -1,9 +1,10 @@
 //! Regions that move as most of their nodes do.
 
-use super::{Mode, Params, mode, spread_px};
-use crate::Point;
-use crate::klt::{self, State};
+use super::{Degenerate, Mode, Params, mode, spread_px};
+use crate::klt;
 use crate::pyramid::Pyramid;
+use crate::work::{in_looks, shared, threads};
+use crate::{Gray, Point};
 
 /// How regions are followed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,7 +24,7 @@ pub struct Region {
 pub struct Moved {
     /// Position in the next picture; where it was, unless it was found. Finite if that was.
     pub to: Point,
-    /// Whether its nodes have a mode, and whether that leads out of the picture.
+    /// Whether it was found.
     pub state: State,
     /// Share of its nodes that decided, 0..=1: samples that count by the kernel ([`Mode::effective`]), of the nodes in the
     /// picture.
@@ -32,10 +33,16 @@ pub struct Moved {
     pub spread_px: f64,
 }
 
-/// Nodes that are followed between two looks at whether to go on.
-const NODES_A_CHUNK: usize = 2048;
-/// Samples that are weighed between two such looks.
-const SAMPLES_A_CHUNK: usize = 1 << 17;
+/// Whether a region was found in the next picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum State {
+    /// Found.
+    Tracked,
+    /// Its centre is, or went, beyond the picture, or most of its nodes did.
+    Outside,
+    /// The displacements of its nodes have no mode. Nodes without texture have no displacement.
+    Lost(Degenerate),
+}
 
 /// Follows the centres of regions from one picture to the next, on up to `max_threads` threads.
 ///
@@ -52,47 +59,51 @@ pub fn follow(
     max_threads: usize,
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Option<Vec<Moved>> {
-    /// Of the time, for the nodes.
-    const NODES: f64 = 0.8;
-    let mut lattice = Lattice::new(prev, region);
-    let nodes = lattice.need(centres);
-    let mut flows = Vec::with_capacity(nodes.len());
-    for chunk in nodes.chunks(NODES_A_CHUNK) {
-        if !go_on(NODES * flows.len() as f64 / nodes.len() as f64) {
-            return None;
-        }
-        flows.extend(klt::track(prev, next, chunk, None, &region.klt, max_threads));
-    }
+    /// For a node of a region: to find it, and to weigh its displacement in every step to the mode.
+    const FIND_NS: f64 = 5.0;
+    const WEIGH_NS: f64 = 150.0;
+    let mut lattice = Lattice::new(prev.picture(), region);
+    let n_nodes = f64::from(2 * region.radius_px / lattice.step + 1).powi(2);
+    // Shares of the time: most of it goes to the nodes.
+    let nodes =
+        in_looks(centres, FIND_NS * n_nodes, &mut |share| go_on(0.1 * share), |part| lattice.need(part))?;
+    let flows = in_looks(&nodes, region.klt.cost_ns(), &mut |share| go_on(0.1 + 0.7 * share), |part| {
+        klt::track(prev, next, part, None, &region.klt, max_threads)
+    })?;
     let look = Look { lattice: &lattice, nodes: &nodes, flows: &flows, region };
-    let mut moved = Vec::with_capacity(centres.len());
-    let side = (2 * region.radius_px / lattice.step + 1) as usize;
-    for chunk in centres.chunks((SAMPLES_A_CHUNK / (side * side)).max(1)) {
-        if !go_on(NODES + (1.0 - NODES) * moved.len() as f64 / centres.len() as f64) {
-            return None;
-        }
-        moved.extend(look.all(chunk, max_threads));
-    }
-    Some(moved)
+    let cost_ns = WEIGH_NS * n_nodes;
+    in_looks(centres, cost_ns, &mut |share| go_on(0.8 + 0.2 * share), |part| {
+        let mut moved: Vec<_> = part.iter().map(|&centre| stays(centre, State::Outside)).collect();
+        shared([&mut moved], 1, threads(part.len(), cost_ns, max_threads), |_, [moved]| {
+            moved.iter_mut().for_each(|moved| *moved = look.one(moved.to));
+        });
+        moved
+    })
+}
+
+/// A region that was not found.
+fn stays(centre: Point, state: State) -> Moved {
+    Moved { to: centre, state, share: 0.0, spread_px: 0.0 }
 }
 
 /// The nodes of a picture, and which of them are followed.
-struct Lattice {
+struct Lattice<'a> {
+    picture: Gray<'a>,
     step: u32,
     radius: f32,
-    size: [u32; 2],
     /// Nodes in x and y.
     n: [u32; 2],
     /// Number of each node among those that are followed, row-major.
     numbers: Vec<Option<u32>>,
+    n_needed: u32,
 }
 
-impl Lattice {
-    fn new(picture: &Pyramid, region: &Region) -> Self {
+impl<'a> Lattice<'a> {
+    fn new(picture: Gray<'a>, region: &Region) -> Self {
         let step = region.step_px.max(1);
-        let size = [picture.picture().width, picture.picture().height];
-        let n = size.map(|size| size.div_ceil(step));
-        let radius = region.radius_px as f32;
-        Self { step, radius, size, n, numbers: vec![None; n[0] as usize * n[1] as usize] }
+        let n = [picture.width, picture.height].map(|size| size.div_ceil(step));
+        let numbers = vec![None; n[0] as usize * n[1] as usize];
+        Self { picture, step, radius: region.radius_px as f32, n, numbers, n_needed: 0 }
     }
 
     /// Nodes of a region, as indices and positions.
@@ -114,63 +125,38 @@ impl Lattice {
         })
     }
 
-    /// Numbers the nodes of all regions, each once, and returns them.
+    /// Numbers the nodes of these regions that have none yet, and returns them.
     fn need(&mut self, centres: &[Point]) -> Vec<Point> {
         let mut nodes = Vec::new();
         for &centre in centres {
             let found: Vec<_> = self.around(centre).collect();
             for (index, at) in found {
                 if self.numbers[index].is_none() {
-                    self.numbers[index] = Some(nodes.len() as u32);
+                    self.numbers[index] = Some(self.n_needed);
+                    self.n_needed += 1;
                     nodes.push(at);
                 }
             }
         }
         nodes
     }
-
-    fn holds(&self, [x, y]: Point) -> bool {
-        let [width, height] = self.size.map(|size| size as f32 - 0.5);
-        (-0.5..=width).contains(&x) && (-0.5..=height).contains(&y)
-    }
 }
 
 /// What is known of the nodes of a picture.
 struct Look<'a> {
-    lattice: &'a Lattice,
+    lattice: &'a Lattice<'a>,
     nodes: &'a [Point],
     flows: &'a [klt::Flow],
     region: &'a Region,
 }
 
 impl Look<'_> {
-    fn all(&self, centres: &[Point], max_threads: usize) -> Vec<Moved> {
-        /// Fewer regions than this are not worth a thread.
-        const REGIONS_A_THREAD: usize = 256;
-        let n_threads = max_threads.min(centres.len() / REGIONS_A_THREAD).max(1);
-        let mut parts = centres.chunks(centres.len().div_ceil(n_threads).max(1));
-        let run = |part: &[Point]| part.iter().map(|&centre| self.one(centre)).collect::<Vec<_>>();
-        std::thread::scope(|scope| {
-            let first = parts.next();
-            let others: Vec<_> = parts.map(|part| scope.spawn(move || run(part))).collect();
-            let mut moved = first.map(run).unwrap_or_default();
-            for other in others {
-                match other.join() {
-                    Ok(part) => moved.extend(part),
-                    Err(panic) => std::panic::resume_unwind(panic),
-                }
-            }
-            moved
-        })
-    }
-
     fn one(&self, centre: Point) -> Moved {
-        let stays = |state| Moved { to: centre, state, share: 0.0, spread_px: 0.0 };
         if !centre.iter().all(|c| c.is_finite()) {
-            return stays(State::Lost(klt::Reason::NotFinite));
+            return stays(centre, State::Lost(Degenerate::NotFinite));
         }
-        if !self.lattice.holds(centre) {
-            return stays(State::Outside);
+        if !self.lattice.picture.holds(centre) {
+            return stays(centre, State::Outside);
         }
         let numbers = self.lattice.around(centre).filter_map(|(index, _)| self.lattice.numbers[index]);
         let (mut n_nodes, mut n_outside, mut samples) = (0, 0, Vec::new());
@@ -178,22 +164,22 @@ impl Look<'_> {
             n_nodes += 1;
             let (from, flow) = (self.nodes[k], self.flows[k]);
             match flow.state {
-                State::Tracked => {
+                klt::State::Tracked => {
                     samples.push([0, 1].map(|axis| f64::from(flow.to[axis]) - f64::from(from[axis])));
                 }
-                State::Outside => n_outside += 1,
-                State::Lost(_) => {}
+                klt::State::Outside => n_outside += 1,
+                klt::State::Lost(_) => {}
             }
         }
         if n_outside > samples.len() {
-            return stays(State::Outside);
+            return stays(centre, State::Outside);
         }
-        // Nodes without texture say nothing, and one alone cannot be agreed with.
-        let Ok(Mode { at, covariance, effective, .. }) = mode(&samples, &self.region.mode) else {
-            return stays(State::Lost(klt::Reason::Flat));
+        let Mode { at, covariance, effective, .. } = match mode(&samples, &self.region.mode) {
+            Ok(mode) => mode,
+            Err(fault) => return stays(centre, State::Lost(fault)),
         };
         let to = [0, 1].map(|axis| (f64::from(centre[axis]) + at[axis]) as f32);
-        let state = if self.lattice.holds(to) { State::Tracked } else { State::Outside };
+        let state = if self.lattice.picture.holds(to) { State::Tracked } else { State::Outside };
         Moved { to, state, share: effective / f64::from(n_nodes), spread_px: spread_px(covariance) }
     }
 }

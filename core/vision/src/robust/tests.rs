@@ -114,7 +114,7 @@ fn samples_without_a_metric_are_named() {
     let bare = Params { floor_px: 0.0, ..Params::default() };
     for (samples, fault) in [
         (&[] as &[[f64; 2]], Degenerate::Empty),
-        (&[[1.0, 2.0]], Degenerate::Single),
+        (&[[1.0, 2.0]], Degenerate::Few),
         (&same, Degenerate::Equal),
         (&line, Degenerate::Collinear),
         (&[[1.0, 2.0], [3.0, 4.0]], Degenerate::Collinear),
@@ -124,6 +124,13 @@ fn samples_without_a_metric_are_named() {
     ] {
         assert_eq!(mode(samples, &bare), Err(fault), "{samples:?}");
     }
+    // Of two that differ each is as right as the other: their mean is nobody's motion.
+    for (n, fault) in [(1, Degenerate::Few), (2, Degenerate::Few), (7, Degenerate::Few)] {
+        let params = Params { min_effective: 7.5, ..Params::default() };
+        assert_eq!(mode(&draws(n, 5), &params), Err(fault), "{n} samples");
+    }
+    assert_eq!(mode(&draws(2, 5), &Params::default()), Err(Degenerate::Few));
+    assert!(mode(&draws(8, 5), &Params { min_effective: 7.5, ..Params::default() }).is_ok());
     // With a floor a point and a line have one.
     let floored = Params::default();
     assert_near(&mode(&same, &floored).unwrap().at, &[0.1, 0.2], 1e-12);

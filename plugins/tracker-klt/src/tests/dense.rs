@@ -5,20 +5,8 @@ use super::*;
 /// Radians from one frame to the next, about the middle of the picture.
 const TURN: f64 = 0.03;
 
-/// The texture turned by so many radians.
-fn turned(angle: f64) -> Vec<u8> {
-    let (sin, cos) = angle.sin_cos();
-    let middle = [f64::from(WIDTH - 1) / 2.0, f64::from(HEIGHT - 1) / 2.0];
-    texture::render(WIDTH, HEIGHT, |x, y| {
-        let (dx, dy) = (x - middle[0], y - middle[1]);
-        texture::value(5, middle[0] + cos * dx + sin * dy, middle[1] - sin * dx + cos * dy)
-    })
-}
-
-fn field(pictures: [&[u8]; 2], max_threads: u32) -> honami_plugin::Field {
-    let frame = |data, index| Frame::new(Gray::packed(data, WIDTH, HEIGHT), index, index as f64);
-    let [from, to] = [frame(pictures[0], 0), frame(pictures[1], 1)];
-    klt_field(&Settings::default().tracking(), &from, &to, max_threads, &testing::cx()).unwrap()
+fn field(from: Frame<'_>, to: Frame<'_>, max_threads: u32) -> honami_plugin::Field {
+    klt_field(&Settings::default().klt(), &from, &to, max_threads, &testing::cx()).unwrap()
 }
 
 /// Where each node lies, and its displacement.
@@ -32,14 +20,14 @@ fn nodes(field: &honami_plugin::Field) -> impl Iterator<Item = ([f64; 2], Option
 
 #[test]
 fn a_turn_is_measured_at_every_node_that_stays_in_the_picture() {
-    let (before, after) = (turned(0.0), turned(TURN));
-    let field = field([&before, &after], 2);
+    let clip = turning(2, TURN);
+    let field = field(clip.frame(0), clip.frame(1), 2);
     assert_eq!((field.nx, field.ny, field.step), (24, 18, 10.0));
     let (sin, cos) = TURN.sin_cos();
     let mut errors = Vec::new();
     let mut n_unknown = 0;
     for ([x, y], moved) in nodes(&field) {
-        let (dx, dy) = (x - f64::from(WIDTH - 1) / 2.0, y - f64::from(HEIGHT - 1) / 2.0);
+        let (dx, dy) = (x - MIDDLE[0], y - MIDDLE[1]);
         let truth = [(cos - 1.0) * dx - sin * dy, sin * dx + (cos - 1.0) * dy];
         match moved {
             None => n_unknown += 1,
@@ -57,7 +45,7 @@ fn a_turn_is_measured_at_every_node_that_stays_in_the_picture() {
 fn what_drifts_hides_and_shows_no_texture() {
     let clip = clip(4);
     let (mut n, mut n_good) = (0, 0);
-    for (at, moved) in nodes(&field([&clip[1], &clip[2]], 1)) {
+    for (at, moved) in nodes(&field(clip.frame(1), clip.frame(2), 1)) {
         let is_inside = (20.0..220.0).contains(&at[0]) && (20.0..160.0).contains(&at[1]);
         let error = moved.map_or(f64::INFINITY, |[u, v]| (u - STEP[0]).hypot(v - STEP[1]));
         n += usize::from(is_inside);
@@ -65,19 +53,19 @@ fn what_drifts_hides_and_shows_no_texture() {
     }
     assert_eq!(n_good, n, "nodes away from the edges");
     // The disc appears in frame 3: where what it hides has gone nobody knows, nor where all is gray.
-    let hidden =
-        nodes(&field([&clip[2], &clip[3]], 1)).find(|(at, _)| (at[0] - 60.0).hypot(at[1] - 60.0) < 8.0);
+    let hidden = nodes(&field(clip.frame(2), clip.frame(3), 1))
+        .find(|(at, _)| (at[0] - 60.0).hypot(at[1] - 60.0) < 8.0);
     assert_eq!(hidden.unwrap().1, None);
-    let gray = vec![128; clip[0].len()];
-    assert!(nodes(&field([&gray, &gray], 1)).all(|(_, moved)| moved.is_none()));
+    let gray = Clip::new(WIDTH, HEIGHT, 2, |_, _, _| 128.0);
+    assert!(nodes(&field(gray.frame(0), gray.frame(1), 1)).all(|(_, moved)| moved.is_none()));
 }
 
 #[test]
 fn time_turned_round_turns_the_motion_and_threads_change_nothing() {
     let clip = clip(3);
-    let there = field([&clip[1], &clip[2]], 1);
-    assert_eq!(there, field([&clip[1], &clip[2]], 5));
-    let back = field([&clip[2], &clip[1]], 1);
+    let there = field(clip.frame(1), clip.frame(2), 1);
+    assert_eq!(there, field(clip.frame(1), clip.frame(2), 5));
+    let back = field(clip.frame(2), clip.frame(1), 1);
     let middle = (9 * back.nx + 12) as usize;
     let [[there, _], [back, _]] = [there, back].map(|field| field.vectors[middle].unwrap());
     assert!((there + back).abs() < 0.05 && back < -1.5, "{there} and {back}");
@@ -86,6 +74,6 @@ fn time_turned_round_turns_the_motion_and_threads_change_nothing() {
 #[test]
 fn a_picture_smaller_than_a_window_has_one_node() {
     let frame = Frame::new(Gray::packed(&[7; 6], 3, 2), 0, 0.0);
-    let field = klt_field(&Settings::default().tracking(), &frame, &frame, 1, &testing::cx()).unwrap();
+    let field = klt_field(&Settings::default().klt(), &frame, &frame, 1, &testing::cx()).unwrap();
     assert_eq!((field.nx, field.ny, field.origin, field.vectors), (1, 1, [1.0, 0.5], vec![None]));
 }

@@ -1,8 +1,8 @@
 //! Regions on pictures whose motion is known.
 
-use super::super::{Moved, Region, follow};
+use super::super::{Moved, Region, State, follow};
 use super::*;
-use crate::klt::{self, State};
+use crate::klt;
 use crate::pyramid::Pyramid;
 use crate::{Gray, Point, texture};
 
@@ -55,8 +55,8 @@ fn regions_without_nodes_texture_or_room_say_so() {
         [[40.0, 60.0], [120.0, 60.0], [-40.0, 10.0], [158.0, 2.0], [f32::NAN, 4.0], [1e30, 1e30], [0.0, 0.0]];
     let found = moved(&still, &still, &centres, 1);
     let states: Vec<State> = found.iter().map(|moved| moved.state).collect();
-    let flat = State::Lost(klt::Reason::Flat);
-    let unknown = State::Lost(klt::Reason::NotFinite);
+    let flat = State::Lost(Degenerate::Empty);
+    let unknown = State::Lost(Degenerate::NotFinite);
     assert_eq!(states, [State::Tracked, flat, State::Outside, flat, unknown, State::Outside, State::Tracked]);
     let stays = |(moved, centre): (&Moved, &Point)| moved.to.map(f32::to_bits) == centre.map(f32::to_bits);
     assert!(found.iter().zip(&centres).all(|pair| pair.0.state == unknown || stays(pair)));
@@ -65,6 +65,25 @@ fn regions_without_nodes_texture_or_room_say_so() {
     let gone = pyramid(|x, y| texture::value(3, x + 6.0, y));
     let start = pyramid(|x, y| texture::value(3, x, y));
     assert_eq!(moved(&start, &gone, &[[3.0, 60.0]], 1)[0].state, State::Outside);
+}
+
+#[test]
+fn a_region_says_why_it_has_no_motion() {
+    // Only the first columns have texture: in the picture half, one or two columns of nodes, and none.
+    let still = pyramid(|x, y| if x < 40.0 { texture::value(3, x, y) } else { 90.0 });
+    let state = |radius_px: u32, step_px: u32, centre: Point| {
+        let region = Region { radius_px, step_px, ..REGION };
+        follow([&still, &still], &[centre], &region, 1, &mut |_| true).unwrap()[0].state
+    };
+    let lost = State::Lost;
+    assert_eq!(state(2, 16, [24.0, 24.0]), lost(Degenerate::Empty), "no node is as near");
+    assert_eq!(state(2, 16, [16.0, 16.0]), lost(Degenerate::Few), "one node");
+    assert_eq!(state(8, 16, [24.0, 16.0]), lost(Degenerate::Few), "two nodes");
+    assert_eq!(state(12, 16, [24.0, 24.0]), State::Tracked, "four nodes");
+    assert_eq!(state(12, 3, [100.0, 60.0]), lost(Degenerate::Empty), "nodes without texture");
+    let bare = Region { mode: Params { floor_px: 0.0, ..REGION.mode }, ..REGION };
+    let found = follow([&still, &still], &[[20.0, 20.0]], &bare, 1, &mut |_| true).unwrap();
+    assert_eq!(found[0].state, lost(Degenerate::Equal), "nothing moved, and nothing is noise");
 }
 
 #[test]

@@ -15,7 +15,7 @@ pub struct Spot {
 
 /// Motion everywhere, from that at some places.
 #[derive(Clone, Debug)]
-pub struct Flow {
+pub struct Spots {
     scale_px: f64,
     reach_px: f32,
     /// Cells as large as the reach, so that only nine of them are looked at, `columns` in a row.
@@ -26,7 +26,7 @@ pub struct Flow {
     origin: Point,
 }
 
-impl Flow {
+impl Spots {
     /// Of these places, in any order; see [`Params`](super::Params) for the scale and the reach.
     #[must_use]
     pub fn new(spots: Vec<Spot>, scale_px: f64, reach_px: f32) -> Self {
@@ -39,7 +39,7 @@ impl Flow {
             [0, 1].map(
                 |axis| if spots.is_empty() { 0 } else { ((high[axis] - low[axis]) / reach_px) as usize + 1 },
             );
-        let mut flow = Self {
+        let mut all = Self {
             scale_px,
             reach_px,
             cells: vec![Vec::new(); n[0] * n[1]],
@@ -49,9 +49,17 @@ impl Flow {
         };
         for spot in spots {
             let [column, row] = [0, 1].map(|axis| ((spot.at[axis] - low[axis]) / reach_px) as usize);
-            flow.cells[row * flow.columns + column].push(spot);
+            all.cells[row * all.columns + column].push(spot);
         }
-        flow
+        all
+    }
+
+    /// How long [`at`](Self::at) takes, at most and roughly, nanoseconds.
+    #[must_use]
+    pub fn cost_ns(&self) -> f64 {
+        const SPOT_NS: f64 = 20.0;
+        let largest = self.cells.iter().map(Vec::len).max().unwrap_or(0);
+        SPOT_NS * (9 * largest).max(1) as f64
     }
 
     /// Displacement of whatever is at this place in the first picture; `None` where no particle reaches.

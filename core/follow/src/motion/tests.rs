@@ -2,10 +2,11 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use honami_plugin::{Gray as Luma, Listener, params, testing};
+use honami_plugin::{Gray as Luma, Listener, Point, Points, Seed, Status, Tracker, params, testing};
 use honami_vision::field::Grid;
 
 use super::*;
+use crate::{Follower, Losing};
 
 const WIDTH: u32 = 40;
 const HEIGHT: u32 = 30;
@@ -41,8 +42,12 @@ impl Motion for Given {
         go_on(0.5).then(|| Field::new(grid, grid.nodes().map(known)))
     }
 
+    fn is_backward(&self) -> bool {
+        self.backward
+    }
+
     fn trust(&self) -> Trust<'_> {
-        Trust { backward: self.backward, radius_px: 3, losing: &self.losing }
+        Trust { radius_px: 3, losing: &self.losing }
     }
 
     fn detection(&self) -> &Detection {
@@ -56,7 +61,7 @@ fn rows(given: &Given, seeds: &[(f32, f32)], n: u8) -> Vec<Vec<Point>> {
     let frames = data.iter().enumerate();
     let frames = frames.map(|(t, data)| Frame::new(Luma::packed(data, WIDTH, HEIGHT), t as i64, t as f64));
     let seeds: Vec<Seed> = (0..).zip(seeds).map(|(id, &(x, y))| Seed { id, x, y }).collect();
-    let mut rows = testing::track::<Particles<Given>>(given, &testing::stream(WIDTH, HEIGHT), &seeds, frames);
+    let mut rows = testing::track::<Follower<Given>>(given, &testing::stream(WIDTH, HEIGHT), &seeds, frames);
     rows.as_mut().unwrap().pop();
     rows.unwrap()
 }
@@ -100,7 +105,7 @@ fn a_cancel_comes_out_of_the_measurement() {
     let data = vec![9; (WIDTH * HEIGHT) as usize];
     let frame = Frame::new(Luma::packed(&data, WIDTH, HEIGHT), 0, 0.0);
     let mut tracker =
-        Particles::<Given>::begin(&Given::default(), &testing::stream(WIDTH, HEIGHT), &cx).unwrap();
+        Follower::<Given>::begin(&Given::default(), &testing::stream(WIDTH, HEIGHT), &cx).unwrap();
     tracker.seed(&[Seed { id: 1, x: 3.0, y: 3.0 }], &cx).unwrap();
     tracker.push(&frame, &mut Points::default(), &cx).unwrap();
     stop.0.store(true, Ordering::Relaxed);
