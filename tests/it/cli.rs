@@ -258,6 +258,11 @@ fn parameters_are_kept_with_the_run() {
         "plugin_id plugin_version plugin_sha256 abi params seed input_revision sandbox simd date",
     );
     assert_eq!(made["plugin_id"], "org.honami.klt");
+    assert_eq!(
+        made["simd"],
+        honami_vision::simd::level(),
+        "the level that the plugin's kernels take here, by its name"
+    );
     let params = &made["params"];
     assert_eq!(
         (&params["method"], &params["quality"], &params["radius"]),

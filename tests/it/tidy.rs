@@ -37,6 +37,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "honami-motion",
             "honami-review",
             "honami-synth",
+            "honami-vision",
         ],
     ),
     ("honami", &["honami-workbench", "honami-model"]),

@@ -56,7 +56,8 @@ pub struct Provenance {
     pub input_revision: u32,
     /// How it was isolated: `in process`.
     pub sandbox: String,
-    /// Widest SIMD level of the machine it ran on; a plugin may have used less.
+    /// Widest SIMD level of the machine it ran on, which the kernels of `honami-vision` use: `scalar`, `avx2` or `avx512`. A
+    /// plugin with kernels of its own may have used less. `none`: nothing ran.
     pub simd: String,
     /// When it began, RFC 3339.
     pub date: String,

@@ -27,7 +27,7 @@ pub(crate) fn stamp(
         seed: SEED,
         input_revision: on.0,
         sandbox: origin.sandbox,
-        simd: simd().to_owned(),
+        simd: honami_vision::simd::level().to_owned(),
         date: honami_store::now(),
         honami_version: env!("CARGO_PKG_VERSION").to_owned(),
     }
@@ -45,7 +45,7 @@ pub(crate) fn imported(project: &Project, params: BTreeMap<String, Value>, sha25
         seed: SEED,
         input_revision: project.revision().0,
         sandbox: "in process".to_owned(),
-        simd: "baseline".to_owned(),
+        simd: "none".to_owned(),
         date: honami_store::now(),
         honami_version: env!("CARGO_PKG_VERSION").to_owned(),
     }
@@ -57,18 +57,3 @@ fn narrow(version: u32) -> u16 {
 
 /// The seed of every run: shipped plugins make no random choices, and what is repeated should repeat.
 pub(crate) const SEED: u64 = 0;
-
-/// The widest vector instructions that this machine offers to a plugin.
-fn simd() -> &'static str {
-    #[cfg(target_arch = "x86_64")]
-    {
-        // As the kernels of `honami-vision` ask.
-        if std::arch::is_x86_feature_detected!("avx512f") && std::arch::is_x86_feature_detected!("avx512bw") {
-            return "avx512";
-        }
-        if std::arch::is_x86_feature_detected!("avx2") {
-            return "avx2";
-        }
-    }
-    "baseline"
-}
