@@ -11,7 +11,8 @@
 //! 4. a point that was not found well is looked for around that place, by correlation on every pixel
 //!    (`anchor/search.rs`), and fitted again;
 //! 5. what correlates too little, or is too far from where the neighbours say, is hidden: it is carried along by its
-//!    neighbours, and found again when it can be seen again.
+//!    neighbours, and found again when it can be seen again. The more a template looks like what is around it, the
+//!    less its correlation says, and the more the neighbours do.
 //!
 //! A point that has few neighbours is given companions: corners around it, followed like the rest and not reported.
 //! Each template learns which of its pixels move with the point and which belong to something before or behind it.
@@ -51,7 +52,8 @@ pub struct Params {
     pub klt: klt::Params,
     /// A point that correlates less, after what [`stray_cost`](Self::stray_cost) takes off, is hidden.
     pub accept: f32,
-    /// A point that correlates as much carries its neighbours, and teaches its template.
+    /// A point that correlates as much, and better than its template did anywhere else around it, carries its
+    /// neighbours, and teaches its template.
     pub sure: f32,
     /// A fit that correlates as much is not searched for elsewhere.
     pub good: f32,
@@ -73,8 +75,11 @@ pub struct Params {
     pub companions: u32,
     /// Neighbours whose distance changes by as much count a quarter, pixels.
     pub kin_px: f32,
-    /// What correlation a point loses for each squared standard deviation off its neighbours' word.
+    /// What correlation a point loses for each squared standard deviation off its neighbours' word, if nothing around
+    /// looked like it in its key-frame; where something correlated `c`, `1 / (1 - c)` times as much.
     pub stray_cost: f32,
+    /// What correlation a point loses for the squared logarithm of its contrast over the template's.
+    pub contrast_cost: f32,
     /// A point that was hidden must correlate by as much more to be found again.
     pub return_cost: f32,
     /// A point that has been hidden for more frames in a row is lost.
@@ -102,7 +107,8 @@ impl Default for Params {
             neighbours: 32,
             companions: 24,
             kin_px: 3.0,
-            stray_cost: 0.04,
+            stray_cost: 0.015,
+            contrast_cost: 0.1,
             return_cost: 0.1,
             patience: 250,
             max_templates: 3,
@@ -258,7 +264,7 @@ impl Tracker {
     /// Looks for every point by itself: where Lucas-Kanade and its own speed lead.
     fn predict<E>(&mut self, go_on: &mut dyn FnMut(f64) -> Result<(), E>) -> Result<(), E> {
         let Some([now, before]) = &self.pyramids else { return Ok(()) };
-        let picture = now.picture();
+        let (picture, last) = (now.picture(), before.picture());
         let n = self.live.len();
         for (k, part) in self.live.chunks_mut(POINTS_A_LOOK).enumerate() {
             go_on((k * POINTS_A_LOOK) as f64 / n as f64)?;
@@ -268,7 +274,9 @@ impl Tracker {
             for point in part.iter_mut() {
                 point.flow = if point.is_sought() { flows.next() } else { None };
             }
-            each(part, &self.params, self.simd, self.n_threads, |desk, point| point.predict(&picture, desk));
+            each(part, &self.params, self.simd, self.n_threads, |desk, point| {
+                point.predict(&last, &picture, desk)
+            });
         }
         Ok(())
     }

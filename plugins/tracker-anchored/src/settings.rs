@@ -29,8 +29,9 @@ params! {
         learning: f64 = 0.1 => { label: "Learning", group: "Tracking", min: 0, max: 1, advanced: true },
         /// A point that correlates less with its key-frame is hidden. Lower finds more, and more that is wrong.
         accept: f64 = 0.4 => { label: "Hidden below correlation", group: "Losing", min: 0, max: 1 },
-        /// What correlation a point loses for each squared standard deviation off where its neighbours say it is.
-        stray_cost: f64 = 0.04 => {
+        /// What correlation a point loses for each squared standard deviation off where its neighbours say it is; more
+        /// for one that looks like what is around it.
+        stray_cost: f64 = 0.015 => {
             label: "Cost of straying", group: "Losing", min: 0, max: 1, soft_max: 0.1, advanced: true,
         },
         /// A point that was hidden must correlate by as much more to be found again.

@@ -1,14 +1,16 @@
 //! One point: what it looks like, where it is, and what is made of that frame by frame.
 
 use super::neighbours::{self, Neighbour, Seen, Word};
+use super::search::Ring;
 use super::template::{Desk, Fit, Template};
 use super::warp::{STILL, Warp};
-use super::{Row, State};
+use super::{Params, Row, State};
 use crate::{Gray, Point, klt};
 
 /// Ids from here on are the tracker's own.
 pub(super) const OWN: u64 = 1 << 32;
-/// How far a leaf is expected to flutter about its branch until it has been seen to, pixels.
+/// How far a leaf is expected to flutter about its branch until it has been seen to, and at most: what went farther
+/// was likely another leaf. Pixels.
 const FLUTTER_PX: f32 = 3.0;
 /// How slowly its flutter is forgotten: frames.
 const MEMORY_FRAMES: f32 = 20.0;
@@ -161,8 +163,8 @@ impl Live {
         self.fb = (back.state == klt::State::Tracked).then_some(off);
     }
 
-    /// Fits the template where Lucas-Kanade and its own speed lead.
-    pub(super) fn predict(&mut self, picture: &Gray<'_>, desk: &mut Desk<'_>) {
+    /// Fits the template where Lucas-Kanade and its own speed lead; `last` is the picture before.
+    pub(super) fn predict(&mut self, last: &Gray<'_>, picture: &Gray<'_>, desk: &mut Desk<'_>) {
         (self.before, self.was_sure, self.was_tracked) =
             (self.at, self.is_sure, self.state == State::Tracked);
         (self.fit, self.fb, self.is_sure) = (None, None, false);
@@ -171,10 +173,13 @@ impl Live {
         }
         let onward = [self.at[0] + self.speed[0], self.at[1] + self.speed[1]];
         let flow = self.flow.map_or(onward, |flow| flow.to);
-        desk.lay(&self.templates[self.current]);
+        let template = &mut self.templates[self.current];
+        desk.lay(template);
+        // A new one was cut from the picture before, which is at hand now.
+        template.alike.get_or_insert_with(|| desk.alike(last, self.at));
         let from = best(desk, picture, &[(flow, self.warp), (onward, self.warp)]);
         let fit = desk.refine(picture, from.0, from.1);
-        self.is_sure = fit.ncc >= desk.params.sure && holds(picture, fit.at);
+        self.is_sure = fit.ncc >= self.sure(desk.params) && holds(picture, fit.at);
         if self.is_sure {
             self.at = fit.at;
         }
@@ -202,10 +207,10 @@ impl Live {
             };
             fit = self.look_again(picture, desk, &places, fit);
         }
-        let confidence = fit.ncc - desk.params.stray_cost * self.stray(&fit, word.as_ref());
+        let confidence = self.confidence(&fit, word.as_ref(), desk.params);
         let doubt = if self.n_hidden > 0 { desk.params.return_cost } else { 0.0 };
         let is_found = confidence >= desk.params.accept + doubt && holds(picture, fit.at);
-        self.is_sure = is_found && confidence >= desk.params.sure;
+        self.is_sure = is_found && confidence >= self.sure(desk.params);
         self.fit = Some(fit);
         if is_found {
             self.take(picture, desk, &fit, word.as_ref());
@@ -260,13 +265,34 @@ impl Live {
             let fit = desk.refine(picture, at, warp);
             keep(fit, &mut self.current);
             if fit.ncc < desk.params.good
-                && let Some((peak, ncc)) = desk.search(picture, at, warp, desk.params.search_px)
+                && let Some((peak, ncc)) =
+                    desk.search(picture, at, warp, Ring { from_px: 0.0, reach_px: desk.params.search_px })
                 && ncc > LEAST_PEAK
             {
                 keep(desk.refine(picture, peak, warp), &mut self.current);
             }
         }
         found
+    }
+
+    /// How well the template would correlate somewhere else at worst.
+    fn alike(&self) -> f32 {
+        self.templates[self.current].alike.unwrap_or(0.0)
+    }
+
+    /// The correlation from which on a fit is sure: better than anywhere around the key-frame.
+    fn sure(&self, params: &Params) -> f32 {
+        params.sure.max(self.alike())
+    }
+
+    /// A fit's correlation less what speaks against it: the less a correlation says, the more the neighbours do; and
+    /// on plain ground some correlation is a matter of luck.
+    fn confidence(&self, fit: &Fit, word: Option<&Word>, params: &Params) -> f32 {
+        /// How unlike what is around it a template usually is: what a point that is alone is judged by.
+        const USUAL: f32 = 0.4;
+        let unlike = word.map_or(USUAL, |_| 1.0 - self.alike());
+        let stray = params.stray_cost * self.stray(fit, word) / unlike;
+        fit.ncc - stray - params.contrast_cost * fit.contrast.ln().powi(2)
     }
 
     /// Squared standard deviations that a fit is off what the neighbours say, or its own motion where they say nothing;
@@ -281,7 +307,7 @@ impl Live {
         const JERK_PX: f32 = 4.0;
         let off_px2 = |at: Point| (fit.at[0] - at[0]).powi(2) + (fit.at[1] - at[1]).powi(2);
         if let Some(word) = word {
-            let usual = word.spread_px * word.spread_px + self.flutter_px2 + STEADY_PX2;
+            let usual = word.spread_px.powi(2) + self.flutter_px2.min(FLUTTER_PX.powi(2)) + STEADY_PX2;
             return (off_px2(word.at) / usual).min(MOST);
         }
         let onward = [self.before[0] + self.speed[0], self.before[1] + self.speed[1]];

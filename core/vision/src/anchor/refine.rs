@@ -48,8 +48,8 @@ impl Desk<'_> {
             }
         }
         self.look(gray, at, warp);
-        let ncc = self.correlation();
-        Fit { at: self.point(at, warp), warp, ncc }
+        let (ncc, contrast) = self.likeness();
+        Fit { at: self.point(at, warp), warp, ncc, contrast }
     }
 
     /// The step that the sums ask for.

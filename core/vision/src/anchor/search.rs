@@ -8,6 +8,15 @@ use crate::{Gray, Point};
 /// Pixels that count less are left out of a search.
 const LEAST_WEIGHT: f32 = 0.02;
 
+/// Places around one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ring {
+    /// No nearer than this, pixels.
+    pub(super) from_px: f32,
+    /// No farther on either axis, pixels.
+    pub(super) reach_px: u32,
+}
+
 /// Sums over a template that is searched for.
 #[derive(Clone, Copy)]
 struct Sought {
@@ -18,7 +27,7 @@ struct Sought {
 }
 
 impl Desk<'_> {
-    /// The pixel within `reach_px` of a place, on both axes, where the warped template correlates best, and how well.
+    /// The pixel around a place where the warped template correlates best, and how well.
     ///
     /// `None` where the template is flat, or the picture is all around.
     pub(super) fn search(
@@ -26,7 +35,7 @@ impl Desk<'_> {
         gray: &Gray<'_>,
         around: Point,
         warp: Warp,
-        reach_px: u32,
+        Ring { from_px, reach_px }: Ring,
     ) -> Option<(Point, f32)> {
         let side = 2 * self.params.radius_px as usize + 1;
         let n = 2 * reach_px as usize + 1;
@@ -48,7 +57,8 @@ impl Desk<'_> {
                     let spread = square - light * light / sought.weight;
                     if spread > FLAT_GRAY2 * sought.weight {
                         let ncc = common / (spread * sought.spread).sqrt();
-                        if best.is_none_or(|(.., most)| ncc > most) {
+                        let off = [x + lane, y].map(|c| c as f32 - reach_px as f32);
+                        if best.is_none_or(|(.., most)| ncc > most) && off[0].hypot(off[1]) >= from_px {
                             best = Some((x + lane, y, ncc));
                         }
                     }

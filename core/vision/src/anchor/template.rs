@@ -3,7 +3,8 @@
 use super::Params;
 use super::kernel::{Cell, Kernel, LANES, Lanes, MID_GRAY, Moments, Place, Tap};
 use super::live::holds;
-use super::warp::{Warp, apply};
+use super::search::Ring;
+use super::warp::{STILL, Warp, apply};
 use crate::{Gray, Point, sample, simd};
 
 /// What a point looked like in a key-frame.
@@ -15,6 +16,9 @@ pub(super) struct Template {
     doubt: Vec<f32>,
     /// From the centre of the template to the point, template pixels: 0 for the newest key-frame's.
     pub(super) shift: Point,
+    /// How well it correlates at worst elsewhere around its place in the key-frame, 0..1: how little a correlation says
+    /// about where it is. `None` until the point is first looked for.
+    pub(super) alike: Option<f32>,
 }
 
 /// Where a template was found.
@@ -24,6 +28,8 @@ pub(super) struct Fit {
     pub(super) warp: Warp,
     /// Weighted correlation, -1..=1.
     pub(super) ncc: f32,
+    /// Contrast of the picture over that of the template; 1 where either is flat.
+    pub(super) contrast: f32,
 }
 
 /// Brightness of a picture over that of the template.
@@ -56,7 +62,7 @@ impl Template {
         let mut patch = Vec::new();
         sample::patch(gray, at, params.radius_px + 1, &mut patch);
         let side = 2 * params.radius_px as usize + 1;
-        Self { patch, doubt: vec![0.0; side * side], shift: [0.0; 2] }
+        Self { patch, doubt: vec![0.0; side * side], shift: [0.0; 2], alike: None }
     }
 }
 
@@ -147,11 +153,22 @@ impl<'a> Desk<'a> {
         self.whole = Some(whole);
     }
 
-    /// Correlation with what was looked at last; 0 where less than half of the template was seen.
-    pub(super) fn correlation(&self) -> f32 {
+    /// Correlation with what was looked at last, and its contrast over the template's; 0 and 1 where less than half of
+    /// the template was seen.
+    pub(super) fn likeness(&self) -> (f32, f32) {
         let m = self.moments();
         let half = self.whole.as_ref().map_or(0.0, |whole| whole.iter().flatten().sum::<f32>() / 2.0);
-        if m.w < half { 0.0 } else { correlation(&m) }
+        if m.w < half { (0.0, 1.0) } else { likeness(&m) }
+    }
+
+    /// How well the template on the desk, cut here and not turned since, correlates with places around at most.
+    pub(super) fn alike(&mut self, gray: &Gray<'_>, at: Point) -> f32 {
+        /// Whatever looks like it, its own place counts for something.
+        const MOST: f32 = 0.98;
+        let radius_px = self.params.radius_px;
+        let peak =
+            self.search(gray, at, STILL, Ring { from_px: radius_px as f32 / 2.0, reach_px: radius_px });
+        peak.map_or(0.0, |(_, ncc)| ncc.clamp(0.0, MOST))
     }
 
     /// Sums over what was looked at last.
@@ -162,7 +179,7 @@ impl<'a> Desk<'a> {
     /// Correlation with a picture when the point is here.
     pub(super) fn compare(&mut self, gray: &Gray<'_>, point: Point, warp: Warp) -> f32 {
         self.look(gray, self.centre(point, warp), warp);
-        self.correlation()
+        self.likeness().0
     }
 
     /// Learns from a place that is sure which pixels go with the point and which belong to something else.
@@ -188,17 +205,18 @@ pub(super) fn line(m: &Moments) -> Line {
     Line { gain, offset: (m.i - gain * m.t) / w }
 }
 
-/// `Σ w (t - t̄)(i - ī) / √(Σ w (t - t̄)² Σ w (i - ī)²)`; 0 where either is flat.
-fn correlation(m: &Moments) -> f32 {
+/// `Σ w (t - t̄)(i - ī) / √(Σ w (t - t̄)² Σ w (i - ī)²)`, and `√(Σ w (i - ī)² / Σ w (t - t̄)²)`; 0 and 1 where either
+/// is flat.
+fn likeness(m: &Moments) -> (f32, f32) {
     let w = m.w.max(1e-6);
     let spread_t = m.tt - m.t * m.t / w;
     let spread_i = m.ii - m.i * m.i / w;
     let common = m.ti - m.t * m.i / w;
     let flat = FLAT_GRAY2 * w;
     if spread_t > flat && spread_i > flat {
-        (common / (spread_t * spread_i).sqrt()).clamp(-1.0, 1.0)
+        ((common / (spread_t * spread_i).sqrt()).clamp(-1.0, 1.0), (spread_i / spread_t).sqrt())
     } else {
-        0.0
+        (0.0, 1.0)
     }
 }
 

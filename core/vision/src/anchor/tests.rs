@@ -182,6 +182,41 @@ fn a_hidden_point_is_carried_by_its_neighbours_and_found_again() {
     }
 }
 
+/// Brightness around a point that a drifting texture carries: at an offset, where there was a texture, in a frame.
+type Look = fn(Point, u8, usize) -> f64;
+
+#[test]
+fn what_only_resembles_the_template_stays_hidden() {
+    let cases: [(&str, Look); 2] = [
+        ("its own look, later a trace of it on plain ground", |_, own, frame| {
+            if frame < 5 { f64::from(own) } else { 120.0 + 0.05 * (f64::from(own) - 128.0) }
+        }),
+        ("stripes, later five pixels aside", |[x, _], _, frame| {
+            let aside = if frame < 5 { 0.0 } else { 5.0 };
+            128.0 + 60.0 * ((f64::from(x) - aside) * 0.6).sin()
+        }),
+    ];
+    for (name, look) in cases {
+        let (mut tracker, points) = on_grid(Params::default(), 9);
+        let middle = points.len() / 2;
+        for frame in 0..20 {
+            let motion = Motion { shift: [0.8 * frame as f64, 0.5 * frame as f64], ..REST };
+            let mut picture = motion.picture(frame);
+            let to = motion.to(points[middle]);
+            for (k, pixel) in picture.iter_mut().enumerate() {
+                let off = [(k % WIDTH as usize) as f32 - to[0], (k / WIDTH as usize) as f32 - to[1]];
+                if off[0].abs().max(off[1].abs()) < 8.5 {
+                    *pixel = look(off, *pixel, frame) as u8;
+                }
+            }
+            let row = push(&mut tracker, &picture)[middle];
+            let state = if frame < 5 { State::Tracked } else { State::Occluded };
+            assert_eq!(row.state, state, "{name}, frame {frame}: {row:?}");
+            assert!(distance(row.at, to) < 3.0, "{name}, frame {frame}: {row:?} for {to:?}");
+        }
+    }
+}
+
 #[test]
 fn a_point_leaves_the_picture_and_comes_back() {
     let (mut tracker, points) = on_grid(Params::default(), 13);
