@@ -328,3 +328,17 @@ fn the_demo_does_the_whole_job() {
     assert_eq!(bench.json("demo --headless --folder demo"), demo, "a second demo finds its work done");
     assert_eq!(bench.log("demo/shrub.honami", "run").len(), 1);
 }
+
+#[test]
+fn a_run_over_another_says_how_to_go_back() {
+    let bench = Bench::tracked();
+    let text = bench.text("track p.honami --with klt --set radius=5");
+    let [run, shown] = &text.lines().collect::<Vec<_>>()[..] else { panic!("{text}") };
+    assert!(run.contains("% of samples seen; at the end"), "{run}");
+    assert_eq!(*shown, "run 2 is shown now instead of run 1; back: echo undo | honami edit p.honami");
+    // A tracker that fails before its first frame leaves no run, and no number that says nothing.
+    let ran = bench.line("track p.honami --with onnx");
+    assert_eq!((ran.code, ran.stdout.as_str(), ran.stderr.lines().count()), (Some(1), "", 1), "{ran:?}");
+    assert!(ran.stderr.contains("no net is set") && !ran.stderr.contains("(failed"), "{}", ran.stderr);
+    assert!(!bench.text("log p.honami").contains("run 3"));
+}

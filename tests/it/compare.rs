@@ -1,8 +1,11 @@
 //! `honami compare`: what it measures, on clips, projects and pairs of pictures.
 
 use std::fs;
+use std::io::{BufRead as _, BufReader};
+use std::process::Stdio;
 
 use honami_tests::{Bench, data};
+use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
 
 /// The row of a tracker.
@@ -124,6 +127,9 @@ fn what_cannot_be_compared_is_refused() {
         ("compare clip.y4m --truth right.flo", 1, &["4 frames", "--frames A..A+2"]),
         ("compare pair.y4m --truth unknown.flo", 1, &["none of the tracked points"]),
         ("compare pair.y4m --truth cut.flo", 1, &["no .flo file", "cut.flo"]),
+        ("compare clip.y4m --truth pair.truth.csv", 1, &["ends with frame 1", "0..4", "--frames 0..2"]),
+        ("compare clip.y4m --with ktl", 2, &["\"ktl\" (did you mean klt?)"]),
+        ("compare clip.y4m --with klt --set radis=3", 2, &["\"radis\" (did you mean radius?)"]),
         ("compare clip.y4m --points none.csv", 2, &["no points", "--points"]),
         ("compare clip.y4m --frames 2..9", 1, &["2..9", "0..4"]),
         ("compare clip.y4m --svg nowhere/out.svg", 1, &["no folder nowhere"]),
@@ -134,6 +140,46 @@ fn what_cannot_be_compared_is_refused() {
         assert!(words.iter().all(|word| ran.stderr.contains(word)), "{line}: {words:?}: {}", ran.stderr);
         assert_eq!((ran.stdout.as_str(), ran.stderr.lines().count()), ("", 1), "{line}: {ran:?}");
     }
+}
+
+#[test]
+fn the_columns_and_what_was_left_out_are_said_in_words() {
+    let bench = Bench::new();
+    bench.synth("clip.y4m", 8, "");
+    fs::write(bench.path("some.csv"), "id,x,y,frame\n1,80,60,0\n2,70,50,0\n3,60,60,7\n").unwrap();
+    let ran = bench.line("compare clip.y4m --with klt --points some.csv --frames 0..4");
+    assert_eq!(ran.stderr, "klt 1 of 1\n", "whose turn it is, for want of a terminal");
+    let text = ran.text();
+    assert_eq!(text.lines().next(), Some("2 points, frames 0-3 (left out: 1 given in other frames)"));
+    for words in
+        ["kept      share of points", "occluded is not kept", "home      share of points that come back"]
+    {
+        assert!(text.contains(words), "{words}: {text}");
+    }
+}
+
+#[test]
+fn what_was_measured_before_ctrl_c_is_told() {
+    let bench = Bench::new();
+    bench.synth("clip.y4m", 400, "--leaves 20");
+    let line = "compare clip.y4m --json --quick --with klt --with anchored --with box --set max_features=20";
+    let mut command = bench.command(line.split(' '));
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
+    assert!(lines.by_ref().any(|line| line.unwrap() == "anchored 2 of 3"));
+    kill_process(Pid::from_child(&child), Signal::INT).unwrap();
+    let rest: Vec<String> = lines.map(Result::unwrap).collect();
+    assert_eq!(rest, ["anchored: stopped, so it has no row", "box: stopped, so it has no row"]);
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "to be stopped is not to be done");
+    let said: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let names = |rows: &str| -> Vec<String> {
+        said[rows].as_array().unwrap().iter().map(|row| row["tracker"].as_str().unwrap().to_owned()).collect()
+    };
+    assert_eq!(
+        (names("trackers"), names("missing")),
+        (vec!["klt".to_owned(), "static".to_owned()], vec!["anchored".to_owned(), "box".to_owned()])
+    );
 }
 
 #[test]

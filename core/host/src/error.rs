@@ -10,7 +10,7 @@ use std::path::PathBuf;
 #[non_exhaustive]
 pub enum HostError {
     /// No plugin of that kind has that name.
-    #[error("there is no {kind} {name:?}; there are: {known}")]
+    #[error("there is no {kind} {name:?}{}; there are: {known}", alike(name, known))]
     NotFound {
         /// What was asked for.
         kind: Kind,
@@ -47,7 +47,7 @@ pub enum HostError {
     #[error(transparent)]
     Value(#[from] crate::values::ValueError),
     /// The plugin could not do it and says why.
-    #[error("{plugin}: {function}: {text} ({code})")]
+    #[error("{plugin}: {function}: {text}{}", code.aside())]
     Failed {
         /// Its id.
         plugin: String,
@@ -120,6 +120,25 @@ fn after(last_words: &str) -> String {
 /// A failure code of the ABI, shown as a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Code(pub i32);
+
+impl Code {
+    /// What it adds to the plugin's own words; that it has failed is told by these.
+    fn aside(self) -> String {
+        if self.0 == code::FAILED { String::new() } else { format!(" ({self})") }
+    }
+}
+
+/// Which of the names, comma-separated, was likely meant: ` (did you mean anchored?)`, or nothing. One mistake in three
+/// letters is likely, and so is a name that was not typed to its end.
+pub(crate) fn alike(name: &str, known: &str) -> String {
+    let mistakes = |known: &str| match known.starts_with(name) {
+        true => 1,
+        false => strsim::damerau_levenshtein(name, known),
+    };
+    let best = known.split(", ").min_by_key(|known| mistakes(known));
+    let best = best.filter(|known| mistakes(known) <= name.chars().count() / 3);
+    best.map_or_else(String::new, |known| format!(" (did you mean {known}?)"))
+}
 
 impl std::fmt::Display for Code {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {

@@ -14,7 +14,7 @@ pub enum ValueError {
     #[error("{0:?} is not of the form name=value")]
     Form(String),
     /// No such parameter.
-    #[error("there is no parameter {id:?}; there are: {known}")]
+    #[error("there is no parameter {id:?}{}; there are: {known}", crate::error::alike(id, known))]
     Unknown {
         /// As it was asked for.
         id: String,

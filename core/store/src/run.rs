@@ -100,8 +100,8 @@ pub struct RunInfo {
 
 /// The pen of a working run: its own connection, to be given to the thread that tracks.
 ///
-/// It keeps the project locked. Dropped without [`finish`](Self::finish) or [`abandon`](Self::abandon), the
-/// run counts as interrupted when the project is opened again.
+/// It keeps the project locked. Dropped without [`finish`](Self::finish), [`abandon`](Self::abandon) or
+/// [`discard`](Self::discard), the run counts as interrupted when the project is opened again.
 #[derive(Debug)]
 pub struct RunWriter {
     run: RunId,
@@ -173,6 +173,17 @@ impl RunWriter {
     pub fn abandon(mut self, reason: &str) -> Result<RunId, StoreError> {
         compact::end(&mut self.conn, self.run, &RunState::Stopped { reason: reason.to_owned() })?;
         Ok(self.run)
+    }
+
+    /// Takes the run back as if it had never begun, with what it has found; another may have its number.
+    ///
+    /// # Errors
+    /// What SQLite met.
+    pub fn discard(mut self) -> Result<(), StoreError> {
+        let tx = self.conn.transaction_with_behavior(TransactionBehavior::Immediate)?;
+        tx.execute("DELETE FROM chunk WHERE run = ?1", [self.run.0])?;
+        tx.execute("DELETE FROM run WHERE id = ?1", [self.run.0])?;
+        Ok(tx.commit()?)
     }
 }
 

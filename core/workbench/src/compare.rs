@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 
 use honami_exchange::flo::Flow;
-use honami_host::{CallContext, Host, Kind, Registry, Tracker, Values};
+use honami_host::{CallContext, Host, HostError, Kind, Registry, Tracker, Values};
 use honami_media::Media;
 use honami_model::track::{Quality, Sample, Source, Span, Status, TrackId};
 use honami_motion::accuracy::{Pair, accuracy, drift, histogram};
@@ -20,7 +20,7 @@ pub use truth::{Truth, check_truth, read_flow, read_truth, truth_of_flow};
 
 use crate::drive::{self, Plan, Rows, Seed};
 use crate::error::WorkbenchError;
-use crate::progress::Progress;
+use crate::progress::{Named, Progress};
 use meter::Memory;
 
 mod field;
@@ -61,12 +61,35 @@ pub struct Row {
     pub peak_bytes: Option<u64>,
 }
 
+/// How trackers did on the same points.
+#[derive(Debug, Default)]
+pub struct Comparison {
+    /// One a tracker that came to its end; the last is the baseline that tracks nothing.
+    pub rows: Vec<Row>,
+    /// Points that were tracked.
+    pub n_points: usize,
+    /// Points of the question that were given in no frame that was compared.
+    pub n_outside: usize,
+    /// Trackers of which nothing is known, and why: stopped, or failed.
+    pub missing: Vec<(String, WorkbenchError)>,
+}
+
 /// Who is compared.
 pub enum Contestant {
     /// A tracker: short name or full id, and its parameters.
     Tracker(String, Values),
     /// What another program made of the same points: its name, and its table of tracks.
     Foreign(String, PathBuf),
+}
+
+impl Contestant {
+    /// What its row is called.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Tracker(name, _) | Self::Foreign(name, _) => name,
+        }
+    }
 }
 
 /// What they are given, and what is known of the answer.
@@ -86,45 +109,52 @@ pub struct Question {
     pub passes: bool,
 }
 
-/// Runs each tracker over the frames; the last row is the baseline that tracks nothing.
+/// Runs each tracker over the frames. Where it is stopped the trackers that have come to their end are told of, and
+/// where one fails the others.
 ///
 /// # Errors
-/// [`WorkbenchError::NoFeatures`], [`WorkbenchError::NoTruth`], [`WorkbenchError::Stopped`], and what the clip
-/// or a tracker met.
+/// [`WorkbenchError::NoFeatures`], [`WorkbenchError::NoTruth`], what the clip met, and where no tracker came to its end
+/// what the first of them met, such as [`WorkbenchError::Stopped`].
 pub fn compare(
     media: &Media,
     registry: &Registry,
     contestants: &[Contestant],
     mut question: Question,
     progress: &dyn Progress,
-) -> Result<Vec<Row>, WorkbenchError> {
+) -> Result<Comparison, WorkbenchError> {
     drive::check_seeds(&question.points, media.clip())?;
+    let n_given = question.points.len();
     question.points.retain(|seed| question.frames.contains(&seed.frame));
+    let n_points = question.points.len();
     if question.points.is_empty() {
         return Err(WorkbenchError::NoFeatures);
     }
     if let Some(truth) = &mut question.truth {
         truth::cut(truth, question.frames.end);
     }
+    let bench = Bench { media, question: &question, progress, turn: String::new() };
+    // First, for it costs nothing and finds a truth that tells nothing.
+    let still = bench.still()?;
     meter::warm(media, question.frames.clone(), progress)?;
-    let bench = Bench { media, question: &question, progress };
-    let mut rows = Vec::new();
-    for contestant in contestants {
-        rows.push(match contestant {
-            Contestant::Tracker(name, params) => bench.tracker(registry, name, params)?,
-            Contestant::Foreign(name, path) => {
-                let n_frames = media.clip().n_frames();
-                bench.judge(name, &honami_exchange::spans(honami_exchange::read(path)?, n_frames)?)?
-            }
-        });
+    let mut found = Comparison { n_points, n_outside: n_given - n_points, ..Comparison::default() };
+    for (number, contestant) in (1..).zip(contestants) {
+        let name = contestant.name();
+        if matches!(found.missing.last(), Some((_, WorkbenchError::Stopped))) {
+            found.missing.push((name.to_owned(), WorkbenchError::Stopped));
+            continue;
+        }
+        let turn = format!("{name} {number} of {}", contestants.len());
+        progress.part(&turn);
+        match (Bench { turn, ..bench }).row(registry, contestant) {
+            Ok(row) => found.rows.push(row),
+            Err(error) => found.missing.push((name.to_owned(), of_stop(error))),
+        }
     }
-    let end = question.frames.end;
-    let still = question.points.iter().map(|seed| (seed.track, standing(seed, end))).collect();
-    let left_out = (question.passes && !question.keys.is_empty())
-        .then(|| keys::standing(&question.keys, &question.frames))
-        .flatten();
-    rows.push(Row { left_out, ..bench.judge(STATIC, &still)? });
-    Ok(rows)
+    if found.rows.is_empty() && !found.missing.is_empty() {
+        return Err(found.missing.swap_remove(0).1);
+    }
+    found.rows.push(still);
+    Ok(found)
 }
 
 /// What all contestants meet.
@@ -132,9 +162,34 @@ struct Bench<'a> {
     media: &'a Media,
     question: &'a Question,
     progress: &'a dyn Progress,
+    /// Whose turn it is: `klt 2 of 3`.
+    turn: String,
 }
 
 impl Bench<'_> {
+    /// Whoever watches, told of the steps of one pass.
+    fn pass(&self, name: &str) -> Named<'_> {
+        Named { progress: self.progress, name: format!("{}{name}", self.turn) }
+    }
+
+    fn row(&self, registry: &Registry, contestant: &Contestant) -> Result<Row, WorkbenchError> {
+        match contestant {
+            Contestant::Tracker(name, params) => self.tracker(registry, name, params),
+            Contestant::Foreign(name, path) => {
+                let n_frames = self.media.clip().n_frames();
+                self.judge(name, &honami_exchange::spans(honami_exchange::read(path)?, n_frames)?)
+            }
+        }
+    }
+
+    /// The baseline: every point stays where it was given.
+    fn still(&self) -> Result<Row, WorkbenchError> {
+        let Question { points, frames, keys, passes, .. } = self.question;
+        let still = points.iter().map(|seed| (seed.track, standing(seed, frames.end))).collect();
+        let left_out = if *passes { keys::standing(keys, frames) } else { None };
+        Ok(Row { left_out, ..self.judge(STATIC, &still)? })
+    }
+
     fn tracker(&self, registry: &Registry, name: &str, params: &Values) -> Result<Row, WorkbenchError> {
         let plugin = registry.find(Kind::Tracker, name)?;
         let memory = Memory::begin();
@@ -164,16 +219,17 @@ impl Bench<'_> {
         let (seeds, frames) = (self.question.points.clone(), self.question.frames.clone());
         let mut spans = BTreeMap::new();
         let step_secs =
-            self.drive(tracker, seeds, frames, &mut |frame, rows| gather(&mut spans, frame, rows))?;
+            self.drive(tracker, seeds, frames, "", &mut |frame, rows| gather(&mut spans, frame, rows))?;
         Ok((spans, Time::of(&step_secs)))
     }
 
-    /// Drives a tracker over all of these frames; the seconds that each took.
+    /// Drives a tracker over all of these frames, in a pass of this name; the seconds that each took.
     fn drive(
         &self,
         tracker: &mut Tracker,
         seeds: Vec<Seed>,
         frames: Range<u32>,
+        pass: &str,
         take: &mut dyn FnMut(u32, &Rows),
     ) -> Result<Vec<f64>, WorkbenchError> {
         // One thread, so that the times of trackers can be compared.
@@ -183,8 +239,8 @@ impl Bench<'_> {
             Ok(())
         };
         let mut numbers = |_| Ok(0..0);
-        let driven =
-            drive::drive(self.media, tracker, plan, &mut numbers, &mut collect, None, self.progress)?;
+        let watch = self.pass(pass);
+        let driven = drive::drive(self.media, tracker, plan, &mut numbers, &mut collect, None, &watch)?;
         if driven.end < frames.end {
             return Err(WorkbenchError::Stopped);
         }
@@ -214,6 +270,14 @@ impl Bench<'_> {
             errors: histogram(pairs),
             ..row
         })
+    }
+}
+
+/// A tracker that ends because it was told to has been stopped, and has not failed.
+fn of_stop(error: WorkbenchError) -> WorkbenchError {
+    match error {
+        WorkbenchError::Plugin(HostError::Cancelled { .. }) => WorkbenchError::Stopped,
+        error => error,
     }
 }
 

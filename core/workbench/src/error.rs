@@ -202,6 +202,19 @@ pub enum WorkbenchError {
         /// Frames of the clip.
         n_frames: u32,
     },
+    /// A truth ends too early.
+    #[error(
+        "the truth ends with frame {}, but frames {start}..{wanted} are compared: is it another clip's? \
+         --frames {start}..{end} compares as far as it goes", end.saturating_sub(1)
+    )]
+    TruthEnd {
+        /// One past its last frame.
+        end: u32,
+        /// The first frame that is compared.
+        start: u32,
+        /// One past the last.
+        wanted: u32,
+    },
     /// A true position lies outside the picture.
     #[error(
         "the truth shows point {track} at ({x}, {y}) in frame {frame}, but the clip has {width}x{height} pixels: \

@@ -7,6 +7,23 @@ pub use honami_host::Flow;
 pub trait Progress: Sync {
     /// `done` of `total` steps are done; `what` names them: `frame`, `pairs`.
     fn report(&self, done: u64, total: u64, what: &str) -> Flow;
+
+    /// A part of the job begins that takes a while and has a name: `klt, 2 of 3`.
+    fn part(&self, _name: &str) {}
+}
+
+/// Somebody who watches, told of all steps under one name.
+pub(crate) struct Named<'a> {
+    /// Who watches.
+    pub(crate) progress: &'a dyn Progress,
+    /// What the steps are called: `klt 2 of 3, there and back`.
+    pub(crate) name: String,
+}
+
+impl Progress for Named<'_> {
+    fn report(&self, done: u64, total: u64, _what: &str) -> Flow {
+        self.progress.report(done, total, &self.name)
+    }
 }
 
 /// Nobody watches, and the job runs to its end.

@@ -9,7 +9,7 @@ use std::time::Instant;
 use honami_host::{CallContext, Host, Kind, Origin, PluginInfo, Tracker, Values};
 use honami_media::{Media, OpenOptions};
 use honami_model::clip::Clip;
-use honami_model::document::RunId;
+use honami_model::document::{RunId, ShownRun};
 use honami_model::edit::Transaction;
 use honami_model::track::{TrackId, TrackSet};
 use honami_store::{Project, RunHead, RunWriter, Seam};
@@ -110,6 +110,9 @@ pub struct TrackOutcome {
     pub run: RunId,
     /// Tracks with samples.
     pub n_tracks: usize,
+    /// The shown run that had the same tracks, over which this one lies now; `None` where there was none, or this one is
+    /// not shown.
+    pub instead_of: Option<RunId>,
     /// How these ended.
     pub ends: Ends,
     /// Frames tracked.
@@ -193,7 +196,8 @@ impl TrackJob {
     /// tracker fails: [`TrackDone`] then holds its error.
     ///
     /// # Errors
-    /// When the project cannot be written.
+    /// When the project cannot be written; what a tracker met that failed before it had tracked a frame: then there is
+    /// no run.
     pub fn run(mut self, progress: &dyn Progress) -> Result<TrackDone, WorkbenchError> {
         let begun = Instant::now();
         let frames = self.plan.frames.clone();
@@ -203,13 +207,17 @@ impl TrackJob {
         let reached = kept.first_frame;
         let (driven, error) = match driven {
             Ok(driven) => (driven, None),
+            Err(error) if reached == frames.start => {
+                kept.writer.discard()?;
+                return Err(error);
+            }
             Err(error) => (Driven { end: reached, step_secs: Vec::new(), warnings: Vec::new() }, Some(error)),
         };
         match &error {
-            Some(error) => kept.writer.abandon(&error.to_string())?,
-            None if driven.end < frames.end => kept.writer.abandon("stopped")?,
-            None => kept.writer.finish()?,
-        };
+            Some(error) => kept.writer.abandon(&error.to_string()).map(drop)?,
+            None if driven.end < frames.end => kept.writer.abandon("stopped").map(drop)?,
+            None => kept.writer.finish().map(drop)?,
+        }
         let seconds = begun.elapsed().as_secs_f64();
         Ok(TrackDone { run, plugin: self.maker.plugin.short_name, frames, driven, seconds, error })
     }
@@ -276,6 +284,9 @@ pub fn finish(session: &mut Session, done: TrackDone) -> Result<TrackOutcome, Wo
     // Half a run laid over tracks that reach further would leave a seam in each: it is kept, and not shown.
     let shown = n_tracks > 0 && !(stopped && any_reaches(&session.project, &found, driven.end)?);
     let tracks = found.to_string();
+    let of_same = |before: &&ShownRun| before.tracks.iter().any(|track| found.contains(track));
+    let instead_of = session.project.document().runs().iter().rev().find(of_same).map(|before| before.run);
+    let instead_of = instead_of.filter(|_| shown);
     if shown {
         session.project.commit(Transaction::show_run(run, found))?;
     }
@@ -296,7 +307,19 @@ pub fn finish(session: &mut Session, done: TrackDone) -> Result<TrackOutcome, Wo
     }
     let Driven { step_secs, warnings, .. } = driven;
     let (frames, tracker_secs) = (reached, step_secs.iter().sum());
-    Ok(TrackOutcome { run, n_tracks, ends, frames, stopped, seconds, tracker_secs, error, warnings, line })
+    Ok(TrackOutcome {
+        run,
+        n_tracks,
+        instead_of,
+        ends,
+        frames,
+        stopped,
+        seconds,
+        tracker_secs,
+        error,
+        warnings,
+        line,
+    })
 }
 
 /// Whether any of the tracks, as it is shown, goes on at this frame.

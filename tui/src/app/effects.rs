@@ -49,6 +49,8 @@ pub(super) struct World {
     n_told: usize,
     /// Where the user was when it was last kept.
     seat: Seat,
+    /// Entries of the undo tree that were there when the session began.
+    n_before: usize,
     /// The track that a correction is open on.
     studied: Option<TrackId>,
     /// Works corrections out; `None` where there is no thread for it.
@@ -64,7 +66,20 @@ impl World {
         let offering = Offering::start(waker.clone()).ok();
         let (rows, seat) = (BTreeMap::new(), Seat::default());
         let (running, measuring) = (None, None);
-        Self { session, waker, running, reviewing, measuring, rows, n_told: 0, seat, studied: None, offering }
+        let n_before = session.project.history().entries().len();
+        Self {
+            session,
+            waker,
+            running,
+            reviewing,
+            measuring,
+            rows,
+            n_told: 0,
+            n_before,
+            seat,
+            studied: None,
+            offering,
+        }
     }
 
     /// The state to begin with, of the usual size.
@@ -278,10 +293,13 @@ impl World {
         n: u32,
         go: fn(&mut Project) -> Result<Option<Entry>, StoreError>,
     ) -> Facts {
-        let (mut labels, mut failure) = (Vec::new(), None);
+        let (mut labels, mut failure, mut n_old) = (Vec::new(), None, 0);
         for _ in 0..n {
             match go(&mut self.session.project) {
-                Ok(Some(entry)) => labels.push(entry.label),
+                Ok(Some(entry)) => {
+                    n_old += usize::from(word == "undone" && (entry.id.0 as usize) < self.n_before);
+                    labels.push(entry.label);
+                }
                 Ok(None) => break,
                 Err(error) => {
                     failure = Some(error);
@@ -293,6 +311,11 @@ impl World {
             [] => format!("nothing to be {word}"),
             [label] => format!("{word}: {label}"),
             [.., last] => format!("{word}: {} edits, the last of them: {last}", labels.len()),
+        };
+        let line = match (n_old, labels.len()) {
+            (1, 1) => format!("{line} (made before this session)"),
+            (n, _) if n > 0 => format!("{line} ({n} of them made before this session)"),
+            _ => line,
         };
         // What was done before something failed is shown all the same.
         self.arrived(match failure {

@@ -2,9 +2,11 @@
 
 use std::io::Read as _;
 use std::os::unix::net::UnixStream;
+use std::sync::Arc;
 
 use anyhow::Context as _;
 use honami_workbench::session::Session;
+use honami_workbench::versus;
 
 use super::action::Action;
 use super::command_log::{self, Head, Line, What};
@@ -12,6 +14,7 @@ use super::effects::World;
 use super::seat::Seat;
 use super::state::{Notice, State};
 use super::update::{Effect, Fact, Msg, again, stand_by, update};
+use super::versus::{Versus, VersusRequest};
 use crate::term::signals;
 
 /// Actions that are not done again: those that concern the terminal and files alone, and the ways through the queue,
@@ -132,10 +135,20 @@ impl Player {
         if line.here.as_ref().is_some_and(|here| here.chosen.is_some()) {
             self.wait_for_ghost().map_err(|error| error.to_string())?;
         }
+        self.compare();
         for effect in again(&mut self.state, line)? {
             self.carry_out(effect);
         }
         Ok(())
+    }
+
+    /// Compares the two runs that are beside each other: whoever did the next thing had seen how they disagree.
+    fn compare(&mut self) {
+        if let Some(VersusRequest { runs, tracks }) = Versus::request(&mut self.state) {
+            let compared = versus::compare(self.world.project(), runs, &tracks);
+            let compared = compared.map(Arc::new).map_err(|error| error.to_string());
+            drop(update(&mut self.state, Msg::Fact(Fact::Compared(runs, compared))));
+        }
     }
 
     fn carry_out(&mut self, effect: Effect) {

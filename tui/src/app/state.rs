@@ -55,6 +55,8 @@ pub struct State {
     pub tracks: Vec<TrackRow>,
     /// The track that keys work on.
     pub selected: Option<TrackId>,
+    /// The track that keys worked on when it went, with an edit that was undone: it is selected when it is there again.
+    pub missed: Option<TrackId>,
     /// The track that was placed or moved by hand since the last run: the next run is likely for it.
     pub corrected: Option<TrackId>,
     /// Tracks that are picked for work on all of them.
@@ -273,6 +275,7 @@ impl State {
             dropped: None,
             tracks: Vec::new(),
             selected: None,
+            missed: None,
             corrected: None,
             picked: BTreeSet::new(),
             range: None,

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use honami_model::document::RunId;
 use honami_model::track::{TrackId, TrackSet};
-use honami_workbench::versus::{AtKeys, Compared, Entrant};
+use honami_workbench::versus::{AtKeys, Compared, Entrant, Place};
 
 use super::state::State;
 use super::tracks::TrackRow;
@@ -53,6 +53,10 @@ pub struct Versus {
     pub at_keys: AtKeys,
     /// The place of disagreement that was gone to last.
     pub place: Option<usize>,
+    /// The place that was taken last, and from which of the two.
+    pub taken: Option<(usize, usize)>,
+    /// The track that was selected when they were put beside each other.
+    began_at: Option<TrackId>,
     /// The tracks that were asked for last, and in which state of the tracks that was.
     asked: Option<(TrackSet, u64)>,
 }
@@ -69,9 +73,22 @@ pub struct VersusRequest {
 impl Versus {
     /// Two runs of which nothing more is known yet.
     #[must_use]
-    pub fn new(runs: [Entrant; 2]) -> Self {
+    pub fn new(runs: [Entrant; 2], selected: Option<TrackId>) -> Self {
         let (sides, at_keys) = Default::default();
-        Self { runs, sides, compared: None, at_keys, place: None, asked: None }
+        let (compared, place, taken, asked) = Default::default();
+        Self { runs, sides, compared, at_keys, place, taken, began_at: selected, asked }
+    }
+
+    /// A place of disagreement by its rank.
+    #[must_use]
+    pub fn place_at(&self, rank: usize) -> Option<&Place> {
+        self.compared.as_ref()?.found.places.get(rank)
+    }
+
+    /// Whether this track was selected since they are beside each other: until then the list begins with the worst.
+    #[must_use]
+    pub fn was_chosen(&self, track: TrackId) -> bool {
+        self.place.is_some() || self.began_at != Some(track)
     }
 
     /// Numbers of A and B.

@@ -1,10 +1,11 @@
 //! `compare`: trackers side by side.
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use honami_workbench::WorkbenchError;
-use honami_workbench::compare::{self, Contestant, KeyPaths, Question};
+use honami_workbench::compare::{self, Comparison, Contestant, KeyPaths, Question};
 use honami_workbench::drive::Seed;
 use honami_workbench::export;
 use honami_workbench::media::{self, Media, OpenOptions};
@@ -27,19 +28,37 @@ pub(super) fn compare(args: &Compare, common: &Common) -> anyhow::Result<Answer>
     }
     let (media, registry) = (Arc::clone(&opened.media), Arc::clone(&opened.registry));
     let contestants = contestants(args, &registry)?;
-    let question = question(args, opened, &contestants)?;
-    let (n_points, frames) = (question.points.len(), question.frames.clone());
-    let rows = compare::compare(&media, &registry, &contestants, question, &report::Bar::new())?;
+    let Asked { question, n_unseen } = ask(args, opened, &contestants)?;
+    let frames = question.frames.clone();
+    let found = compare::compare(&media, &registry, &contestants, question, &report::Bar::new())?;
+    let head = head(&found, &frames, n_unseen);
     if let Some(path) = &args.svg {
         let name = args.clip[0].file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let title = format!("{name}: {n_points} points, {} frames", frames.len());
-        export::text(path, &svg::draw(&title, &rows))?;
+        export::text(path, &svg::draw(&format!("{name}: {head}"), &found.rows))?;
+    }
+    for (name, error) in &found.missing {
+        report::say(&match error {
+            WorkbenchError::Stopped => format!("{name}: stopped, so it has no row"),
+            error => format!("{name}: no row: {error}"),
+        });
     }
     Ok(Answer {
-        json: entry::answer(&rows, n_points, &frames),
-        text: format!("{n_points} points, {} frames\n{}", frames.len(), tables::all(&rows)),
-        done: true,
+        json: entry::answer(&found, n_unseen, &frames),
+        text: format!("{head}\n{}", tables::all(&found.rows)),
+        done: found.missing.is_empty(),
     })
+}
+
+/// On what was compared: `56 points, frames 0-59 (4 more are visible in no frame)`.
+fn head(found: &Comparison, frames: &Range<u32>, n_unseen: usize) -> String {
+    let left_out = [(n_unseen, "never visible"), (found.n_outside, "given in other frames")];
+    let left_out = left_out.iter().filter(|(n, _)| *n > 0);
+    let left_out: Vec<String> = left_out.map(|(n, why)| format!("{n} {why}")).collect();
+    let left_out = match &left_out[..] {
+        [] => String::new(),
+        some => format!(" (left out: {})", some.join(", ")),
+    };
+    format!("{} points, frames {}-{}{left_out}", found.n_points, frames.start, frames.end - 1)
 }
 
 /// What is compared on.
@@ -90,8 +109,15 @@ fn contestants(args: &Compare, registry: &Registry) -> anyhow::Result<Vec<Contes
     Ok(contestants)
 }
 
+/// What the trackers are given.
+struct Asked {
+    question: Question,
+    /// Points that are left out because they can be seen in no frame.
+    n_unseen: usize,
+}
+
 /// The points, and what is known of where they go.
-fn question(args: &Compare, opened: Opened, contestants: &[Contestant]) -> anyhow::Result<Question> {
+fn ask(args: &Compare, opened: Opened, contestants: &[Contestant]) -> anyhow::Result<Asked> {
     let Opened { media, registry, points: own, keys } = opened;
     let clip = media.clip();
     let n_frames = clip.n_frames();
@@ -103,10 +129,15 @@ fn question(args: &Compare, opened: Opened, contestants: &[Contestant]) -> anyho
     let flow = args.truth.as_ref().filter(is_flow).map(|path| compare::read_flow(path, clip)).transpose()?;
     let table = args.truth.as_ref().filter(|path| !is_flow(path));
     let mut truth = table.map(|path| compare::read_truth(path, n_frames)).transpose()?;
-    truth.iter().try_for_each(|truth| compare::check_truth(truth, clip))?;
+    truth.iter().try_for_each(|truth| compare::check_truth(truth, clip, &frames))?;
+    let mut n_unseen = 0;
     let points = match (&args.points, &truth) {
         (Some(path), _) => compare::read_points(path)?,
-        (None, Some(truth)) => compare::points_of(truth),
+        (None, Some(truth)) => {
+            let points = compare::points_of(truth);
+            n_unseen = truth.len() - points.len();
+            points
+        }
         (None, None) if own.is_empty() => {
             let trackers: Vec<(&str, &Values)> = contestants.iter().filter_map(tracker).collect();
             compare::detect(&media, &registry, &trackers, frames.start)?
@@ -120,7 +151,7 @@ fn question(args: &Compare, opened: Opened, contestants: &[Contestant]) -> anyho
         let len = u32::try_from(frames.len())?;
         truth = Some(compare::truth_of_flow(flow, &points, len)?);
     }
-    Ok(Question { points, frames, truth, flow, keys, passes: !args.quick })
+    Ok(Asked { question: Question { points, frames, truth, flow, keys, passes: !args.quick }, n_unseen })
 }
 
 fn tracker(contestant: &Contestant) -> Option<(&str, &Values)> {

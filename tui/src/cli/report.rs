@@ -1,4 +1,4 @@
-//! What a command says while it works: a progress bar on a terminal, nothing elsewhere.
+//! What a command says while it works: a progress bar on a terminal, a line a named part elsewhere.
 
 use std::io::{IsTerminal as _, Write as _};
 use std::sync::Arc;
@@ -19,7 +19,7 @@ pub(super) struct Bar {
 impl Bar {
     pub(super) fn new() -> Self {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(10));
-        let style = "{msg} {pos}/{len} ▕{bar:30}▏ {eta} left";
+        let style = "{msg} {pos}/{len} ▕{bar:20}▏ {eta} left";
         if let Ok(style) = ProgressStyle::with_template(style) {
             bar.set_style(style.progress_chars("█▌ "));
         }
@@ -46,12 +46,20 @@ impl Drop for Bar {
 
 impl Progress for Bar {
     fn report(&self, done: u64, total: u64, what: &str) -> Flow {
-        self.bar.set_length(total);
-        self.bar.set_position(done);
         if self.bar.message() != what {
+            // What is left is told of the steps of this name: others take another time each.
+            self.bar.reset();
             self.bar.set_message(what.to_owned());
         }
+        self.bar.set_length(total);
+        self.bar.set_position(done);
         if self.stop.load(Ordering::Relaxed) { Flow::Stop } else { Flow::Continue }
+    }
+
+    fn part(&self, name: &str) {
+        if self.bar.is_hidden() {
+            say(name);
+        }
     }
 }
 

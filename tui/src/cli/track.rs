@@ -1,5 +1,7 @@
 //! `track`: follow features through the clip.
 
+use std::path::Path;
+
 use honami_workbench::compare::read_points;
 use honami_workbench::plugins::{Kind, Registry, Values};
 use honami_workbench::progress::Progress;
@@ -40,7 +42,7 @@ pub(super) fn track(args: &Track, common: &Common) -> anyhow::Result<Answer> {
     };
     // Before the run begins: from here on Ctrl-C stops it and keeps what it has.
     let bar = report::Bar::new();
-    Ok(describe(&run(&mut session, &request, &bar)?))
+    Ok(describe(&run(&mut session, &request, &bar)?, &args.project))
 }
 
 /// The default tracker with its default parameters, over the whole clip.
@@ -104,9 +106,20 @@ pub(super) fn values(
     Ok(values)
 }
 
-fn describe(outcome: &TrackOutcome) -> Answer {
+fn describe(outcome: &TrackOutcome, project: &Path) -> Answer {
+    let line = match outcome.instead_of {
+        Some(before) => format!(
+            "{}\nrun {} is shown now instead of run {before}; back: echo undo | honami edit {}",
+            outcome.line,
+            outcome.run,
+            project.display()
+        ),
+        None => outcome.line.clone(),
+    };
     let json = json!({
         "run": outcome.run.0,
+        "instead_of": outcome.instead_of.map(|before| before.0),
+        "seen": outcome.ends.n_seen as f64 / outcome.ends.n_frames.max(1) as f64,
         "tracks": outcome.n_tracks,
         "lost": outcome.ends.n_lost,
         "hidden": outcome.ends.n_hidden,
@@ -118,5 +131,5 @@ fn describe(outcome: &TrackOutcome) -> Answer {
         "tracker_seconds": outcome.tracker_secs,
         "warnings": outcome.warnings,
     });
-    Answer { json, text: report::with_warnings(&outcome.line, &outcome.warnings), done: !outcome.stopped }
+    Answer { json, text: report::with_warnings(&line, &outcome.warnings), done: !outcome.stopped }
 }

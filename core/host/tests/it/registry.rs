@@ -139,7 +139,11 @@ fn parameters_are_refused_before_the_plugin_sees_them() {
         ("way=up", "way: wanted one of right, down, got \"up\""),
         ("corner=1", "corner: wanted x,y, got \"1\""),
         ("dice=-1", "dice: wanted a whole number from 0, got \"-1\""),
-        ("sped=1", "there is no parameter \"sped\"; there are: speed, way, life, note, corner, dice"),
+        (
+            "sped=1",
+            "there is no parameter \"sped\" (did you mean speed?); there are: speed, way, life, note, corner, dice",
+        ),
+        ("colour=1", "there is no parameter \"colour\"; there are: speed, way, life, note, corner, dice"),
         ("speed", "\"speed\" is not of the form name=value"),
     ];
     for (setting, wanted) in refused {

@@ -155,6 +155,20 @@ fn only_what_exists_and_has_ended_is_shown() {
 }
 
 #[test]
+fn a_run_that_is_taken_back_leaves_nothing() {
+    let bench = Bench::new();
+    let mut project = bench.create();
+    let mut writer = project.begin_run(&head(0..2)).unwrap();
+    writer.append(0, &rows(0..2, 0..9)).unwrap();
+    writer.discard().unwrap();
+    assert!(project.runs().unwrap().is_empty());
+    let mut writer = project.begin_run(&head(0..2)).unwrap();
+    writer.append(0, &rows(0..1, 0..3)).unwrap();
+    let run = writer.finish().unwrap();
+    assert_eq!(project.run_tracks(run).unwrap().len(), 1, "nothing of the other's");
+}
+
+#[test]
 fn an_interrupted_run_waits_until_it_was_shown() {
     let bench = Bench::new();
     let mut project = bench.create();

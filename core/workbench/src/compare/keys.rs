@@ -80,7 +80,7 @@ pub(super) fn measure(bench: &Bench<'_>, tracker: &mut Tracker) -> Result<Option
     };
     let seeds = (0..).zip(&ways).map(seed).collect();
     let mut far_px = vec![f64::INFINITY; ways.len()];
-    bench.drive(tracker, seeds, first..last + 1, &mut |frame, rows| {
+    bench.drive(tracker, seeds, first..last + 1, ", key-frames left out", &mut |frame, rows| {
         for (track, sample) in rows.iter().filter(|(_, sample)| sample.status.is_seen()) {
             let number = track.0 as usize;
             if let Some([_, (end, at)]) = ways.get(number)

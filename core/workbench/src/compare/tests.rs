@@ -39,12 +39,21 @@ fn a_truth_of_a_larger_clip_is_refused() {
         (0.0, -2.0, true, Some("100x50 pixels")),
     ] {
         let truth = [(TrackId(7), path(1, &[(0.0, 0.0, true), (x, y, visible)]))].into();
-        let error = check_truth(&truth, &clip).err().map(|error| error.to_string());
+        let error = check_truth(&truth, &clip, &(0..3)).err().map(|error| error.to_string());
         match said {
             Some(said) => assert!(error.as_ref().is_some_and(|e| e.contains(said)), "{error:?}"),
             None => assert_eq!(error, None),
         }
     }
+}
+
+#[test]
+fn a_truth_of_a_shorter_clip_is_refused() {
+    let clip = Clip { width: 100, height: 50, times: FrameTimes::constant(9, 25.0).unwrap() };
+    let truth = [(TrackId(7), path(1, &[(0.0, 0.0, true); 4]))].into();
+    assert!(check_truth(&truth, &clip, &(2..5)).is_ok());
+    let error = check_truth(&truth, &clip, &(2..9)).unwrap_err().to_string();
+    assert!(error.contains("ends with frame 4") && error.contains("--frames 2..5"), "{error}");
 }
 
 #[test]

@@ -13,7 +13,7 @@ use super::Bench;
 use crate::drive::view;
 use crate::ear::Ear;
 use crate::error::WorkbenchError;
-use crate::progress::Flow;
+use crate::progress::{Flow, Progress as _};
 use crate::stamp::SEED;
 
 /// How near points came to where they were given.
@@ -90,13 +90,14 @@ impl Bench<'_> {
             seed: SEED,
             births: 0..0,
         };
-        let ear = Ear::new(self.progress);
+        let watch = self.pass(", there and back");
+        let ear = Ear::new(&watch);
         let total = frames.len() as u64;
         let silent = CallContext::silent();
         tracker.begin(info, &silent)?;
         tracker.seed(ends, &silent)?;
         for (done, frame) in (0..).zip(frames.rev()) {
-            if self.progress.report(done, total, "frame, backward") == Flow::Stop {
+            if watch.report(done, total, "frame") == Flow::Stop {
                 return Err(WorkbenchError::Stopped);
             }
             let picture = self.media.frame(frame)?;

@@ -1,6 +1,7 @@
 //! Where points truly are: a table, or a flow from one picture to the next.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::Path;
 
 use honami_exchange::TruthRow;
@@ -48,11 +49,17 @@ fn path_of(rows: &BTreeMap<u32, (f64, f64, bool)>) -> Option<TruePath> {
     Some(TruePath { first_frame, positions: positions.collect() })
 }
 
-/// Refuses a truth that shows a point where the clip has no picture.
+/// Refuses a truth that shows a point where the clip has no picture, or that ends before the frames do that are
+/// compared.
 ///
 /// # Errors
-/// [`WorkbenchError::TruthPoint`] for the first such position.
-pub fn check_truth(truth: &Truth, clip: &Clip) -> Result<(), WorkbenchError> {
+/// [`WorkbenchError::TruthEnd`], and [`WorkbenchError::TruthPoint`] for the first such position.
+pub fn check_truth(truth: &Truth, clip: &Clip, frames: &Range<u32>) -> Result<(), WorkbenchError> {
+    let ends = truth.values().map(|path| path.first_frame.saturating_add(path.positions.len() as u32));
+    let end = ends.max().unwrap_or(0);
+    if end < frames.end {
+        return Err(WorkbenchError::TruthEnd { end, start: frames.start, wanted: frames.end });
+    }
     let (width, height) = (clip.width, clip.height);
     let inside = |v: f64, size: u32| (-0.5 - MARGIN_PX..f64::from(size) - 0.5 + MARGIN_PX).contains(&v);
     for (track, path) in truth {

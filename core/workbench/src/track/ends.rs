@@ -7,12 +7,16 @@ use honami_model::track::{Span, Status, TrackId};
 pub struct Ends {
     /// Lost by the tracker, or rejected by it.
     pub n_lost: usize,
-    /// Hidden.
+    /// Occluded.
     pub n_hidden: usize,
-    /// Out of the picture.
+    /// Outside the picture.
     pub n_outside: usize,
     /// Born on the way by the tracker itself, seen or not: it ends them when it likes, which is no loss.
     pub n_born: usize,
+    /// Samples of the others that are seen.
+    pub n_seen: usize,
+    /// Frames of the others, each from its first to the last that was tracked.
+    pub n_frames: usize,
 }
 
 impl Ends {
@@ -25,6 +29,9 @@ impl Ends {
                 ends.n_born += 1;
                 continue;
             }
+            let first = samples().next().map_or(last, |(frame, _)| frame);
+            ends.n_frames += last.abs_diff(first) as usize + 1;
+            ends.n_seen += samples().filter(|(_, sample)| sample.status.is_seen()).count();
             match samples().last().map(|(frame, sample)| (sample.status, frame)) {
                 Some((status, frame)) if status.is_seen() && frame == last => {}
                 Some((Status::Outside, _)) => ends.n_outside += 1,
@@ -36,15 +43,16 @@ impl Ends {
     }
 }
 
-/// As the line of a run says it: `3 lost, 1 left the picture`.
+/// As the line of a run says it: `98 % of samples seen; at the end 3 lost, 1 outside`.
 impl std::fmt::Display for Ends {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        // Downwards: all of them are seen where none is not.
+        if let Some(permille) = (1000 * self.n_seen).checked_div(self.n_frames) {
+            write!(f, "{} % of samples seen; at the end ", permille as f64 / 10.0)?;
+        }
         write!(f, "{} lost", self.n_lost)?;
-        let others = [
-            (self.n_hidden, "hidden"),
-            (self.n_outside, "left the picture"),
-            (self.n_born, "born on the way"),
-        ];
+        let others =
+            [(self.n_hidden, "occluded"), (self.n_outside, "outside"), (self.n_born, "born on the way")];
         others.iter().filter(|(n, _)| *n > 0).try_for_each(|(n, what)| write!(f, ", {n} {what}"))
     }
 }

@@ -106,7 +106,10 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
             state.range = None;
             state.selected = made.or(state.selected);
         }
-        Fact::ThereAgain(track) => time::select(state, track),
+        Fact::ThereAgain(track) => {
+            let missed = state.missed.take().filter(|missed| state.row(*missed).is_some());
+            time::select(state, missed.unwrap_or(track));
+        }
         Fact::Job(job) => {
             if let (Some(old), None) = (&state.job, &job) {
                 let plugin = old.plugin.clone();
@@ -151,6 +154,7 @@ fn on_tracks(state: &mut State, rows: Vec<TrackRow>) {
     let (tracks, picked) = (&state.tracks, &mut state.picked);
     picked.retain(|track| tracks.binary_search_by_key(track, |row| row.id).is_ok());
     if state.selected.is_none_or(|track| state.row(track).is_none()) {
+        state.missed = state.selected.or(state.missed);
         state.selected = state.tracks.first().map(|row| row.id);
     }
     // The sample being moved is gone: there is nothing to keep.

@@ -7,7 +7,7 @@ use honami_model::track::TrackId;
 use honami_workbench::correct::Step;
 use honami_workbench::versus::{Compared, Entrant, Place, Sight};
 
-use super::{Effect, Mode, State, actions, complain, edit, ranges, say, time};
+use super::{Effect, Hint, Mode, State, UNDO, actions, complain, edit, ranges, say, time};
 use crate::app::form::Task;
 use crate::app::menu::Menu;
 use crate::app::panel::Panel;
@@ -35,8 +35,14 @@ pub(super) fn on_runs(state: &mut State, runs: Option<[Entrant; 2]>) {
         Some(runs) => {
             let [a, b] = [runs[0].run, runs[1].run];
             say(state, format!("A is run {a}, B run {b}: n goes to the worst place, F flicks, A ends it"));
-            state.versus = Some(Box::new(Versus::new(runs)));
+            state.versus = Some(Box::new(Versus::new(runs, state.selected)));
             state.panel = Some(Panel::Versus);
+        }
+        None if state.job.is_some() => {
+            let plugin = state.job.as_ref().map_or("", |job| &job.plugin);
+            let line =
+                format!("{plugin} is still running; when it is done, A shows two runs of the same tracks");
+            say(state, line);
         }
         None if state.tracks.is_empty() => {
             complain(state, "there are no tracks yet: t r follows features, and again with another tracker");
@@ -57,8 +63,10 @@ fn second_run(state: &mut State) {
         return;
     }
     let on_top = state.tracker.as_deref().and_then(|tracker| tracker.split(' ').next()).unwrap_or_default();
-    let is_other = |name: &str| name != on_top;
-    let other = state.plugins.iter().find(|plugin| plugin.task == Task::Track && is_other(&plugin.name));
+    let others = || state.plugins.iter().filter(|plugin| plugin.task == Task::Track && plugin.name != on_top);
+    // The one that is most unlike: what drifts beside what does not.
+    let unlike = if on_top == "anchored" { "klt" } else { "anchored" };
+    let other = others().find(|plugin| plugin.name == unlike).or_else(|| others().next());
     let other = other.map(|plugin| plugin.name.clone());
     actions::open_form(state, Task::Track);
     if let (Mode::Form(form), Some(other)) = (&mut state.mode, other) {
@@ -73,7 +81,7 @@ pub(super) fn on_compared(state: &mut State, runs: [RunId; 2], compared: Result<
     match compared {
         Ok(compared) => {
             versus.compared = Some(compared);
-            versus.place = None;
+            (versus.place, versus.taken) = (None, None);
             versus.look_at_keys(tracks);
         }
         Err(error) => {
@@ -168,13 +176,39 @@ pub(super) fn on_entrants(state: &mut State, first: Option<RunId>, mut entrants:
     state.mode = Mode::Menu(Box::new(Menu::of_runs(first, &entrants)));
 }
 
-/// Lays what one of the two found over the range, or over all of the track; of all picked tracks.
+/// Lays what one of the two found over the range; without one over the place of disagreement that is on the screen, and
+/// the second time, or at no such place, over all of the track; of picked tracks over all of each.
 pub(super) fn take(state: &mut State, side: usize) -> Vec<Effect> {
     if !edit::is_writable(state) {
         return Vec::new();
     }
-    let Some(run) = shown(state).map(|versus| versus.numbers()[side]) else { return Vec::new() };
+    let Some((run, is_known)) = shown(state).map(|v| (v.numbers()[side], v.compared.is_some())) else {
+        return Vec::new();
+    };
+    if !is_known {
+        say(state, "the two runs are still being compared");
+        return Vec::new();
+    }
     let Some(tracks) = ranges::targets(state) else { return Vec::new() };
-    let frames = state.range.map_or(0..state.clip.n_frames(), |range| range.frames(state.frame));
-    ranges::step(state, Step::Take { tracks, frames, run })
+    let here = (state.range.is_none() && state.picked.is_empty()).then(|| place_here(state)).flatten();
+    let again = |versus: &Versus| here.is_some() && versus.taken == here.map(|at| (at, side));
+    let is_again = state.versus.as_deref().is_some_and(again);
+    let Some(versus) = state.versus.as_deref_mut() else { return Vec::new() };
+    versus.taken = here.map(|at| (at, side)).filter(|_| !is_again);
+    let place = versus.taken.and_then(|(at, _)| versus.place_at(at)).map(|place| place.frames.clone());
+    let hint = if place.is_some() { AGAIN[side] } else { UNDO };
+    let all = 0..state.clip.n_frames();
+    let frames = place.or_else(|| Some(state.range?.frames(state.frame))).unwrap_or(all);
+    time::stop(state);
+    vec![Effect::Correct(Step::Take { tracks, frames, run }, hint)]
+}
+
+/// What taking a place again does.
+const AGAIN: [Hint; 2] = ["e A again: the whole track, u undoes", "e B again: the whole track, u undoes"];
+
+/// The place of disagreement of the selected track that the current frame lies in, by its rank.
+fn place_here(state: &State) -> Option<usize> {
+    let (track, frame) = (state.selected?, state.frame);
+    let places = &state.versus.as_deref()?.compared.as_ref()?.found.places;
+    places.iter().position(|place| place.track == track && place.frames.contains(&frame))
 }

@@ -31,6 +31,24 @@ fn two_runs_beside_each_other() {
         ("A", format!("{here} | said the tracks as they are shown")),
         ("v a", format!("{here} | Entrants(None)")),
         ("e A", format!("{here} | Take {{ tracks: TrackSet([1..=1]), frames: 0..100, run: RunId(1) }}")),
+        // The place that is open, and the second time all of the track.
+        (
+            "n e A",
+            "review | frame 40 track 1 | Take { tracks: TrackSet([1..=1]), frames: 31..50, run: RunId(1) }"
+                .to_owned(),
+        ),
+        (
+            "n e A e A",
+            "review | frame 40 track 1 | Take { tracks: TrackSet([1..=1]), frames: 31..50, run: RunId(1) } | \
+             Take { tracks: TrackSet([1..=1]), frames: 0..100, run: RunId(1) }"
+                .to_owned(),
+        ),
+        (
+            "n e A e B",
+            "review | frame 40 track 1 | Take { tracks: TrackSet([1..=1]), frames: 31..50, run: RunId(1) } | \
+             Take { tracks: TrackSet([1..=1]), frames: 31..50, run: RunId(2) }"
+                .to_owned(),
+        ),
         (
             "r 9 l e B",
             "review | frame 29 track 1 | Take { tracks: TrackSet([1..=1]), frames: 20..30, run: RunId(2) }"
@@ -72,11 +90,39 @@ fn without_two_runs_the_form_of_another_tracker_opens() {
     assert_eq!((form.plugin().name.as_str(), form.features().word()), ("flow", "the tracks here"));
     let said = state.notice.clone().unwrap();
     assert!(said.is_error && said.text.starts_with("no two runs of the same tracks"), "{said:?}");
+    // Beside one that does not drift the one that does.
+    for (on_top, wanted) in [("anchored 0.1.0", "klt"), ("klt 0.1.0", "anchored")] {
+        let mut state = start("");
+        state.plugins.iter_mut().filter(|plugin| plugin.name == "flow").for_each(|plugin| {
+            wanted.clone_into(&mut plugin.name);
+        });
+        state.tracker = Some(on_top.to_owned());
+        update(&mut state, Msg::Fact(Fact::Versus(None)));
+        let Mode::Form(form) = &state.mode else { panic!("no form") };
+        assert_eq!(form.plugin().name, wanted);
+    }
     let effects = press(&mut state, "Enter");
     assert_eq!(
         line(&state, &effects),
         "review | frame 0 track 1 | flow follows Existing in 0..100, every None "
     );
+}
+
+#[test]
+fn while_a_tracker_runs_no_form_opens() {
+    let mut state = start("job");
+    update(&mut state, Msg::Fact(Fact::Versus(None)));
+    assert!(matches!(state.mode, Mode::Review));
+    let said = state.notice.clone().unwrap();
+    assert!(!said.is_error && said.text.contains("is still running; when it is done, A shows"), "{said:?}");
+}
+
+#[test]
+fn until_the_runs_are_compared_none_is_taken() {
+    let mut state = start("versus");
+    state.versus.as_mut().unwrap().compared = None;
+    assert_eq!(press(&mut state, "e A"), []);
+    assert_eq!(state.notice.clone().unwrap().text, "the two runs are still being compared");
 }
 
 #[test]

@@ -52,8 +52,12 @@ trait List {
     fn nothing(&self) -> &'static str;
     /// Number of rows.
     fn len(&self) -> usize;
-    /// The current row, which stays in sight.
+    /// The current row.
     fn current(&self) -> Option<usize>;
+    /// The row that stays in sight.
+    fn middle(&self) -> Option<usize> {
+        self.current()
+    }
     /// What a row shows.
     fn row(&self, i: usize) -> Line<'static>;
     /// What choosing a row picks.
@@ -84,7 +88,7 @@ fn above(list: &dyn List, area: Rect) -> Vec<Line<'static>> {
 /// Rows of a list that begins under so many, and the first of them that is seen.
 fn window(list: &dyn List, area: Rect, top: usize) -> (usize, usize) {
     let n_rows = usize::from(area.height).saturating_sub(top);
-    let at = list.current().unwrap_or(0);
+    let at = list.middle().unwrap_or(0);
     (n_rows, at.saturating_sub(n_rows / 2).min(list.len().saturating_sub(n_rows)))
 }
 

@@ -480,9 +480,12 @@ fn is_useful(state: &State, action: Action) -> bool {
         Action::NextItem => state.versus.is_some() || !state.review.queue.is_empty(),
         Action::VersusFlick => state.versus.is_some(),
         Action::TakeA | Action::TakeB => {
-            let shows = |side| state.versus.as_deref().is_some_and(|versus| versus.sides == Sides::One(side));
-            shows(usize::from(action == Action::TakeB)) && state.read_only.is_none()
+            let side = usize::from(action == Action::TakeB);
+            let shows = state.versus.as_deref().is_some_and(|versus| versus.sides.shows(side));
+            shows && state.read_only.is_none()
         }
+        // Beside two runs there is no room for what has nothing to do with them.
+        Action::AddFeature | Action::RunClusterer | Action::WorstFrame if state.versus.is_some() => false,
         Action::MoveSample => !state.tracks.is_empty() && state.read_only.is_none(),
         Action::WorstFrame => state.opened().is_none() && state.doubt().is_some(),
         Action::RunTracker => state.tracks.is_empty() && state.job.is_none() && state.read_only.is_none(),

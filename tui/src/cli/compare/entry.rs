@@ -2,14 +2,19 @@
 
 use std::ops::Range;
 
-use honami_workbench::compare::{Accuracy, Drift, Histogram, Row};
+use honami_workbench::compare::{Accuracy, Comparison, Drift, Histogram, Row};
 use serde_json::{Value, json};
 
-pub(super) fn answer(rows: &[Row], n_points: usize, frames: &Range<u32>) -> Value {
+pub(super) fn answer(found: &Comparison, n_unseen: usize, frames: &Range<u32>) -> Value {
+    let missing = found.missing.iter();
+    let missing = missing.map(|(name, error)| json!({ "tracker": name, "error": error.to_string() }));
     json!({
-        "points": n_points,
+        "points": found.n_points,
+        "points_never_visible": n_unseen,
+        "points_in_other_frames": found.n_outside,
         "frames": [frames.start, frames.end],
-        "trackers": rows.iter().map(entry).collect::<Vec<_>>(),
+        "trackers": found.rows.iter().map(entry).collect::<Vec<_>>(),
+        "missing": missing.collect::<Vec<_>>(),
     })
 }
 

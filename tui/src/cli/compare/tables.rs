@@ -4,6 +4,8 @@ use honami_workbench::compare::{Accuracy, Row};
 
 use super::super::report;
 
+mod legend;
+
 /// Points of a drift curve in the table.
 const N_DRIFT: usize = 6;
 
@@ -22,6 +24,7 @@ pub(super) fn all(rows: &[Row]) -> String {
     } else if with_truth {
         tables.push(end_points(rows, with_field));
     }
+    tables.push(legend::of(rows));
     tables.join("\n\n")
 }
 
@@ -46,10 +49,10 @@ fn accuracy(rows: &[Row]) -> String {
 }
 
 fn costs(rows: &[Row], with_truth: bool) -> String {
-    let of_truth: &[&str] = if with_truth { &["occl", "prec", "rec", "lost"] } else { &[] };
+    let of_truth: &[&str] = if with_truth { &["vis", "prec", "rec", "lost"] } else { &[] };
     let with_keys = rows.iter().any(|row| row.left_out.is_some());
     let keys: &[&str] = if with_keys { &["keys"] } else { &[] };
-    let head = [of_truth, &["kept", "back", "<1 px"], keys, &["ms", "95 %", "MB"]].concat();
+    let head = [of_truth, &["kept", "back", "home"], keys, &["ms", "ms95", "MB"]].concat();
     table(&head, rows, |row| {
         let mut cells = Vec::new();
         if with_truth {

@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use honami_workbench::compare::{Accuracy, Back, Drift, FieldError, Histogram, LeftOut, Row, STATIC, Time};
+use honami_workbench::compare::{
+    Accuracy, Back, Comparison, Drift, FieldError, Histogram, LeftOut, Row, STATIC, Time,
+};
 
 use super::{entry, svg, tables};
 
@@ -110,7 +112,8 @@ fn drawings() {
 
 #[test]
 fn machines_are_told_everything() {
-    let told = entry::answer(&truth(), 400, &(10..160));
+    let found = |rows| Comparison { rows, n_points: 400, ..Comparison::default() };
+    let told = entry::answer(&found(truth()), 0, &(10..160));
     assert_eq!((&told["points"], &told["frames"]), (&400.into(), &serde_json::json!([10, 160])));
     let first = &told["trackers"][0];
     assert_eq!(first["within"].as_array().unwrap().len(), 5);
@@ -119,5 +122,5 @@ fn machines_are_told_everything() {
     assert_eq!(first["histogram"]["bins"].as_array().unwrap().len(), 24);
     assert_eq!(told["trackers"][3]["ms_per_frame"], serde_json::Value::Null);
     // Without a truth there are no such members, as before.
-    assert_eq!(entry::answer(&clip(), 1, &(0..2))["trackers"][0].get("delta_avg"), None);
+    assert_eq!(entry::answer(&found(clip()), 0, &(0..2))["trackers"][0].get("delta_avg"), None);
 }

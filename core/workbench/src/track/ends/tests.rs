@@ -30,7 +30,10 @@ fn what_is_lost_hidden_outside_and_born_is_told_apart() {
         span(9, 0, &[Tracked, Tracked, Rejected]),
     ];
     let ends = Ends::of(&spans, 2);
-    assert_eq!(ends, Ends { n_lost: 3, n_hidden: 1, n_outside: 2, n_born: 2 });
-    assert_eq!(ends.to_string(), "3 lost, 1 hidden, 2 left the picture, 2 born on the way");
+    assert_eq!(ends, Ends { n_lost: 3, n_hidden: 1, n_outside: 2, n_born: 2, n_seen: 13, n_frames: 23 });
+    assert_eq!(
+        ends.to_string(),
+        "56.5 % of samples seen; at the end 3 lost, 1 occluded, 2 outside, 2 born on the way"
+    );
     assert_eq!(Ends::of(&[], 0).to_string(), "0 lost");
 }
