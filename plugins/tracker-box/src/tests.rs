@@ -148,3 +148,38 @@ fn dense_motion_is_that_of_the_texture() {
     // What leaves the picture is not known; nearly all that is known is right.
     assert!(right > 300 && right * 10 > known * 9, "{right} of {known} known, {} nodes", field.vectors.len());
 }
+
+/// Two frames whose parts move each their own way, up to twelve pixels, with noise of their own.
+fn gust(seed: u64) -> [Vec<u8>; 2] {
+    let sway =
+        |axis: u64, x: f64, y: f64| 12.0 * (texture::value(seed + axis, 0.12 * x, 0.12 * y) - 128.0) / 128.0;
+    [0, 1].map(|t| {
+        texture::render(480, 360, |x, y| {
+            let [u, v] = [1, 2].map(|axis| t as f64 * sway(axis, x, y).clamp(-12.0, 12.0));
+            texture::value(seed, x - u, y - v) + 6.0 * texture::hash(seed + t, x as i64, y as i64)
+        })
+    })
+}
+
+#[test]
+fn the_defaults_find_what_the_exhaustive_search_finds() {
+    for (seed, least) in [(31, 99.0), (32, 99.0)] {
+        let frames = gust(seed);
+        let gray = |i: usize| honami_vision::Gray::packed(&frames[i], 480, 360);
+        let wanted =
+            honami_vision::detect::Params { max_corners: 500, min_distance_px: 5.0, ..Default::default() };
+        let found = honami_vision::detect::corners(&gray(0), None, &[], &wanted);
+        let points: Vec<_> = found.iter().map(|corner| corner.at).collect();
+        let costs = |strategy| {
+            let params = Settings { strategy, ..Settings::default() }.matching();
+            let [from, to] = [0, 1].map(|i| Boxes::new(&gray(i), params.levels(), params.radius_px));
+            let found = boxes::track(&from, &to, &points, None, &params, 1);
+            found.iter().map(|found| found.cost).collect::<Vec<_>>()
+        };
+        let (all, few) = (costs(Strategy::Exhaustive), costs(Settings::default().strategy));
+        let same = all.iter().zip(&few).filter(|(a, b)| a == b).count();
+        let agree = 100.0 * same as f64 / points.len() as f64;
+        assert!(points.len() > 300 && all.iter().all(|cost| *cost > 0), "{} points", points.len());
+        assert!(agree >= least, "seed {seed}: {agree:.2} % of {}", points.len());
+    }
+}

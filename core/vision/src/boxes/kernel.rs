@@ -2,27 +2,32 @@
 //!
 //! Sums are whole numbers, so that the plain kernel and the fast ones give the same bits.
 #![allow(unsafe_code, reason = "calls to functions for instructions that the processor was asked about")]
+#![cfg_attr(
+    not(target_arch = "x86_64"),
+    allow(dead_code, reason = "only vectors need groups, halves and their memory")
+)]
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
+mod beside;
 #[cfg(test)]
 mod tests;
-
-use std::ops::Range;
+#[cfg(target_arch = "x86_64")]
+mod vector;
+#[cfg(target_arch = "x86_64")]
+mod vnni;
 
 use super::planes::Plane;
 use crate::simd::{self, Set};
+use beside::Block;
+pub(super) use beside::Memory;
 
 /// Pixels of a row that are worked on together.
-const LANES: usize = 32;
+pub(super) const LANES: usize = 32;
 
-/// So few columns of windows are compared one by one: most of a vector of them would be for nothing.
-#[cfg(target_arch = "x86_64")]
-const FEW: usize = 2;
-
-/// Rows that are summed up before a window may be given up.
+/// Rows, at most, that are summed up before a window may be given up.
 const ROWS_A_LOOK: usize = 8;
 
 /// Pixels of a template's row, or which of them count.
@@ -40,10 +45,12 @@ pub(super) struct Cut {
     side: usize,
     /// `(side, side)`, row-major.
     pixels: Vec<u8>,
-    /// Two neighbours of a row together, the left one in the lower half; 0 beyond the side, and in a row above and
-    /// one beneath. `(side + 2, side / 2)`, the latter rounded up.
-    pairs: Vec<i32>,
-    /// `Σ I²`
+    /// A few neighbours of a row together, the left one lowest; 0 beyond the side, and in a row above and one beneath.
+    /// `(side + 2, groups of a row)`.
+    groups: Vec<i32>,
+    /// `Σ I`, with the groups.
+    sum: u32,
+    /// `Σ I²`, with the groups.
     squares: u32,
 }
 
@@ -81,7 +88,7 @@ impl Sums {
 }
 
 impl Cut {
-    /// Takes a template of `side * side` pixels, row-major.
+    /// Takes a template of `side * side` pixels, row-major; what is behind them does not count.
     pub(super) fn take(&mut self, pixels: &[u8], side: usize) {
         if self.side != side {
             let strips = side.div_ceil(LANES);
@@ -90,25 +97,33 @@ impl Cut {
             self.mask = (0..strips).map(counts).collect();
             self.rows = vec![Strip([0; LANES]); side * strips];
         }
-        for (y, pixels) in pixels.chunks_exact(side).enumerate() {
-            for (i, pixels) in pixels.chunks(LANES).enumerate() {
-                let Strip(lanes) = &mut self.rows[i * side + y];
-                lanes.iter_mut().zip(pixels).for_each(|(lane, &pixel)| *lane = i16::from(pixel));
+        for (i, (Strip(mask), rows)) in self.mask.iter().zip(self.rows.chunks_exact_mut(side)).enumerate() {
+            for (y, Strip(lanes)) in rows.iter_mut().enumerate() {
+                let pixels = &pixels[y * side + i * LANES..];
+                *lanes = match pixels.first_chunk::<LANES>() {
+                    Some(pixels) => std::array::from_fn(|i| i16::from(pixels[i]) & mask[i]),
+                    None => {
+                        std::array::from_fn(|i| pixels.get(i).map_or(0, |&pixel| i16::from(pixel)) & mask[i])
+                    }
+                };
             }
         }
         self.pixels.clear();
-        self.pixels.extend_from_slice(pixels);
-        self.pairs.clear();
+        self.pixels.extend_from_slice(&pixels[..side * side]);
     }
 
-    /// Makes the pairs of a template that was taken, for [`all_differences`].
-    fn pair(&mut self) {
-        let pair = |two: &[u8]| i32::from(two[0]) | two.get(1).map_or(0, |&right| i32::from(right) << 16);
-        let n = self.side.div_ceil(2);
-        self.pairs.resize(n, 0);
-        self.pixels.chunks_exact(self.side).for_each(|row| self.pairs.extend(row.chunks(2).map(pair)));
-        self.pairs.resize((self.side + 2) * n, 0);
-        self.squares = self.pixels.iter().map(|&p| u32::from(p).pow(2)).sum();
+    /// Makes the groups of a template that was taken, for [`all_differences`].
+    #[cfg(target_arch = "x86_64")]
+    fn group<const N: usize>(&mut self, together: fn([u8; N]) -> i32) {
+        let group = |some: &[u8]| together(std::array::from_fn(|i| some.get(i).copied().unwrap_or(0)));
+        let n = self.side.div_ceil(N);
+        self.groups.clear();
+        self.groups.resize(n, 0);
+        for row in self.pixels.chunks_exact(self.side) {
+            self.groups.extend(row.chunks(N).map(group));
+        }
+        self.groups.resize((self.side + 2) * n, 0);
+        Sums { sum: self.sum, squares: self.squares, .. } = Sums::of(&self.pixels);
     }
 }
 
@@ -123,8 +138,8 @@ impl<'a> Source<'a> {
     /// For windows that start at these bytes of a plane.
     #[track_caller]
     fn of(cut: &Cut, plane: &'a Plane, starts: &[u32]) -> Self {
-        let last = starts.iter().max().map_or(0, |&start| start as usize);
-        Self::up_to(cut, plane, last)
+        let last = starts.iter().fold(0, |last, &start| start.max(last));
+        Self::up_to(cut, plane, last as usize)
     }
 
     /// For windows that start at this byte of a plane, or before.
@@ -149,7 +164,7 @@ pub(super) fn differences(level: simd::Level, cut: &Cut, plane: &Plane, starts: 
     let source = Source::of(cut, plane, starts);
     out.clear();
     match level.set() {
-        Set::Scalar => out.extend(starts.iter().map(|&start| difference(cut, source, start, 0..cut.side))),
+        Set::Scalar => each_difference(&Plain(cut, source), starts, Rows::ALL, out),
         // SAFETY: a level is the proof that the processor has these instructions.
         #[cfg(target_arch = "x86_64")]
         Set::Avx2 => unsafe { avx2::differences(cut, source, starts, out) },
@@ -159,9 +174,9 @@ pub(super) fn differences(level: simd::Level, cut: &Cut, plane: &Plane, starts: 
     }
 }
 
-/// [`differences`] as far as the least of them is wanted: a window may be given up after every [`ROWS_A_LOOK`] rows,
-/// once they alone differ by more than the least window before it. The one that differs least in the first rows is the
-/// first, the others follow in order.
+/// [`differences`] as far as the least of them is wanted: a window is looked at a few rows at a time, of all parts
+/// of it, and given up once they alone differ by more than the least window before it. The one that differs least at
+/// the first look is the first, the others follow in order.
 ///
 /// # Panics
 /// When a window does not lie in the plane.
@@ -176,7 +191,7 @@ pub(super) fn least_differences(
     let source = Source::of(cut, plane, starts);
     out.clear();
     match level.set() {
-        Set::Scalar => least(cut, source, starts, out),
+        Set::Scalar => least_difference(cut.side, &Plain(cut, source), starts, out),
         // SAFETY: a level is the proof that the processor has these instructions.
         #[cfg(target_arch = "x86_64")]
         Set::Avx2 => unsafe { avx2::least_differences(cut, source, starts, out) },
@@ -198,36 +213,32 @@ pub(super) fn all_differences(
     level: simd::Level,
     cut: &mut Cut,
     plane: &Plane,
-    start: usize,
-    size: [usize; 2],
+    (start, [columns, rows]): (usize, [usize; 2]),
+    memory: &mut Memory,
     out: &mut Vec<u32>,
 ) {
-    let [columns, rows] = size;
-    out.clear();
     out.resize(columns * rows, 0);
     if out.is_empty() {
         return;
     }
-    if cut.pairs.is_empty() {
-        cut.pair();
-    }
     // The last vector of windows is read whole, too.
     let last = start + (rows - 1) * plane.stride + columns.next_multiple_of(LANES);
     let source = Source::up_to(cut, plane, last);
+    let block = Block { source, start, columns, rows };
     match level.set() {
-        Set::Scalar => {
-            for (y, out) in out.chunks_exact_mut(columns).enumerate() {
-                let start = (start + y * plane.stride) as u32;
-                let windows = out.iter_mut().zip(start..);
-                windows.for_each(|(out, start)| *out = difference(cut, source, start, 0..cut.side));
-            }
+        Set::Scalar => block.each(0..columns, &Plain(cut, source), out),
+        #[cfg(target_arch = "x86_64")]
+        Set::Avx512 if vnni::is_there() => {
+            cut.group(i32::from_le_bytes);
+            // SAFETY: a level is the proof that the processor has AVX-512, and whether it has VNNI was asked.
+            unsafe { vnni::all_differences(cut, &block, memory, out) }
         }
-        // SAFETY: a level is the proof that the processor has these instructions.
         #[cfg(target_arch = "x86_64")]
-        Set::Avx2 => unsafe { avx2::all_differences(cut, source, start, size, out) },
-        // SAFETY: as above.
-        #[cfg(target_arch = "x86_64")]
-        Set::Avx512 => unsafe { avx512::all_differences(cut, source, start, size, out) },
+        Set::Avx2 | Set::Avx512 => {
+            cut.group(|[left, right]| i32::from(left) | i32::from(right) << 16);
+            // SAFETY: a level is the proof that the processor has these instructions, or more.
+            unsafe { avx2::all_differences(cut, &block, memory, out) }
+        }
     }
 }
 
@@ -250,21 +261,59 @@ pub(super) fn sums(level: simd::Level, cut: &Cut, plane: &Plane, starts: &[u32],
     }
 }
 
-/// See [`least_differences`].
-fn least(cut: &Cut, source: Source<'_>, starts: &[u32], out: &mut Vec<u32>) {
-    let looks = cut.side.min(ROWS_A_LOOK);
-    for &start in starts {
-        out.push(difference(cut, source, start, 0..looks));
+/// Rows of a template: every so many, from one of the first on.
+#[derive(Clone, Copy)]
+struct Rows {
+    first: usize,
+    step: usize,
+}
+
+impl Rows {
+    const ALL: Self = Self { first: 0, step: 1 };
+
+    /// Those of a template of this side.
+    fn of(self, side: usize) -> impl Iterator<Item = usize> {
+        (self.first..side).step_by(self.step)
     }
+}
+
+/// A template beside windows of a picture, one after the other.
+trait Windows {
+    /// `Σ (I - J)²` of some rows of the window that starts at a byte.
+    fn difference(&self, start: u32, rows: Rows) -> u32;
+}
+
+/// [`Windows`] whose pixels are compared one by one.
+struct Plain<'a>(&'a Cut, Source<'a>);
+
+impl Windows for Plain<'_> {
+    fn difference(&self, start: u32, rows: Rows) -> u32 {
+        pixels(self.0, self.1, start, rows).map(|(i, j)| i.abs_diff(j).pow(2)).sum()
+    }
+}
+
+/// See [`differences`].
+#[inline(always)]
+fn each_difference(windows: &impl Windows, starts: &[u32], rows: Rows, out: &mut Vec<u32>) {
+    for &start in starts {
+        out.push(windows.difference(start, rows));
+    }
+}
+
+/// See [`least_differences`].
+#[inline(always)]
+fn least_difference(side: usize, windows: &impl Windows, starts: &[u32], out: &mut Vec<u32>) {
+    // Rows from all over the window tell more than neighbours.
+    let step = side.div_ceil(ROWS_A_LOOK);
+    each_difference(windows, starts, Rows { first: 0, step }, out);
     // The less there is to beat, the sooner others are given up.
-    let first = (0..out.len()).min_by_key(|&i| out[i]);
+    let best = (0..out.len()).min_by_key(|&i| out[i]);
     let mut least = u32::MAX;
-    for i in first.into_iter().chain((0..out.len()).filter(|&i| Some(i) != first)) {
-        let mut y = looks;
-        while y < cut.side && out[i] <= least {
-            let end = cut.side.min(y + ROWS_A_LOOK);
-            out[i] += difference(cut, source, starts[i], y..end);
-            y = end;
+    for i in best.into_iter().chain((0..out.len()).filter(|&i| Some(i) != best)) {
+        let mut first = 1;
+        while first < step && out[i] <= least {
+            out[i] += windows.difference(starts[i], Rows { first, step });
+            first += 1;
         }
         least = least.min(out[i]);
     }
@@ -275,21 +324,17 @@ fn pixels<'a>(
     cut: &'a Cut,
     source: Source<'a>,
     start: u32,
-    rows: Range<usize>,
+    rows: Rows,
 ) -> impl Iterator<Item = (u32, u32)> + 'a {
-    rows.flat_map(move |y| {
+    rows.of(cut.side).flat_map(move |y| {
         let template = &cut.pixels[y * cut.side..][..cut.side];
         let picture = &source.data[start as usize + y * source.stride..][..cut.side];
         template.iter().zip(picture).map(|(&i, &j)| (u32::from(i), u32::from(j)))
     })
 }
 
-fn difference(cut: &Cut, source: Source<'_>, start: u32, rows: Range<usize>) -> u32 {
-    pixels(cut, source, start, rows).map(|(i, j)| i.abs_diff(j).pow(2)).sum()
-}
-
 fn sum(cut: &Cut, source: Source<'_>, start: u32) -> Sums {
-    pixels(cut, source, start, 0..cut.side).fold(Sums::default(), |sums, (i, j)| Sums {
+    pixels(cut, source, start, Rows::ALL).fold(Sums::default(), |sums, (i, j)| Sums {
         sum: sums.sum + j,
         squares: sums.squares + j * j,
         products: sums.products + i * j,

@@ -1,6 +1,6 @@
 //! One thread's search for templates.
 
-use super::kernel::{self, Cut, Sums};
+use super::kernel::{self, Cut, Memory, Sums};
 use super::least::Least;
 use super::planes::{Boxes, Plane};
 use super::template::{Template, area, holds, pixel, side};
@@ -56,9 +56,10 @@ pub(super) struct Search<'a> {
     starts: Vec<u32>,
     costs: Vec<u32>,
     sums: Vec<Sums>,
+    memory: Memory,
     /// Displacements that were tried; empty where all of the window were, row by row.
     places: Vec<[i32; 2]>,
-    /// Those that the next finer level starts from, best first.
+    /// Those that the next finer level starts from.
     kept: Vec<[i32; 2]>,
     /// Whether a displacement of the window was tried, row by row.
     seen: Vec<bool>,
@@ -74,6 +75,7 @@ impl<'a> Search<'a> {
             starts: Vec::new(),
             costs: Vec::new(),
             sums: Vec::new(),
+            memory: Memory::default(),
             places: Vec::new(),
             kept: Vec::new(),
             seen: Vec::new(),
@@ -151,15 +153,15 @@ impl<'a> Search<'a> {
     fn try_all(&mut self, template: &Template, next: &Boxes, window: Window, level: usize) {
         /// Smaller templates are compared many at a time; larger ones are given up too soon for that to pay.
         const SMALL: usize = 32;
-        let Window { first, last } = window;
         self.places.clear();
         if self.params.measure == Measure::Ssd && side(template.radius_px, level) < SMALL {
             let plane = &next.planes[level];
-            let start = start(template, plane, level, first);
-            let size = [window.width(), window.height()];
-            kernel::all_differences(self.simd, &mut self.cuts[level], plane, start, size, &mut self.costs);
+            let block = (start(template, plane, level, window.first), [window.width(), window.height()]);
+            let (cut, memory) = (&mut self.cuts[level], &mut self.memory);
+            kernel::all_differences(self.simd, cut, plane, block, memory, &mut self.costs);
             return;
         }
+        let Window { first, last } = window;
         self.places.extend((first[1]..=last[1]).flat_map(|y| (first[0]..=last[0]).map(move |x| [x, y])));
         self.measure(template, next, level, level == 0);
     }
@@ -167,12 +169,9 @@ impl<'a> Search<'a> {
     /// Keeps the best share of what was tried in a window, at least one; of equal ones the first.
     fn keep(&mut self, window: Window, share: f32) {
         let n = ((self.costs.len() as f32 * share).ceil() as usize).clamp(1, self.costs.len());
-        self.least.find(&self.costs, n);
+        let place = |i| self.places.get(i).copied().unwrap_or_else(|| window.at(i));
         self.kept.clear();
-        for i in 0..n {
-            let (_, index) = self.least.found[i];
-            self.kept.push(self.place(window, index as usize));
-        }
+        self.kept.extend(self.least.find(self.simd, &self.costs, n).map(place));
     }
 
     /// Chooses the displacements of a window to which those kept on the coarser level lead.
@@ -183,18 +182,22 @@ impl<'a> Search<'a> {
         self.seen.clear();
         self.seen.resize(window.width() * window.height(), false);
         self.places.clear();
+        self.places.resize(9 * self.kept.len(), [0; 2]);
+        let mut n = 0;
         for kept in &self.kept {
             let [columns, rows] = [0, 1].map(|i| {
                 let (first, last) = (window.first[i], window.last[i]);
                 (2 * kept[i] - 1).max(first)..=(2 * kept[i] + 1).min(last)
             });
-            for (y, x) in rows.flat_map(|y| columns.clone().map(move |x| (y, x))) {
-                let i = (y - window.first[1]) as usize * window.width() + (x - window.first[0]) as usize;
-                if !std::mem::replace(&mut self.seen[i], true) {
-                    self.places.push([x, y]);
+            for y in rows {
+                for x in columns.clone() {
+                    let i = (y - window.first[1]) as usize * window.width() + (x - window.first[0]) as usize;
+                    self.places[n] = [x, y];
+                    n += usize::from(!std::mem::replace(&mut self.seen[i], true));
                 }
             }
         }
+        self.places.truncate(n);
     }
 
     /// Fills in the costs of displacements on a level: of all, or of those that may be the least.
@@ -209,7 +212,7 @@ impl<'a> Search<'a> {
             }
             Measure::Ncc => {
                 let n = area(template.radius_px, level);
-                let sums = Sums::of(template.pixels(level));
+                let sums = Sums::of(&template.pixels(level)[..n]);
                 kernel::sums(self.simd, &self.cuts[level], plane, &self.starts, &mut self.sums);
                 // A flat window is the worst there is.
                 let correlation = |window: &Sums| window.correlation(&sums, n).unwrap_or(-1.0);

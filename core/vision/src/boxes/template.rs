@@ -2,7 +2,7 @@
 
 use honami_model::picture::Gray;
 
-use super::kernel::Sums;
+use super::kernel::{LANES, Sums};
 use super::planes::Boxes;
 use crate::Point;
 use crate::klt::{Reason, State};
@@ -16,7 +16,7 @@ pub struct Template {
     pub(super) pixel: [i32; 2],
     pub(super) state: Option<State>,
     pub(super) size: (u32, u32),
-    /// Of every level, finest first, row-major.
+    /// Of every level, finest first, row-major; and [`LANES`] more, so that rows can be read in whole vectors.
     pixels: Vec<u8>,
     /// Of every level: first pixel in its plane.
     pub(super) corners: Vec<[i32; 2]>,
@@ -50,12 +50,27 @@ impl Template {
             let corner = self.pixel.map(|c| (c + first + (1 << level >> 1)) >> level);
             let [x, y] = corner.map(|c| c as usize);
             let side = side(self.radius_px, level);
-            let rows = plane.data[y * plane.stride + x..].chunks(plane.stride).take(side);
-            rows.for_each(|row| self.pixels.extend_from_slice(&row[..side]));
+            for row in (y..y + side).map(|y| &plane.data[y * plane.stride + x..]) {
+                self.copy(row, side);
+            }
             self.corners.push(corner);
         }
+        self.pixels.extend_from_slice(&[0; LANES]);
         let area = area(self.radius_px, 0);
         self.contrast = (Sums::of(&self.pixels[..area]).spread(area) as f64).sqrt() as f32 / area as f32;
+    }
+
+    /// Adds a row of pixels.
+    fn copy(&mut self, row: &[u8], side: usize) {
+        // So many at once, whatever the side, are sooner copied.
+        match row.first_chunk::<LANES>() {
+            Some(row) if side <= LANES => {
+                let n = self.pixels.len() + side;
+                self.pixels.extend_from_slice(row);
+                self.pixels.truncate(n);
+            }
+            _ => self.pixels.extend_from_slice(&row[..side]),
+        }
     }
 
     /// The window itself; 0 by 0 pixels where nothing was cut.
@@ -71,10 +86,10 @@ impl Template {
         [self.from[0] - self.pixel[0] as f32, self.from[1] - self.pixel[1] as f32]
     }
 
-    /// Its pixels on a level, row-major.
+    /// Its pixels on a level, row-major, and what is behind them.
     pub(super) fn pixels(&self, level: usize) -> &[u8] {
         let start: usize = (0..level).map(|finer| area(self.radius_px, finer)).sum();
-        &self.pixels[start..start + area(self.radius_px, level)]
+        &self.pixels[start..]
     }
 }
 

@@ -1,205 +1,197 @@
 //! The kernels of [`super`] with 256-bit vectors: half a strip, 16 pixels, at a time.
 
 use std::arch::x86_64::*;
-use std::ops::Range;
 
-use super::{Cut, FEW, LANES, ROWS_A_LOOK, Source, Sums};
+use super::beside::{self, Beside, Block, Memory};
+use super::vector::{self, Along, Vector};
+use super::{Cut, LANES, Rows, Source, Strip, Sums, Windows, each_difference, least_difference};
 
 const HALF: usize = LANES / 2;
+
+impl Vector for __m256i {
+    const N: usize = HALF;
+
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    unsafe fn zeros() -> Self {
+        _mm256_setzero_si256()
+    }
+
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    unsafe fn ones() -> Self {
+        _mm256_set1_epi16(1)
+    }
+
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    unsafe fn of(Strip(lanes): &Strip, lane: usize) -> Self {
+        debug_assert!(lane + HALF <= LANES);
+        // SAFETY: either half of a strip is 32 bytes.
+        unsafe { _mm256_loadu_si256(lanes.as_ptr().add(lane).cast()) }
+    }
+
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    unsafe fn under(source: Source<'_>, at: usize) -> Self {
+        debug_assert!(at + HALF <= source.data.len());
+        // SAFETY: that windows lie in the picture, vectors of whole strips included, was asserted for the source.
+        _mm256_cvtepu8_epi16(unsafe { _mm_loadu_si128(source.data.as_ptr().add(at).cast()) })
+    }
+
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    unsafe fn and(self, mask: Self) -> Self {
+        _mm256_and_si256(self, mask)
+    }
+
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    unsafe fn minus(self, other: Self) -> Self {
+        _mm256_sub_epi16(self, other)
+    }
+
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    unsafe fn plus_products(self, a: Self, b: Self) -> Self {
+        _mm256_add_epi32(self, _mm256_madd_epi16(a, b))
+    }
+
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    unsafe fn total(self) -> u32 {
+        let four = _mm_add_epi32(_mm256_castsi256_si128(self), _mm256_extracti128_si256::<1>(self));
+        let two = _mm_add_epi32(four, _mm_unpackhi_epi64(four, four));
+        let one = _mm_add_epi32(two, _mm_shuffle_epi32::<1>(two));
+        _mm_cvtsi128_si32(one) as u32
+    }
+}
 
 /// See [`super::differences`].
 #[target_feature(enable = "avx2")]
 pub(super) fn differences(cut: &Cut, source: Source<'_>, starts: &[u32], out: &mut Vec<u32>) {
-    for &start in starts {
-        out.push(difference(cut, source, start, 0..cut.side));
-    }
+    each_difference(&along(cut, source), starts, Rows::ALL, out);
 }
 
 /// See [`super::least_differences`].
 #[target_feature(enable = "avx2")]
 pub(super) fn least_differences(cut: &Cut, source: Source<'_>, starts: &[u32], out: &mut Vec<u32>) {
-    let looks = cut.side.min(ROWS_A_LOOK);
-    for &start in starts {
-        out.push(difference(cut, source, start, 0..looks));
-    }
-    // The less there is to beat, the sooner others are given up.
-    let first = (0..out.len()).min_by_key(|&i| out[i]);
-    let mut least = u32::MAX;
-    for i in first.into_iter().chain((0..out.len()).filter(|&i| Some(i) != first)) {
-        let mut y = looks;
-        while y < cut.side && out[i] <= least {
-            let end = cut.side.min(y + ROWS_A_LOOK);
-            out[i] += difference(cut, source, starts[i], y..end);
-            y = end;
-        }
-        least = least.min(out[i]);
-    }
-}
-
-#[inline]
-#[target_feature(enable = "avx2")]
-fn difference(cut: &Cut, source: Source<'_>, start: u32, rows: Range<usize>) -> u32 {
-    let mut acc = _mm256_setzero_si256();
-    for x in (0..cut.side).step_by(HALF) {
-        let mask = half(&cut.mask[x / LANES].0, x);
-        for y in rows.clone() {
-            let template = half(&cut.rows[x / LANES * cut.side + y].0, x);
-            let picture = _mm256_and_si256(bytes(source, start as usize + y * source.stride + x), mask);
-            let difference = _mm256_sub_epi16(picture, template);
-            acc = _mm256_add_epi32(acc, _mm256_madd_epi16(difference, difference));
-        }
-    }
-    total(acc)
+    least_difference(cut.side, &along(cut, source), starts, out);
 }
 
 /// See [`super::sums`].
 #[target_feature(enable = "avx2")]
 pub(super) fn sums(cut: &Cut, source: Source<'_>, starts: &[u32], out: &mut Vec<Sums>) {
-    let ones = _mm256_set1_epi16(1);
-    for &start in starts {
-        let [mut sum, mut squares, mut products] = [_mm256_setzero_si256(); 3];
-        for x in (0..cut.side).step_by(HALF) {
-            let mask = half(&cut.mask[x / LANES].0, x);
-            for y in 0..cut.side {
-                let template = half(&cut.rows[x / LANES * cut.side + y].0, x);
-                let picture = _mm256_and_si256(bytes(source, start as usize + y * source.stride + x), mask);
-                sum = _mm256_add_epi32(sum, _mm256_madd_epi16(picture, ones));
-                squares = _mm256_add_epi32(squares, _mm256_madd_epi16(picture, picture));
-                products = _mm256_add_epi32(products, _mm256_madd_epi16(picture, template));
-            }
-        }
-        out.push(Sums { sum: total(sum), squares: total(squares), products: total(products) });
-    }
+    // SAFETY: the processor has AVX2.
+    unsafe { vector::sums::<__m256i>(cut, source, starts, out) }
 }
 
-/// See [`super::all_differences`]: 16 windows of two rows at a time, two of their pixels together.
+/// See [`super::all_differences`].
+#[target_feature(enable = "avx2")]
+pub(super) fn all_differences(cut: &Cut, block: &Block<'_>, memory: &mut Memory, out: &mut [u32]) {
+    block.all(cut.side, &Pairs(along(cut, block.source)), memory, out);
+}
+
+#[inline]
+#[target_feature(enable = "avx2")]
+fn along<'a>(cut: &'a Cut, source: Source<'a>) -> Along<'a, __m256i> {
+    // SAFETY: the processor has AVX2.
+    unsafe { Along::new(cut, source) }
+}
+
+/// 16 windows at a time, and two of their pixels together.
 ///
 /// A 32-bit lane holds two neighbours. Read from the first pixel on, lanes belong to the windows 0, 2, 4...; from the
 /// second on, to the others.
-#[target_feature(enable = "avx2")]
-pub(super) fn all_differences(
-    cut: &Cut,
-    source: Source<'_>,
-    start: usize,
-    [columns, rows]: [usize; 2],
-    out: &mut [u32],
-) {
-    let mut squares = Vec::with_capacity(rows + cut.side);
-    for x in (0..columns).step_by(HALF) {
-        let n = (columns - x).min(HALF);
-        if n <= FEW || rows < 2 {
-            for y in 0..rows {
-                for x in x..x + n {
-                    let start = (start + y * source.stride + x) as u32;
-                    out[y * columns + x] = difference(cut, source, start, 0..cut.side);
-                }
-            }
-            continue;
-        }
-        sum_squares(cut, source, start + x, rows, &mut squares);
-        for y in (0..rows).step_by(2) {
-            // Of an odd number of rows the last but one is done twice.
-            let y = y.min(rows - 2);
-            let products = products(cut, source, start + y * source.stride + x);
-            for (y, [even, odd]) in (y..).zip(products) {
-                let even = _mm256_sub_epi32(squares[y][0], _mm256_slli_epi32::<1>(even));
-                let odd = _mm256_sub_epi32(squares[y][1], _mm256_slli_epi32::<1>(odd));
-                out[y * columns + x..][..n].copy_from_slice(&in_turn(even, odd)[..n]);
-            }
-        }
+struct Pairs<'a>(Along<'a, __m256i>);
+
+impl Windows for Pairs<'_> {
+    #[inline(always)]
+    fn difference(&self, start: u32, rows: Rows) -> u32 {
+        self.0.difference(start, rows)
     }
 }
 
-/// `Σ I² + Σ J²` of the windows that start here, and of those in the rows beneath; what is behind them is left over.
-#[inline]
-#[target_feature(enable = "avx2")]
-fn sum_squares(cut: &Cut, source: Source<'_>, at: usize, rows: usize, squares: &mut Vec<[__m256i; 2]>) {
-    let mut sums = [_mm256_set1_epi32(cut.squares as i32); 2];
-    squares.clear();
-    for y in 0..rows + cut.side - 1 {
-        let mut row = [_mm256_setzero_si256(); 2];
-        for x in (0..cut.side).step_by(2) {
-            // Of the last pair of an odd side only the left one counts.
-            let counts = _mm256_set1_epi32(if x + 1 < cut.side { -1 } else { 0xffff });
-            for (i, sum) in row.iter_mut().enumerate() {
-                let pair = _mm256_and_si256(bytes(source, at + y * source.stride + x + i), counts);
-                *sum = _mm256_add_epi32(*sum, _mm256_madd_epi16(pair, pair));
-            }
-        }
-        squares.push(row);
-        for i in 0..2 {
-            sums[i] = _mm256_add_epi32(sums[i], row[i]);
-            if y + 1 >= cut.side {
-                // A window is whole; its first row leaves.
-                let first = std::mem::replace(&mut squares[y + 1 - cut.side][i], sums[i]);
-                sums[i] = _mm256_sub_epi32(sums[i], first);
-            }
-        }
+impl Beside<HALF> for Pairs<'_> {
+    #[inline(always)]
+    fn own(&self) -> u32 {
+        self.0.cut.squares
+    }
+
+    #[inline(always)]
+    fn n_strips(&self) -> usize {
+        self.0.cut.side.next_multiple_of(2)
+    }
+
+    #[inline(always)]
+    fn take(&self, at: usize, beneath: usize, strips: &mut [Strip]) -> beside::Halves<HALF> {
+        let Along { cut, source, .. } = self.0;
+        // SAFETY: what is compared along rows with AVX2 is the proof that the processor has it.
+        [(at, 0), (at + beneath, HALF)].map(|(at, lane)| unsafe { take(cut.side, source, at, strips, lane) })
+    }
+
+    #[inline(always)]
+    fn products(&self, strips: &[Strip]) -> [beside::Halves<HALF>; 2] {
+        // SAFETY: as above.
+        let [[a, b], [c, d]] = [0, HALF].map(|lane| unsafe { products(self.0.cut, strips, lane) });
+        [[a, c], [b, d]]
+    }
+
+    #[inline(always)]
+    fn in_turn(&self, sums: beside::Halves<HALF>) -> beside::Halves<HALF> {
+        sums.map(|sums| std::array::from_fn(|i| sums[i % 2 * HALF / 2 + i / 2]))
     }
 }
 
-/// `Σ I J` of the windows that start here, and of those a row beneath.
+/// See [`Beside::take`], for one of the halves, which begins at a lane.
 #[inline]
 #[target_feature(enable = "avx2")]
-fn products(cut: &Cut, source: Source<'_>, at: usize) -> [[__m256i; 2]; 2] {
+fn take(side: usize, source: Source<'_>, at: usize, strips: &mut [Strip], lane: usize) -> [u32; HALF] {
+    let mut sums = [_mm256_setzero_si256(); 2];
+    for (strips, x) in strips.as_chunks_mut::<2>().0.iter_mut().zip((0..).step_by(2)) {
+        // Of the last pair of an odd side only the left one counts.
+        let counts = _mm256_set1_epi32(if x + 1 < side { -1 } else { 0xffff });
+        for (i, sum) in sums.iter_mut().enumerate() {
+            // SAFETY: the processor has AVX2; half a strip is 32 bytes.
+            let pixels = unsafe {
+                let pixels = __m256i::under(source, at + x + i);
+                _mm256_storeu_si256(strips[i].0[lane..][..HALF].as_mut_ptr().cast(), pixels);
+                pixels
+            };
+            let pixels = _mm256_and_si256(pixels, counts);
+            *sum = _mm256_add_epi32(*sum, _mm256_madd_epi16(pixels, pixels));
+        }
+    }
+    stored(sums)
+}
+
+/// See [`Beside::products`], for one of the halves.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn products(cut: &Cut, strips: &[Strip], lane: usize) -> [[u32; HALF]; 2] {
     let mut sums = [[_mm256_setzero_si256(); 2]; 2];
     let n = cut.side.div_ceil(2);
-    for y in 0..=cut.side {
+    let (strips, _) = strips.as_chunks::<2>();
+    for (y, strips) in strips.chunks_exact(n).enumerate().take(cut.side + 1) {
         // The picture's row lies under one of the template's, and in the lower window under the one before.
-        let (upper, lower) = (&cut.pairs[(y + 1) * n..][..n], &cut.pairs[y * n..][..n]);
-        let at = at + y * source.stride;
-        for i in 0..n {
-            let (upper, lower) = (_mm256_set1_epi32(upper[i]), _mm256_set1_epi32(lower[i]));
-            let (even, odd) = (bytes(source, at + 2 * i), bytes(source, at + 2 * i + 1));
-            sums[0][0] = _mm256_add_epi32(sums[0][0], _mm256_madd_epi16(even, upper));
-            sums[0][1] = _mm256_add_epi32(sums[0][1], _mm256_madd_epi16(odd, upper));
-            sums[1][0] = _mm256_add_epi32(sums[1][0], _mm256_madd_epi16(even, lower));
-            sums[1][1] = _mm256_add_epi32(sums[1][1], _mm256_madd_epi16(odd, lower));
+        let (upper, lower) = (&cut.groups[(y + 1) * n..][..n], &cut.groups[y * n..][..n]);
+        for (strips, (upper, lower)) in strips.iter().zip(upper.iter().zip(lower)) {
+            let (upper, lower) = (_mm256_set1_epi32(*upper), _mm256_set1_epi32(*lower));
+            for (i, strip) in strips.iter().enumerate() {
+                // SAFETY: the processor has AVX2.
+                let pixels = unsafe { __m256i::of(strip, lane) };
+                sums[0][i] = _mm256_add_epi32(sums[0][i], _mm256_madd_epi16(pixels, upper));
+                sums[1][i] = _mm256_add_epi32(sums[1][i], _mm256_madd_epi16(pixels, lower));
+            }
         }
     }
-    sums
+    sums.map(|sums| stored(sums))
 }
 
-/// Costs in the order of their windows, of even ones and odd ones.
+/// The lanes of two vectors.
 #[inline]
 #[target_feature(enable = "avx2")]
-fn in_turn(even: __m256i, odd: __m256i) -> [u32; HALF] {
-    let [low, high] = [_mm256_unpacklo_epi32(even, odd), _mm256_unpackhi_epi32(even, odd)];
-    let mut all = [0; HALF];
-    // SAFETY: either half is 32 bytes.
-    unsafe {
-        _mm256_storeu_si256(all.as_mut_ptr().cast(), _mm256_permute2x128_si256::<0x20>(low, high));
-        _mm256_storeu_si256(
-            all[HALF / 2..].as_mut_ptr().cast(),
-            _mm256_permute2x128_si256::<0x31>(low, high),
-        );
-    }
-    all
-}
-
-/// 16 pixels from a byte on.
-#[inline]
-#[target_feature(enable = "avx2")]
-fn bytes(source: Source<'_>, at: usize) -> __m256i {
-    debug_assert!(at + HALF <= source.data.len());
-    // SAFETY: that windows lie in the picture, vectors of whole strips included, was asserted for the source.
-    _mm256_cvtepu8_epi16(unsafe { _mm_loadu_si128(source.data.as_ptr().add(at).cast()) })
-}
-
-/// The half of a strip that a column is in.
-#[inline]
-#[target_feature(enable = "avx2")]
-fn half(lanes: &[i16; LANES], x: usize) -> __m256i {
-    // SAFETY: either half is 32 bytes.
-    unsafe { _mm256_loadu_si256(lanes.as_ptr().add(x % LANES / HALF * HALF).cast()) }
-}
-
-/// Sum of eight 32-bit lanes.
-#[inline]
-#[target_feature(enable = "avx2")]
-fn total(v: __m256i) -> u32 {
-    let four = _mm_add_epi32(_mm256_castsi256_si128(v), _mm256_extracti128_si256::<1>(v));
-    let two = _mm_add_epi32(four, _mm_unpackhi_epi64(four, four));
-    let one = _mm_add_epi32(two, _mm_shuffle_epi32::<1>(two));
-    _mm_cvtsi128_si32(one) as u32
+fn stored(vectors: [__m256i; 2]) -> [u32; HALF] {
+    // SAFETY: either is that many 32-bit numbers, whatever their bits.
+    unsafe { std::mem::transmute(vectors) }
 }
