@@ -22,7 +22,11 @@ const BENCHES: [Bench; 13] = [
     ("cluster", "composite distance + Ward, N = 2000, T = 500, against SciPy's linkage", cluster),
     ("media", "decoding, seeking, stepping back: `bench media CLIP`", media),
     ("store", "opening, editing and appending to a project of 10,000 tracks", store),
-    ("suspicion", "how well suspicion tells bad samples: `bench suspicion [--seed N] [--fit]`", suspicion),
+    (
+        "suspicion",
+        "how well suspicion tells bad samples, by tracker and wind: `bench suspicion [--seed N] [--fit]`",
+        suspicion,
+    ),
     ("queue", "the review queue with 100,000 items, an edit among 10,000 tracks", queue),
     (
         "review",
@@ -108,7 +112,7 @@ fn plugins(args: &[&str]) -> anyhow::Result<()> {
 }
 
 fn suspicion(args: &[&str]) -> anyhow::Result<()> {
-    example("honami-review", "suspicion_bench", args).run()
+    on_project("suspicion", args)
 }
 
 fn queue(args: &[&str]) -> anyhow::Result<()> {

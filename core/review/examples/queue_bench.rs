@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use honami_model::track::{Quality, Sample, Source, Span, Status, TrackId};
 use honami_review::Review;
-use honami_review::evidence::{Evidence, Subject};
+use honami_review::evidence::{Evidence, Kind, Subject};
 use honami_review::queue::{Item, Queue};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -23,7 +23,9 @@ fn item(rng: &mut Pcg64Mcg, track: u32, k: u32) -> Item {
         frames: 40 * k..40 * k + 20,
         worst: 40 * k,
         reasons,
+        measured: 40 * k,
         parts,
+        opponent: None,
         suspicion,
         later: false,
     }
@@ -38,7 +40,8 @@ fn subject(rng: &mut Pcg64Mcg, track: u32) -> Subject {
         Sample { x: at[0], y: at[1], status: Status::Tracked, source: Source::Tracked, quality }
     };
     let span = Span { first_frame: 0, samples: (0..N_FRAMES).map(sample).collect() };
-    Subject { track: TrackId(track), span: Arc::new(span), rivals: Vec::new(), unseen: Vec::new() }
+    let (span, kind) = (Arc::new(span), Kind::Stepwise);
+    Subject { track: TrackId(track), kind, span, rivals: Vec::new(), unseen: Vec::new() }
 }
 
 /// The longest of many times, milliseconds.

@@ -9,28 +9,19 @@ use honami_model::track::{Sample, Source, Span, TrackId};
 mod anchors;
 mod neighbours;
 mod steps;
+mod subject;
 mod templates;
 
 use anchors::Anchors;
 use neighbours::{Crowd, Neighbourhood};
+pub use subject::{Kind, Rival, Subject};
 pub use templates::{Correlations, Correlator, TEMPLATE_RADIUS_PX};
-
-/// A track to measure.
-#[derive(Clone, Debug)]
-pub struct Subject {
-    /// Its number.
-    pub track: TrackId,
-    /// Its samples as they are shown.
-    pub span: Arc<Span>,
-    /// What the runs say of it, where there are several; else empty.
-    pub rivals: Vec<Arc<Span>>,
-    /// Frames, ascending, of which a person has said that the feature is not seen there: nothing is doubtful in them.
-    pub unseen: Vec<u32>,
-}
 
 /// What speaks against a sample; larger is worse but for `ncc`. A part that could not be measured is `None`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Parts {
+    /// How the tracker knows the feature.
+    pub kind: Kind,
     /// Largest forward-backward error of a step since the last key-frame (or the first sample), pixels.
     pub fb_px: Option<f32>,
     /// Correlation with the template at the last key-frame, or the mean of that and of the next one's; -1..=1.
@@ -40,8 +31,33 @@ pub struct Parts {
     /// How far the displacement since the last key-frame is from the neighbours' median, pixels; the geometric
     /// mean with that from the next key-frame, where there is one.
     pub nbr_px: Option<f32>,
-    /// Distance to what the other tracker says, the farthest where there are several, pixels.
+    /// Distance to what another run says, the nearest where there are several, pixels. Of a run that is
+    /// [stepwise](Kind::Stepwise) the anchored ones are asked by themselves.
     pub dis_px: Option<f32>,
+    /// Correlation with the key-frame's template as the tracker found it, turned and stretched; of anchored ones.
+    pub own_ncc: Option<f32>,
+    /// Distance from a stepwise run to what the nearest anchored one says, pixels.
+    pub anchored_px: Option<f32>,
+}
+
+impl Parts {
+    /// Nothing was measured yet.
+    #[must_use]
+    pub fn of(kind: Kind) -> Self {
+        Self { kind, ..Self::default() }
+    }
+
+    /// Both correlations, the smaller; `None` where there is neither.
+    #[must_use]
+    pub fn likeness(&self) -> Option<f32> {
+        self.ncc.into_iter().chain(self.own_ncc).min_by(f32::total_cmp)
+    }
+
+    /// Distance to what other runs say, the farthest that was measured, pixels.
+    #[must_use]
+    pub fn farthest_px(&self) -> Option<f32> {
+        self.dis_px.into_iter().chain(self.anchored_px).max_by(f32::total_cmp)
+    }
 }
 
 /// Whether a tracker or a curve made the sample and says that the feature is seen there: what is judged.
@@ -104,6 +120,12 @@ impl Evidence {
                 row.correlations = row.correlations_from(old);
             }
         }
+    }
+
+    /// What was measured of a track.
+    #[must_use]
+    pub fn subject(&self, track: TrackId) -> Option<&Subject> {
+        self.rows.get(&track).map(|row| &row.subject)
     }
 
     /// The samples that were measured.
@@ -202,33 +224,34 @@ impl Row {
     }
 
     fn parts(&self) -> Vec<Parts> {
-        let Subject { span, rivals, .. } = &self.subject;
+        let Subject { span, kind, .. } = &self.subject;
         let steps = steps::measure(span, &self.anchors);
         let each = span.frames().zip(&span.samples).zip(steps).enumerate();
         each.map(|(at, ((frame, sample), (fb_px, jump)))| {
             if !is_judged(sample) {
                 return Parts::default();
             }
-            let dis_px = disagreement(sample, rivals, frame);
+            let others = self.subject.others(frame);
+            let nearest = |of: Option<Kind>| {
+                let asked = others.iter().filter(|(rival, _)| of.is_none_or(|kind| rival.kind == kind));
+                asked.map(|(_, px)| *px).min_by(f32::total_cmp)
+            };
+            let is_stepwise = *kind == Kind::Stepwise;
+            let dis_px = nearest(is_stepwise.then_some(Kind::Stepwise));
+            let anchored_px = is_stepwise.then(|| nearest(Some(Kind::Anchored))).flatten();
+            let told = Parts { dis_px, anchored_px, ..Parts::of(*kind) };
             // Where it was given or found it is compared with itself.
             if self.anchors.around(frame).0.is_some_and(|(at, _)| at == frame) {
-                let none = Some(0.0);
-                return Parts { fb_px: none, ncc: Some(1.0), jump: none, nbr_px: none, dis_px };
+                let (none, alike) = (Some(0.0), Some(1.0));
+                let own_ncc = alike.filter(|_| !is_stepwise);
+                return Parts { fb_px: none, ncc: alike, jump: none, nbr_px: none, own_ncc, ..told };
             }
-            let ncc = self.correlations.get(at);
-            let nbr_px = self.neighbours.deviation_px(at);
-            Parts { fb_px, ncc, jump, nbr_px, dis_px }
+            let own_ncc = sample.quality.ncc.filter(|_| !is_stepwise);
+            let (ncc, nbr_px) = (self.correlations.get(at), self.neighbours.deviation_px(at));
+            Parts { fb_px, ncc, jump, nbr_px, own_ncc, ..told }
         })
         .collect()
     }
-}
-
-/// Distance to the farthest that another run says; the runs that say what is shown say nothing else.
-fn disagreement(sample: &Sample, rivals: &[Arc<Span>], frame: u32) -> Option<f32> {
-    let seen = rivals.iter().filter_map(|span| span.get(frame)).filter(|rival| rival.status.is_seen());
-    let far = |rival: &Sample| (rival.x - sample.x).hypot(rival.y - sample.y);
-    let distances: Vec<f32> = seen.map(far).collect();
-    (distances.len() > 1).then(|| distances.into_iter().fold(0.0, f32::max))
 }
 
 /// Where a sample is seen, or nowhere, in both alike.

@@ -8,7 +8,7 @@ use std::ops::Range;
 use honami_model::track::{Sample, Span};
 
 use crate::evidence::Parts;
-use crate::suspicion::{LOST, WEIGHTS};
+use crate::suspicion::{LOST, probability};
 
 /// A jump of so many pixels is as unlikely as a factor e.
 const JUMP_PX: f64 = 2.0;
@@ -101,7 +101,7 @@ fn through_ends(
 fn cost_of(candidate: &Span, frame: u32) -> f64 {
     let Some(sample) = candidate.get(frame) else { return f64::INFINITY };
     let p = if sample.status.is_seen() {
-        WEIGHTS.probability(&Parts { fb_px: sample.quality.fb_px, ..Parts::default() })
+        probability(&Parts { fb_px: sample.quality.fb_px, ..Parts::default() })
     } else {
         f64::from(LOST)
     };

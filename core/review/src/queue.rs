@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
+use std::sync::Arc;
 
 use honami_model::track::TrackId;
 
@@ -24,8 +25,12 @@ pub struct Item {
     pub worst: u32,
     /// What speaks against it.
     pub reasons: Reasons,
-    /// What was measured in the frame that the reasons are of.
+    /// The frame that the reasons are of: the most doubtful one in which the feature is said to be seen, if any.
+    pub measured: u32,
+    /// What was measured there.
     pub parts: Parts,
+    /// What the run is called that is farthest from what is shown there.
+    pub opponent: Option<Arc<str>>,
     /// Probability that it is bad, 0..=1: that of its most doubtful frame.
     pub suspicion: f32,
     /// Whether a reviewer has put it off: it comes after all others.
@@ -48,6 +53,13 @@ impl Item {
     pub fn rank(&self) -> Rank {
         let trust = u32::MAX - self.suspicion.max(0.0).to_bits();
         Rank { later: self.later, trust, track: self.track, first_frame: self.frames.start }
+    }
+
+    /// Which run is elsewhere, and how far, in a reviewer's words.
+    #[must_use]
+    pub fn disagreement(&self) -> Option<String> {
+        let (name, px) = (self.opponent.as_ref()?, self.parts.farthest_px()?);
+        Some(format!("disagrees with {name} by {px:.0} px"))
     }
 }
 

@@ -49,7 +49,8 @@ impl Review {
         let Segments { items, first_frame, suspicions, judged } = segments.unwrap_or_default();
         if !suspicions.is_empty() {
             let open: Vec<f32> = items.iter().map(|item| item.suspicion).collect();
-            let suspicion = suspicion::of_track(&open);
+            let kind = items.first().map(|item| item.parts.kind).unwrap_or_default();
+            let suspicion = suspicion::of_track(kind, &open);
             self.judged += judged;
             self.tracks
                 .insert(track, Standing { first_frame, suspicions: suspicions.into(), suspicion, judged });
@@ -77,6 +78,11 @@ impl Evidence {
     pub fn segments(&self, track: TrackId, judgements: &BTreeMap<u32, Judgement>) -> Option<Segments> {
         let (span, parts) = (self.span(track)?, self.parts(track)?);
         let evidence = (&parts[..], self.unseen(track));
-        Some(segments(track, span, evidence, judgements.iter().map(|(&frame, judgement)| (frame, judgement))))
+        let judgements = judgements.iter().map(|(&frame, judgement)| (frame, judgement));
+        let mut found = segments(track, span, evidence, judgements);
+        for item in &mut found.items {
+            item.opponent = self.subject(track)?.opponent(item.measured, &item.parts);
+        }
+        Some(found)
     }
 }

@@ -5,12 +5,12 @@
 
 use honami_model::track::{Sample, Source, Status};
 
-use crate::evidence::{Parts, is_judged};
+use crate::evidence::{Kind, Parts, is_judged};
 
 pub mod fit;
 mod weights;
 
-pub use weights::WEIGHTS;
+use weights::{ANCHORED, STEPWISE};
 
 /// A sample that is off by more is bad, pixels; a track is bad when any of its visible samples is.
 pub const BAD_PX: f64 = 8.0;
@@ -20,7 +20,7 @@ pub const BAD_PX: f64 = 8.0;
 pub const LOST: f32 = 0.85;
 
 /// Number of parts.
-pub const N_PARTS: usize = 5;
+pub const N_PARTS: usize = 7;
 
 /// What a part is worth.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,14 +29,17 @@ pub struct Weight {
     pub slope: f64,
     /// Where the part is missing.
     pub missing: f64,
+    /// What four of five good samples are below, transformed.
+    pub ordinary: f64,
 }
 
-/// The model.
+/// The model of trackers of one [kind](Kind): they err in different ways.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weights {
     /// Log-odds before any part is looked at.
     pub base: f64,
-    /// In the order of [`transformed`]: FB, NCC, jump, neighbours, disagreement.
+    /// In the order of [`transformed`]: FB, NCC, jump, neighbours, disagreement, the tracker's own NCC, disagreement
+    /// with anchored runs.
     pub parts: [Weight; N_PARTS],
     /// Offset and slope that turn the log-odds of a track's worst sample into those of the track.
     pub track: [f64; 2],
@@ -51,8 +54,28 @@ pub fn transformed(parts: &Parts) -> [Option<f64>; N_PARTS] {
         parts.ncc.map(|ncc| 1.0 - f64::from(ncc)),
         log(parts.jump, 1.0),
         log(parts.nbr_px, 0.5),
-        log(parts.dis_px, 0.25),
+        log(parts.dis_px, DISAGREED_PX),
+        parts.own_ncc.map(|ncc| 1.0 - f64::from(ncc)),
+        log(parts.anchored_px, DISAGREED_PX),
     ]
+}
+
+/// Runs that are no farther apart agree, pixels.
+const DISAGREED_PX: f64 = 0.25;
+
+/// The weights of trackers of a kind.
+#[must_use]
+pub fn weights(kind: Kind) -> &'static Weights {
+    match kind {
+        Kind::Stepwise => &STEPWISE,
+        Kind::Anchored => &ANCHORED,
+    }
+}
+
+/// Probability that a sample with this evidence is bad, 0..=1.
+#[must_use]
+pub fn probability(parts: &Parts) -> f64 {
+    weights(parts.kind).probability(parts)
 }
 
 impl Weights {
@@ -86,7 +109,7 @@ impl Weights {
 #[must_use]
 pub fn of_sample(sample: &Sample, parts: &Parts) -> f32 {
     if is_judged(sample) {
-        WEIGHTS.probability(parts) as f32
+        probability(parts) as f32
     } else if is_lost(sample) {
         LOST
     } else {
@@ -100,11 +123,12 @@ pub fn is_lost(sample: &Sample) -> bool {
     sample.status == Status::Lost && !matches!(sample.source, Source::Key | Source::Sketch)
 }
 
-/// Suspicion of a whole track, given those of its samples: the probability that any of them is bad.
+/// Suspicion of a whole track, given those of its samples and the kind of its tracker: the probability that any of them
+/// is bad.
 #[must_use]
-pub fn of_track(samples: &[f32]) -> f32 {
+pub fn of_track(kind: Kind, samples: &[f32]) -> f32 {
     let worst = samples.iter().copied().fold(0.0, f32::max);
-    if worst > 0.0 { WEIGHTS.of_track(f64::from(worst)) as f32 } else { 0.0 }
+    if worst > 0.0 { weights(kind).of_track(f64::from(worst)) as f32 } else { 0.0 }
 }
 
 fn log_odds(p: f64) -> f64 {

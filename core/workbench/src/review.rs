@@ -13,7 +13,7 @@ use honami_model::over::{Laid, Over};
 use honami_model::track::{Span, TrackId};
 use honami_store::Project;
 
-pub use honami_review::evidence::{Evidence, Parts, Subject};
+pub use honami_review::evidence::{Evidence, Kind, Parts, Rival, Subject};
 pub use honami_review::queue::{
     Item, Progress as ReviewProgress, Queue, Rank, Reasons, Segments, Tally, effort,
 };
@@ -24,7 +24,10 @@ use honami_review::evidence::Correlator;
 use crate::error::WorkbenchError;
 use crate::progress::{Flow, Progress};
 
+mod crew;
 pub mod tables;
+
+use crew::Crew;
 
 /// Tracks that a thread correlates before their ranking is told.
 const BATCH: usize = 128;
@@ -73,10 +76,12 @@ impl Changes {
         }
         let is_gone = |track: &TrackId| !new.tracks.contains_key(track);
         changes.gone = known.tracks.keys().copied().filter(is_gone).collect();
-        let mut rivals = rivals(project, &moved.iter().map(|(track, _)| *track).collect())?;
+        let crew = Crew::of(project)?;
+        let mut rivals = crew.rivals(project, &moved.iter().map(|(track, _)| *track).collect())?;
         let subject = |(track, span)| {
             let unseen = document.track(track).map(unseen).unwrap_or_default();
-            Subject { track, span, rivals: rivals.remove(&track).unwrap_or_default(), unseen }
+            let rivals = rivals.remove(&track).unwrap_or_default();
+            Subject { track, kind: crew.kind(document, track), span, rivals, unseen }
         };
         changes.subjects = moved.into_iter().map(subject).collect();
         // Last: what could not be read has not been told.
@@ -97,39 +102,6 @@ fn unseen(track: &Track) -> Vec<u32> {
     let is_said =
         |over: &Over| matches!(over, Over::Sample(Laid { sample, run: None }) if !sample.status.is_seen());
     track.over.iter().filter(|(_, over)| is_said(over)).map(|(&frame, _)| frame).collect()
-}
-
-/// What runs of different trackers say of some tracks; of those followed by one only, nothing.
-fn rivals(
-    project: &Project,
-    tracks: &BTreeSet<TrackId>,
-) -> Result<BTreeMap<TrackId, Vec<Arc<Span>>>, WorkbenchError> {
-    let mut tops: Vec<(String, RunId)> = Vec::new();
-    for shown in project.document().runs() {
-        let made = project.run(shown.run)?.head.provenance;
-        let tracker = format!("{} {:?}", made.plugin_id, made.params);
-        // A tracker that was run again has changed its mind: its earlier word does not count.
-        tops.retain(|(other, _)| *other != tracker);
-        tops.push((tracker, shown.run));
-    }
-    let mut rivals = BTreeMap::<TrackId, Vec<Arc<Span>>>::new();
-    if tops.len() < 2 {
-        return Ok(rivals);
-    }
-    for (_, run) in tops {
-        let spans = if tracks.len() > MANY {
-            project.run_tracks(run)?
-        } else {
-            let of = |&track: &TrackId| {
-                Ok(project.run_spans(run, track)?.into_iter().map(move |span| (track, span)))
-            };
-            tracks.iter().map(of).collect::<Result<Vec<_>, WorkbenchError>>()?.into_iter().flatten().collect()
-        };
-        for (track, span) in spans.into_iter().filter(|(track, _)| tracks.contains(track)) {
-            rivals.entry(track).or_default().push(Arc::new(span));
-        }
-    }
-    Ok(rivals)
 }
 
 /// What there is to review in a track now; `None`: it is no longer shown.
@@ -160,7 +132,10 @@ impl Reviewer {
         let mut touched: BTreeSet<TrackId> = judgements.iter().map(|(track, _)| *track).collect();
         self.judgements.extend(judgements);
         let moved: Vec<TrackId> = subjects.iter().map(|subject| subject.track).collect();
-        let nothing = |track| Subject { track, span: Arc::default(), rivals: Vec::new(), unseen: Vec::new() };
+        let nothing = |track| {
+            let (span, kind) = (Arc::default(), Kind::default());
+            Subject { track, kind, span, rivals: Vec::new(), unseen: Vec::new() }
+        };
         let all = moved.len() + gone.len();
         if all > MANY && all > self.evidence.tracks().count() / MANY {
             self.measure_all(subjects, &gone);

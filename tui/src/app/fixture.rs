@@ -14,7 +14,7 @@ use honami_model::over::{Laid, Over};
 use honami_model::track::{Quality, Sample, Source, Span, Status, TrackId};
 use honami_workbench::offer::{Errors, Wish};
 use honami_workbench::plugins::Param;
-use honami_workbench::review::{Evidence, Review, Subject};
+use honami_workbench::review::{Evidence, Kind, Review, Subject};
 use honami_workbench::versus::{Compared, Entrant, Paired, disagreement};
 use ratatui::layout::Rect;
 
@@ -62,6 +62,7 @@ fn edits() -> Vec<Entry> {
 pub(super) fn review(state: &mut State) {
     let subject = |row: &TrackRow| Subject {
         track: row.id,
+        kind: Kind::Stepwise,
         span: Arc::clone(&row.span),
         rivals: Vec::new(),
         unseen: Vec::new(),
@@ -82,7 +83,7 @@ fn row(id: u32, frames: std::ops::Range<u32>, keys: &[u32]) -> TrackRow {
             70..80 => (Status::Lost, Source::Tracked),
             _ => (Status::Tracked, Source::Tracked),
         };
-        let fb_px = if frame == 40 { 2.4 } else { 0.02 };
+        let fb_px = if frame == 40 { 1.8 } else { 0.02 };
         let quality = match source {
             Source::Key => Quality::default(),
             _ => Quality { fb_px: Some(fb_px), ncc: Some(0.97) },

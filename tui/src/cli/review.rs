@@ -75,7 +75,9 @@ fn row(item: &Item) -> String {
     let later = if item.later { "  later" } else { "" };
     let (track, worst) = (item.track.0, item.worst);
     let suspicion = suspicion(item.suspicion);
-    format!("{track:>7}  {frames:>11}  {worst:>6}  {suspicion:>9}  {}{later}", item.reasons)
+    let disagreement = item.reasons.codes().any(|code| code == "DIS").then(|| item.disagreement()).flatten();
+    let disagreement = disagreement.map_or_else(String::new, |words| format!(": {words}"));
+    format!("{track:>7}  {frames:>11}  {worst:>6}  {suspicion:>9}  {}{disagreement}{later}", item.reasons)
 }
 
 /// A probability: near 1 with the digits that tell it from 1.
@@ -99,7 +101,7 @@ fn machine(session: &Session, review: &Review) -> Value {
             "worst": item.worst, "suspicion": item.suspicion, "later": item.later,
             "reasons": item.reasons.codes().collect::<Vec<_>>(),
             "fb_px": parts.fb_px, "ncc": parts.ncc, "jump": parts.jump, "nbr_px": parts.nbr_px,
-            "dis_px": parts.dis_px,
+            "dis_px": parts.farthest_px(), "disagrees_with": item.opponent.as_deref(), "own_ncc": parts.own_ncc,
         })
     };
     let taken = effort(session.project.document());

@@ -32,7 +32,8 @@ fn written(letters: &str) -> Span {
 }
 
 fn subject(track: u32, span: Span) -> Subject {
-    Subject { track: TrackId(track), span: Arc::new(span), rivals: Vec::new(), unseen: Vec::new() }
+    let (span, kind) = (Arc::new(span), Kind::Stepwise);
+    Subject { track: TrackId(track), kind, span, rivals: Vec::new(), unseen: Vec::new() }
 }
 
 #[test]
@@ -113,16 +114,73 @@ fn a_track_that_leaves_its_neighbours_strays_by_as_much() {
     assert!(strays(&Evidence::new(crowd(3), 1), 2)[1..].iter().all(Option::is_none));
 }
 
+/// A run of a tracker of this kind that is off by so many pixels to the right, written as in [`written`].
+fn rival(kind: Kind, letters: &str, off: f32) -> Rival {
+    let mut span = written(letters);
+    span.samples.iter_mut().for_each(|sample| sample.x += off);
+    Rival { name: format!("{kind:?} {off}").into(), kind, span: Arc::new(span) }
+}
+
 #[test]
-fn trackers_disagree_only_where_two_say_something() {
-    let span = written("bttt");
-    let mut other = written("btl");
-    other.samples[1].x += 3.0;
-    let rivals = vec![Arc::new(span.clone()), Arc::new(other)];
-    let subject = Subject { rivals, ..subject(1, span) };
-    let parts = Evidence::new(vec![subject], 1).parts(TrackId(1)).unwrap();
-    let dis: Vec<Option<f32>> = parts.iter().map(|parts| parts.dis_px).collect();
-    assert_eq!(dis, [Some(0.0), Some(3.0), None, None]);
+fn trackers_disagree_where_another_sees_the_feature_elsewhere() {
+    use Kind::{Anchored, Stepwise};
+    let own = |kind| rival(kind, "bttt", 0.0);
+    for (kind, rivals, dis, anchored, opponent) in [
+        (Stepwise, vec![own(Stepwise)], [None; 3], [None; 3], None),
+        // Where the other has lost it, it says nothing.
+        (
+            Stepwise,
+            vec![own(Stepwise), rival(Stepwise, "btlt", 3.0)],
+            [Some(3.0), None, Some(3.0)],
+            [None; 3],
+            Some("Stepwise 3"),
+        ),
+        // The nearest of a kind is asked; an anchored one by itself.
+        (
+            Stepwise,
+            vec![
+                rival(Anchored, "bttt", 13.0),
+                own(Stepwise),
+                rival(Stepwise, "bttt", 2.0),
+                rival(Stepwise, "bttt", 9.0),
+            ],
+            [Some(2.0); 3],
+            [Some(13.0); 3],
+            Some("Anchored 13"),
+        ),
+        (
+            Anchored,
+            vec![rival(Stepwise, "bttt", 5.0), own(Anchored), rival(Anchored, "bttt", 7.0)],
+            [Some(5.0); 3],
+            [None; 3],
+            Some("Stepwise 5"),
+        ),
+        // What a correction has laid is none of the runs' any more.
+        (
+            Stepwise,
+            vec![rival(Stepwise, "bttt", 1.0), rival(Stepwise, "bttt", 4.0)],
+            [None; 3],
+            [None; 3],
+            None,
+        ),
+    ] {
+        let subject = Subject { rivals, kind, ..subject(1, written("bttt")) };
+        let parts = Evidence::new(vec![subject.clone()], 1).parts(TrackId(1)).unwrap();
+        let got: Vec<_> = parts[1..].iter().map(|parts| (parts.dis_px, parts.anchored_px)).collect();
+        assert_eq!(got, dis.into_iter().zip(anchored).collect::<Vec<_>>(), "{subject:?}");
+        assert_eq!(subject.opponent(1, &parts[1]).as_deref(), opponent);
+    }
+}
+
+#[test]
+fn likeness_that_a_tracker_found_itself_counts_of_anchored_ones() {
+    let mut span = written("btt");
+    span.samples[2].quality.ncc = Some(0.6);
+    for (kind, want) in [(Kind::Stepwise, [None; 3]), (Kind::Anchored, [Some(1.0), None, Some(0.6)])] {
+        let subject = Subject { kind, ..subject(1, span.clone()) };
+        let parts = Evidence::new(vec![subject], 1).parts(TrackId(1)).unwrap();
+        assert_eq!(parts.iter().map(|parts| parts.own_ncc).collect::<Vec<_>>(), want, "{kind:?}");
+    }
 }
 
 /// A picture with a bright square about `(x, 20)`.

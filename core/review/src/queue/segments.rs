@@ -8,37 +8,37 @@ use honami_model::track::{Sample, Source, Span, TrackId};
 
 use super::{Item, Tally};
 use crate::evidence::Parts;
-use crate::suspicion::{N_PARTS, WEIGHTS, is_lost, of_sample, transformed};
+use crate::suspicion::{N_PARTS, is_lost, of_sample, transformed, weights};
 
 /// A sample is worth a look from this suspicion on: one in five such samples is bad.
 pub const DOUBTFUL: f32 = 0.2;
 /// Segments that are no farther apart are one, frames. Less than this beside a judged segment is not worth an item.
 const NEAR: u32 = 8;
-/// A part is a reason when it is worse than this, which four of five good samples are better than (of the clips that
-/// suspicion was fitted on).
-const ORDINARY: Parts =
-    Parts { fb_px: Some(1.0), ncc: Some(0.34), jump: Some(4.1), nbr_px: Some(4.1), dis_px: Some(2.7) };
-
 /// What speaks against a segment, as short codes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Reasons(u8);
 
 impl Reasons {
-    /// The codes in the order of the evidence's parts: forward-backward error, correlation, jump, neighbours,
-    /// disagreement of trackers; and lost.
-    pub const CODES: [&str; N_PARTS + 1] = ["FB", "NCC", "JMP", "NBR", "DIS", "LOST"];
+    /// The codes: forward-backward error, correlation, jump, neighbours, disagreement of trackers; and lost.
+    pub const CODES: [&str; 6] = ["FB", "NCC", "JMP", "NBR", "DIS", "LOST"];
+    /// The code of each of the evidence's parts.
+    const OF_PART: [usize; N_PARTS] = [0, 1, 2, 3, 4, 1, 4];
     /// The track is lost.
-    pub const LOST: Self = Self(1 << N_PARTS);
+    pub const LOST: Self = Self(1 << 5);
 
-    /// The parts that speak against a sample, the strongest at least.
+    /// The parts that speak against a sample: those that are worse than in four of five good samples, the strongest at
+    /// least.
     #[must_use]
     pub fn of(parts: &Parts) -> Self {
-        let ((_, shares), (_, ordinary)) = (WEIGHTS.log_odds(parts), WEIGHTS.log_odds(&ORDINARY));
-        let measured = transformed(parts).map(|x| x.is_some());
-        let worse = |k: usize| if measured[k] { shares[k] - ordinary[k] } else { f64::NEG_INFINITY };
-        let notable = (0..N_PARTS).filter(|&k| worse(k) > 0.0).fold(0, |bits, k| bits | 1 << k);
-        let strongest = (0..N_PARTS).filter(|&k| measured[k]).max_by(|&a, &b| worse(a).total_cmp(&worse(b)));
-        Self(if notable == 0 { strongest.map_or(0, |k| 1 << k) } else { notable })
+        let weights = weights(parts.kind).parts;
+        let x = transformed(parts);
+        let worse =
+            |k: usize| x[k].map_or(f64::NEG_INFINITY, |x| weights[k].slope * (x - weights[k].ordinary));
+        let bit = |k: usize| 1 << Self::OF_PART[k];
+        let notable = (0..N_PARTS).filter(|&k| worse(k) > 0.0).fold(0, |bits, k| bits | bit(k));
+        let strongest =
+            (0..N_PARTS).filter(|&k| x[k].is_some()).max_by(|&a, &b| worse(a).total_cmp(&worse(b)));
+        Self(if notable == 0 { strongest.map_or(0, bit) } else { notable })
     }
 
     /// Both together.
@@ -157,12 +157,20 @@ fn item(
     let worst = samples.clone().rev().max_by(|&a, &b| suspicions[a].total_cmp(&suspicions[b]));
     let worst = worst.unwrap_or(samples.start);
     let lost = samples.clone().any(|at| is_lost(&span.samples[at]));
-    let measured = samples.filter(|&at| !is_lost(&span.samples[at]) && suspicions[at] >= DOUBTFUL);
-    let measured = measured.max_by(|&a, &b| suspicions[a].total_cmp(&suspicions[b])).map(|at| parts[at]);
-    let of_parts = measured.as_ref().map_or(Reasons::default(), Reasons::of);
-    let reasons = if lost { of_parts.and(Reasons::LOST) } else { of_parts };
-    let worst_frame = span.first_frame + u32::try_from(worst).unwrap_or(0);
+    let seen = samples.filter(|&at| !is_lost(&span.samples[at]) && suspicions[at] >= DOUBTFUL);
+    let measured = seen.max_by(|&a, &b| suspicions[a].total_cmp(&suspicions[b]));
+    let frame_of = |at: usize| span.first_frame + u32::try_from(at).unwrap_or(0);
+    let of_parts = measured.map_or(Reasons::default(), |at| Reasons::of(&parts[at]));
     let later = later.iter().any(|put_off| put_off.start < frames.end && frames.start < put_off.end);
-    let (parts, suspicion) = (measured.unwrap_or_default(), suspicions[worst]);
-    Item { track, frames, worst: worst_frame, reasons, parts, suspicion, later }
+    Item {
+        track,
+        frames,
+        worst: frame_of(worst),
+        reasons: if lost { of_parts.and(Reasons::LOST) } else { of_parts },
+        measured: frame_of(measured.unwrap_or(worst)),
+        parts: measured.map(|at| parts[at]).unwrap_or_default(),
+        opponent: None,
+        suspicion: suspicions[worst],
+        later,
+    }
 }

@@ -10,8 +10,9 @@ use super::*;
 /// A track and its evidence, a letter a sample: `.` good, `d` doubtful, `D` more so, `l` lost, `k` key-frame,
 /// `o` occluded; `L` and `O` where a person has said so.
 fn written(letters: &str) -> (Span, Vec<Parts>) {
-    let good = Parts { fb_px: Some(0.02), ncc: Some(0.99), jump: Some(1.0), nbr_px: Some(0.2), dis_px: None };
-    let doubtful = Parts { fb_px: Some(2.0), ncc: Some(0.3), nbr_px: Some(12.0), ..good };
+    let good =
+        Parts { fb_px: Some(0.02), ncc: Some(0.99), jump: Some(1.0), nbr_px: Some(0.2), ..Parts::default() };
+    let doubtful = Parts { fb_px: Some(2.0), ncc: Some(0.3), nbr_px: Some(20.0), ..good };
     let bad = Parts { ncc: Some(-0.2), nbr_px: Some(60.0), ..doubtful };
     let each = letters.chars().map(|letter| {
         let (status, source, parts) = match letter {
@@ -90,7 +91,8 @@ fn judged_segments_leave_and_come_back_when_their_samples_change() {
 fn item(track: u32, first: u32, suspicion: f32, later: bool) -> Item {
     let frames = first..first + 5;
     let (reasons, parts) = Default::default();
-    Item { track: TrackId(track), worst: first, frames, reasons, parts, suspicion, later }
+    let (measured, opponent) = (first, None);
+    Item { track: TrackId(track), worst: first, frames, reasons, measured, parts, opponent, suspicion, later }
 }
 
 #[test]
@@ -146,6 +148,7 @@ fn reasons_are_written_in_the_order_of_the_parts() {
         jump: Some(90.0),
         nbr_px: Some(90.0),
         dis_px: Some(900.0),
+        ..Parts::default()
     };
     assert_eq!(Reasons::of(&all).and(Reasons::LOST).codes().collect::<Vec<_>>(), Reasons::CODES);
     assert_eq!(Reasons::of(&Parts { fb_px: Some(5.0), ..Parts::default() }).to_string(), "FB");

@@ -13,8 +13,25 @@ const N_STEPS: usize = 30;
 #[must_use]
 pub fn parts(samples: &[(Parts, bool)]) -> (f64, [Weight; N_PARTS]) {
     let beta: [f64; N_TERMS] = likeliest(samples.iter().map(|(parts, is_bad)| (terms(parts), *is_bad)));
-    let weight = |k: usize| Weight { slope: beta[1 + 2 * k], missing: beta[2 + 2 * k] };
-    (beta[0], std::array::from_fn(weight))
+    let mut base = beta[0];
+    let weight = |k: usize| {
+        let good = samples.iter().filter(|(_, is_bad)| !is_bad);
+        let measured: Vec<f64> = good.filter_map(|(parts, _)| transformed(parts)[k]).collect();
+        let (slope, mut missing) = (beta[1 + 2 * k], beta[2 + 2 * k]);
+        if measured.is_empty() {
+            // What is never measured says nothing of any sample: its constant belongs to all.
+            base += std::mem::take(&mut missing);
+        }
+        Weight { slope, missing, ordinary: below(measured) }
+    };
+    let weights = std::array::from_fn(weight);
+    (base, weights)
+}
+
+/// What four of five values are below; 0 where there is none.
+fn below(mut values: Vec<f64>) -> f64 {
+    let at = values.len() * 4 / 5;
+    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(at, f64::total_cmp).1 }
 }
 
 /// What turns the suspicion of a track's worst sample into that of the track ([`Weights::track`]); from the suspicions

@@ -11,6 +11,7 @@ use honami_store::RunHead;
 use honami_synth::Settings;
 use tempfile::TempDir;
 
+use super::crew::ANCHORED;
 use super::*;
 use crate::generate::{generate, truth_beside};
 use crate::session::Session;
@@ -119,6 +120,37 @@ fn the_track_that_goes_astray_is_found_and_leaves_when_judged_until_it_changes()
     assert_eq!(stands(), [Some(false)], "what was judged is no longer there");
     let again = review(&session.project, Arc::clone(&session.media), &()).unwrap();
     assert!(again.queue.of_track(astray).count() > 0 && again.progress().judged.done() == 0);
+}
+
+#[test]
+fn a_run_that_sees_the_feature_elsewhere_is_named() {
+    let (folder, mut session, astray) = project();
+    let truth = truth_beside(&folder.path().join("clip.y4m"));
+    let path = crate::compare::read_truth(&truth, N_FRAMES).unwrap().remove(&astray).unwrap();
+    let sample = |&(x, y, _): &(f64, f64, bool)| {
+        let (status, source, quality) = (Status::Tracked, Source::Tracked, Quality::default());
+        Sample { x: x as f32, y: y as f32, status, source, quality }
+    };
+    let span = Span { first_frame: 0, samples: path.positions.iter().map(sample).collect() };
+    let provenance = Provenance { plugin_id: ANCHORED[0].to_owned(), ..provenance() };
+    let head = RunHead { provenance, tracks: astray.into(), frames: 0..N_FRAMES };
+    let project = &mut session.project;
+    let shown = project.document().runs()[0].clone();
+    let alone = Changes::since(&mut Known::default(), project).unwrap().subjects;
+    assert!(alone.iter().all(|subject| subject.rivals.is_empty() && subject.kind == Kind::Stepwise));
+    let right = project.keep_runs(&[(head, vec![(astray, span)])]).unwrap()[0];
+    project.commit(Transaction::show_run(right, astray.into())).unwrap();
+    let with = Changes::since(&mut Known::default(), project).unwrap().subjects;
+    let kind = |track: TrackId| with.iter().find(|subject| subject.track == track).unwrap().kind;
+    assert_eq!((kind(astray), kind(with[0].track)), (Kind::Anchored, Kind::Stepwise));
+    // The run that strays lies over it again.
+    project.commit(Transaction::hide_run(shown.run)).unwrap();
+    project.commit(Transaction::show_run(shown.run, shown.tracks)).unwrap();
+    let found = review(&session.project, Arc::clone(&session.media), &()).unwrap();
+    let first = found.queue.first().unwrap();
+    let far = (f64::from(first.measured - ASTRAY + 1) * 6.0).round();
+    assert_eq!(first.disagreement(), Some(format!("disagrees with anchored by {far} px")), "{first:?}");
+    assert!(first.reasons.codes().any(|code| code == "DIS"), "{first:?}");
 }
 
 #[test]

@@ -7,7 +7,7 @@ use ratatui::style::Style;
 use ratatui::text::{Line, Span};
 
 use honami_model::track::{Source, Status, TrackId};
-use honami_workbench::review::Parts;
+use honami_workbench::review::Item;
 use honami_workbench::versus::{Entrant, Sight};
 
 use super::offers::offers;
@@ -194,7 +194,7 @@ fn words(state: &State, row: &TrackRow) -> Vec<String> {
             } else {
                 format!("worst at {}", item.worst)
             };
-            let reasons: Vec<String> = item.reasons.codes().map(|code| measured(code, &item.parts)).collect();
+            let reasons: Vec<String> = item.reasons.codes().map(|code| measured(code, item)).collect();
             words.push(format!("{at}: {}", reasons.join(", ")));
         }
         None => {
@@ -226,12 +226,13 @@ fn ncc_words(ncc: f32) -> String {
 }
 
 /// A reason with what was measured of it.
-fn measured(code: &str, parts: &Parts) -> String {
+fn measured(code: &str, item: &Item) -> String {
+    let parts = &item.parts;
     let words = match code {
         "FB" => parts.fb_px.map(|px| format!("FB {px:.1} px")),
-        "NCC" => parts.ncc.map(ncc_words),
+        "NCC" => parts.likeness().map(ncc_words),
         "NBR" => parts.nbr_px.map(|px| format!("NBR {px:.0} px")),
-        "DIS" => parts.dis_px.map(|px| format!("DIS {px:.0} px")),
+        "DIS" => item.disagreement(),
         _ => None,
     };
     words.unwrap_or_else(|| code.to_owned())

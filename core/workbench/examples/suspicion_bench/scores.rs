@@ -1,16 +1,17 @@
 //! How well scores tell the bad from the good: area under the curve, calibration, what must be opened.
 
 use honami_review::evidence::Parts;
-use honami_review::suspicion::{Weights, transformed};
+use honami_review::suspicion::Weights;
 use serde_json::{Value, json};
 
 use super::follow::{Case, Track};
 
-const PARTS: [&str; 5] = ["fb", "ncc", "jump", "nbr", "dis"];
 /// Probabilities are compared with shares in so many bins.
 const N_BINS: usize = 15;
 /// The share of the bad tracks that is to be found.
 const FOUND: f64 = 0.95;
+/// The share of bad tracks for which the goal is set.
+pub(super) const BAD_SHARE: f64 = 0.43;
 
 /// Scores and whether they were of something bad.
 type Scored = Vec<(f64, bool)>;
@@ -28,9 +29,17 @@ impl Tally {
         Self { samples: case.tracks.iter().flat_map(|track| suspicions(track, weights)).collect(), tracks }
     }
 
-    pub(super) fn add(&mut self, other: Self) {
-        self.samples.extend(other.samples);
-        self.tracks.extend(other.tracks);
+    pub(super) fn add(&mut self, other: &Self) {
+        self.samples.extend(&other.samples);
+        self.tracks.extend(&other.tracks);
+    }
+
+    /// Share of tracks to open to see the bad ones, and with a perfect order, were this share of them bad: every bad
+    /// track counts as much more or less as it takes.
+    pub(super) fn opened_where(&self, share: f64) -> (f64, f64) {
+        let bad = self.tracks.iter().filter(|(_, is_bad)| *is_bad).count() as f64;
+        let good = self.tracks.len() as f64 - bad;
+        (opened(&self.tracks, [(1.0 - share) / good, share / bad]), FOUND * share)
     }
 
     pub(super) fn json(&self) -> Value {
@@ -41,33 +50,10 @@ impl Tally {
             "n_samples": self.samples.len(), "bad_samples": round(bad(&self.samples) / self.samples.len() as f64),
             "sample_auc": auc(&self.samples), "track_auc": auc(&self.tracks),
             "sample_ece": round(calibration_error(&self.samples)), "track_ece": round(calibration_error(&self.tracks)),
-            "opened_for_95": round(opened(&self.tracks)),
-            "opened_for_95_ideal": round((FOUND * bad(&self.tracks)).ceil() / n_tracks),
+            "opened_for_95": round(opened(&self.tracks, [1.0 / n_tracks; 2])),
+            "opened_for_95_ideal": round(FOUND * bad(&self.tracks) / n_tracks),
         })
     }
-}
-
-/// Area under the curve of each part alone, of samples and of tracks (by their worst sample).
-pub(super) fn singles(case: &Case) -> Value {
-    let score = |k: usize, parts: &Parts| transformed(parts)[k];
-    let part = |k: usize| {
-        let of = |track: &Track| -> Scored {
-            judged(track).filter_map(|(parts, bad)| Some((score(k, parts)?, *bad))).collect()
-        };
-        let tracks: Vec<Scored> = case.tracks.iter().map(of).filter(|scored| !scored.is_empty()).collect();
-        let worst = |scored: &Scored| {
-            let worst = scored.iter().map(|(x, _)| *x).fold(f64::NEG_INFINITY, f64::max);
-            (worst, scored.iter().any(|(_, is_bad)| *is_bad))
-        };
-        let worst: Scored = tracks.iter().map(worst).collect();
-        json!({ "sample_auc": auc(&tracks.concat()), "track_auc": auc(&worst) })
-    };
-    PARTS
-        .iter()
-        .enumerate()
-        .map(|(k, name)| ((*name).to_owned(), part(k)))
-        .collect::<serde_json::Map<_, _>>()
-        .into()
 }
 
 /// Suspicion of each track's worst sample, and whether the track is bad.
@@ -113,19 +99,22 @@ fn calibration_error(scored: &[(f64, bool)]) -> f64 {
     bins.iter().map(|(p, bad)| (p - bad).abs()).sum::<f64>() / scored.len() as f64
 }
 
-/// Share of tracks to open, most suspicious first, until so many of the bad ones are found.
-fn opened(tracks: &[(f64, bool)]) -> f64 {
+/// Share of tracks to open, most suspicious first, until so many of the bad ones are found; what a good and a bad track
+/// count.
+fn opened(tracks: &[(f64, bool)], [good, bad]: [f64; 2]) -> f64 {
     let mut sorted = tracks.to_vec();
     sorted.sort_by(|a, b| b.0.total_cmp(&a.0));
     let n_bad = sorted.iter().filter(|(_, is_bad)| *is_bad).count();
     let wanted = (FOUND * n_bad as f64).ceil() as usize;
-    let mut found = 0;
-    let is_enough = |(_, is_bad): &(f64, bool)| {
-        found += usize::from(*is_bad);
-        found >= wanted
-    };
-    let at = sorted.iter().position(is_enough).map_or(0, |at| at + 1);
-    at as f64 / tracks.len().max(1) as f64
+    let (mut found, mut share) = (0, 0.0);
+    for (_, is_bad) in sorted {
+        if found >= wanted {
+            break;
+        }
+        found += usize::from(is_bad);
+        share += if is_bad { bad } else { good };
+    }
+    share
 }
 
 fn round(x: f64) -> f64 {
