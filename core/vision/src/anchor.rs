@@ -33,6 +33,8 @@ mod template;
 mod tests;
 mod warp;
 
+use std::collections::BTreeSet;
+
 use crate::pyramid::Pyramid;
 use crate::{Gray, Point, klt, simd};
 use live::Live;
@@ -116,6 +118,17 @@ impl Default for Params {
     }
 }
 
+impl Params {
+    /// What a point costs, the usual one's being 1: by the areas of its window and of its search.
+    fn effort(&self) -> f64 {
+        /// Looks at a window in a fit and in predictions, beside those of a search.
+        const LOOKS: f64 = 200.0;
+        let area = |radius: u32| (2.0 * f64::from(radius) + 1.0).powi(2);
+        let of = |params: &Self| area(params.radius_px) * (LOOKS + area(params.search_px));
+        of(self) / of(&Self::default())
+    }
+}
+
 /// What is known of a point in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
@@ -144,9 +157,9 @@ pub struct Row {
     pub ncc: Option<f32>,
 }
 
-/// Points that are worked on between two looks at whether to go on: some ten milliseconds.
+/// Points of the usual window that a thread works on between two looks at whether to go on: some ten milliseconds.
 const POINTS_A_LOOK: usize = 512;
-/// Fewer points than this are not worth a thread.
+/// Fewer points of the usual window than this are not worth a thread.
 const POINTS_A_THREAD: usize = 32;
 
 /// Points and their templates, frame after frame.
@@ -203,12 +216,12 @@ impl Tracker {
         self.is_changed = true;
     }
 
-    /// Forgets a point.
-    pub fn retire(&mut self, id: u32) {
-        if let Ok(slot) = self.live.binary_search_by_key(&u64::from(id), |point| point.id) {
-            self.live.remove(slot);
-            self.is_changed = true;
-        }
+    /// Forgets points; what is not followed is left out.
+    pub fn retire(&mut self, ids: impl IntoIterator<Item = u32>) {
+        let ids: BTreeSet<u64> = ids.into_iter().map(u64::from).collect();
+        let n_before = self.live.len();
+        self.live.retain(|point| !ids.contains(&point.id));
+        self.is_changed |= self.live.len() < n_before;
     }
 
     /// Width and height of the pictures, once there was one.
@@ -232,6 +245,9 @@ impl Tracker {
         picture: &Gray<'_>,
         mut go_on: impl FnMut(f64) -> Result<(), E>,
     ) -> Result<(), E> {
+        if self.pyramids.is_some() && std::mem::take(&mut self.is_changed) {
+            self.relate(&mut |share| go_on(0.2 * share))?;
+        }
         let Self { params, pyramids, live, .. } = self;
         let Some([last, spare]) = pyramids else {
             let first = Pyramid::new(picture, params.klt.levels, params.klt.radius_px);
@@ -240,19 +256,11 @@ impl Tracker {
             *pyramids = Some([first.clone(), first]);
             return Ok(());
         };
-        if std::mem::take(&mut self.is_changed) {
-            let is_idle = live.first().is_none_or(Live::is_companion);
-            live.retain(|point| !is_idle && !point.is_spent());
-            neighbours::relate(live, params);
-            if companions::join(live, &last.picture(), params, self.simd, &mut self.n_seeds) {
-                neighbours::relate(live, params);
-            }
-        }
         std::mem::swap(last, spare);
         last.fill(picture);
-        self.predict(&mut |share| go_on(0.5 * share))?;
-        self.settle(&mut |share| go_on(0.5 + 0.3 * share))?;
-        self.measure_back(&mut |share| go_on(0.8 + 0.2 * share))
+        self.predict(&mut |share| go_on(0.2 + 0.4 * share))?;
+        self.settle(&mut |share| go_on(0.6 + 0.25 * share))?;
+        self.measure_back(&mut |share| go_on(0.85 + 0.15 * share))
     }
 
     /// What is known of every point, in the order of their ids.
@@ -261,13 +269,34 @@ impl Tracker {
         self.live[..n].iter().map(Live::row)
     }
 
+    /// Finds out who is near whom, in the picture pushed last, and gives company to those who are alone.
+    fn relate<E>(&mut self, go_on: &mut dyn FnMut(f64) -> Result<(), E>) -> Result<(), E> {
+        let Self { params, simd, pyramids, live, n_seeds, .. } = self;
+        let Some([last, _]) = pyramids else { return Ok(()) };
+        let is_idle = live.first().is_none_or(Live::is_companion);
+        live.retain(|point| !is_idle && !point.is_spent());
+        neighbours::relate(live, params, &mut |share| go_on(0.4 * share))?;
+        let joined = companions::join(live, &last.picture(), params, *simd, n_seeds, &mut |share| {
+            go_on(0.4 + 0.2 * share)
+        });
+        if joined? {
+            neighbours::relate(live, params, &mut |share| go_on(0.6 + 0.4 * share))?;
+        }
+        Ok(())
+    }
+
+    /// Points that are worked on between two looks at whether to go on: the fewer, the more work each is.
+    fn points_a_look(&self) -> usize {
+        (POINTS_A_LOOK as f64 / self.params.effort()).ceil() as usize * self.n_threads
+    }
+
     /// Looks for every point by itself: where Lucas-Kanade and its own speed lead.
     fn predict<E>(&mut self, go_on: &mut dyn FnMut(f64) -> Result<(), E>) -> Result<(), E> {
         let Some([now, before]) = &self.pyramids else { return Ok(()) };
         let (picture, last) = (now.picture(), before.picture());
-        let n = self.live.len();
-        for (k, part) in self.live.chunks_mut(POINTS_A_LOOK).enumerate() {
-            go_on((k * POINTS_A_LOOK) as f64 / n as f64)?;
+        let (n, n_look) = (self.live.len(), self.points_a_look());
+        for (k, part) in self.live.chunks_mut(n_look).enumerate() {
+            go_on((k * n_look) as f64 / n as f64)?;
             let from: Vec<Point> = part.iter().filter(|p| p.is_sought()).map(|p| p.at).collect();
             let flows = klt::track_at(self.simd, before, now, &from, None, &self.params.klt, self.n_threads);
             let mut flows = flows.into_iter();
@@ -285,27 +314,28 @@ impl Tracker {
     fn settle<E>(&mut self, go_on: &mut dyn FnMut(f64) -> Result<(), E>) -> Result<(), E> {
         let Some([now, _]) = &self.pyramids else { return Ok(()) };
         let picture = now.picture();
-        let n = self.live.len();
+        let (n, n_look) = (self.live.len(), self.points_a_look());
         let seen: Vec<Seen> = self.live.iter().map(Live::seen).collect();
-        for (k, part) in self.live.chunks_mut(POINTS_A_LOOK).enumerate() {
-            go_on((k * POINTS_A_LOOK) as f64 / n as f64)?;
+        for (k, part) in self.live.chunks_mut(n_look).enumerate() {
+            go_on((k * n_look) as f64 / n as f64)?;
             each(part, &self.params, self.simd, self.n_threads, |desk, point| {
                 point.settle(&picture, &seen, desk);
             });
         }
         let seen: Vec<Seen> = self.live.iter().map(Live::seen).collect();
-        each(&mut self.live, &self.params, self.simd, self.n_threads, |_, point| {
-            neighbours::note(point, &seen);
-        });
+        for part in self.live.chunks_mut(n_look) {
+            go_on(1.0)?;
+            each(part, &self.params, self.simd, self.n_threads, |_, point| neighbours::note(point, &seen));
+        }
         Ok(())
     }
 
     /// Follows the points that were found back into the picture before.
     fn measure_back<E>(&mut self, go_on: &mut dyn FnMut(f64) -> Result<(), E>) -> Result<(), E> {
         let Some([now, before]) = &self.pyramids else { return Ok(()) };
-        let n = self.live.len();
-        for (k, part) in self.live.chunks_mut(POINTS_A_LOOK).enumerate() {
-            go_on((k * POINTS_A_LOOK) as f64 / n as f64)?;
+        let (n, n_look) = (self.live.len(), self.points_a_look());
+        for (k, part) in self.live.chunks_mut(n_look).enumerate() {
+            go_on((k * n_look) as f64 / n as f64)?;
             let from: Vec<Point> = part.iter().filter(|p| p.is_found_twice()).map(|p| p.at).collect();
             let back = klt::track_at(self.simd, now, before, &from, None, &self.params.klt, self.n_threads);
             for (point, back) in part.iter_mut().filter(|p| p.is_found_twice()).zip(back) {
@@ -324,7 +354,8 @@ fn each(
     max_threads: usize,
     work: impl Fn(&mut Desk<'_>, &mut Live) + Sync,
 ) {
-    let n_threads = max_threads.min(live.len() / POINTS_A_THREAD).max(1);
+    let n_worth = (live.len() as f64 * params.effort()) as usize / POINTS_A_THREAD;
+    let n_threads = max_threads.min(n_worth).min(live.len()).max(1);
     let chunk = live.len().div_ceil(n_threads).max(1);
     let run = |part: &mut [Live]| {
         let mut desk = Desk::new(params, simd);

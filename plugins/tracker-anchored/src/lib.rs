@@ -46,7 +46,7 @@ impl Tracker for Anchored {
     }
 
     fn retire(&mut self, ids: &[u32]) {
-        ids.iter().for_each(|&id| self.tracker.retire(id));
+        self.tracker.retire(ids.iter().copied());
     }
 
     fn push(&mut self, frame: &Frame<'_>, out: &mut Points, cx: &Cx<'_>) -> Result<()> {

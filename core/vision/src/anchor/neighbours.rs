@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Live, Params};
+use super::{Live, POINTS_A_LOOK, Params};
 use crate::Point;
 
 /// A point that was near when the two were related.
@@ -54,16 +54,28 @@ const MEMORY_FRAMES: f32 = 20.0;
 pub(super) const NEAR_PX: f32 = 60.0;
 
 /// Looks up who is where, and finds relatives for those who lack some.
-pub(super) fn relate(live: &mut [Live], params: &Params) {
+///
+/// `go_on` is asked every so many points.
+pub(super) fn relate<E>(
+    live: &mut [Live],
+    params: &Params,
+    go_on: &mut dyn FnMut(f64) -> Result<(), E>,
+) -> Result<(), E> {
+    let n = live.len();
+    let mut look = |slot: usize, part: f64| {
+        if slot.is_multiple_of(POINTS_A_LOOK) { go_on(part + 0.5 * slot as f64 / n as f64) } else { Ok(()) }
+    };
     let slots: BTreeMap<(u64, u32), u32> =
         live.iter().zip(0..).map(|(point, slot)| ((point.id, point.stamp), slot)).collect();
-    for point in live.iter_mut() {
+    for (slot, point) in live.iter_mut().enumerate() {
+        look(slot, 0.0)?;
         point.near.retain_mut(|other| {
             slots.get(&(other.id, other.stamp)).inspect(|slot| other.slot = **slot).is_some()
         });
     }
     let grid = Grid::new(live, params.neighbours as usize);
-    for slot in 0..live.len() {
+    for slot in 0..n {
+        look(slot, 0.5)?;
         if live[slot].is_sure && live[slot].near.len() < params.neighbours as usize {
             let found = grid.around(live, slot, params.neighbours as usize);
             let old: BTreeMap<u64, (f32, u32)> =
@@ -77,6 +89,7 @@ pub(super) fn relate(live: &mut [Live], params: &Params) {
             (live[slot].near, live[slot].base) = (near, live[slot].at);
         }
     }
+    Ok(())
 }
 
 /// Points by the cell of the picture they are in.

@@ -331,7 +331,7 @@ fn a_single_point_is_given_company_that_is_not_reported() {
         }
         assert_eq!(tracker.live.len() > 10, companions > 0);
         // It leaves with the point: nobody follows what nobody asks for.
-        tracker.retire(7);
+        tracker.retire([7]);
         push(&mut tracker, &REST.picture(0));
         assert_eq!(tracker.live.len(), 0);
     }
@@ -344,4 +344,65 @@ fn whoever_is_asked_to_stop_stops() {
     let picture = REST.picture(1);
     let gray = Gray::packed(&picture, WIDTH, HEIGHT);
     assert_eq!(tracker.push(&gray, |share| if share < 0.4 { Ok(()) } else { Err("enough") }), Err("enough"));
+}
+
+/// A tracker of a picture with many points, a quarter of a pixel and more apart.
+fn crowded(n: u32) -> Tracker {
+    let mut tracker = Tracker::new(Params { radius_px: 2, ..Params::default() }, 1);
+    push(&mut tracker, &REST.picture(0));
+    tracker.seed((0..n).map(|id| (id, [10.0 + 0.35 * (id % 400) as f32, 10.0 + 0.35 * (id / 400) as f32])));
+    tracker
+}
+
+#[test]
+fn a_hundred_thousand_points_come_and_go_at_once() {
+    let mut tracker = crowded(100_000);
+    assert_eq!(tracker.rows().len(), 100_000);
+    tracker.retire((0..200_000).filter(|id| id % 4 > 0));
+    let ids: Vec<u32> = tracker.rows().map(|row| row.id).collect();
+    assert_eq!(ids, (0..100_000).step_by(4).collect::<Vec<u32>>());
+    tracker.retire(ids);
+    assert_eq!(tracker.rows().len(), 0);
+}
+
+#[test]
+fn a_hundred_thousand_points_can_be_stopped_between_any_few_hundred() {
+    let mut tracker = crowded(100_000);
+    let picture = REST.picture(1);
+    let mut asked = Vec::new();
+    // All of the relating and the first of the looking.
+    let stopped = tracker.push(&Gray::packed(&picture, WIDTH, HEIGHT), |share| {
+        asked.push(share);
+        if share < 0.205 { Ok(()) } else { Err("enough") }
+    });
+    assert_eq!(stopped, Err("enough"));
+    let relating = asked.iter().filter(|&&share| share < 0.2).count();
+    assert!(relating >= 2 * 100_000 / POINTS_A_LOOK, "asked {relating} times");
+    assert!(asked.is_sorted() && asked.iter().all(|share| (0.0..=1.0).contains(share)));
+}
+
+#[test]
+fn larger_windows_are_asked_about_more_often() {
+    let looks = |radius_px, search_px, n_threads| {
+        Tracker::new(Params { radius_px, search_px, ..Params::default() }, n_threads).points_a_look()
+    };
+    let usual = Params::default();
+    assert_eq!(looks(usual.radius_px, usual.search_px, 1), POINTS_A_LOOK);
+    assert_eq!(looks(usual.radius_px, usual.search_px, 4), 4 * POINTS_A_LOOK);
+    assert!((8..16).contains(&looks(50, 4, 1)));
+    assert!((8..16).contains(&looks(7, 64, 1)));
+    assert_eq!(looks(50, 64, 2), 2);
+}
+
+#[test]
+fn companions_are_shared_and_bounded() {
+    // A knot of points by itself: the company of the first serves the others; (points, pixels between them).
+    for (n, step_px, most) in [(10, 3.0, 40), (1, 3.0, 24)] {
+        let mut tracker = Tracker::new(Params::default(), 1);
+        tracker.seed((0..n).map(|id| (id, [70.0 + step_px * id as f32, 60.0])));
+        push(&mut tracker, &REST.picture(0));
+        push(&mut tracker, &REST.picture(1));
+        let n_companions = tracker.live.len() - n as usize;
+        assert!((5..=most).contains(&n_companions), "{n} points have {n_companions}");
+    }
 }
