@@ -36,12 +36,14 @@ impl VersusList<'_> {
         Some(follows(&self.state.row(track)?.span, self.compared?.track(track)?))
     }
 
-    /// The letters of those that a track shows, if only in part; `·` for neither.
+    /// The letters of those that a track shows, if only in part; `=` where they are the same, `·` for neither.
     fn letters(&self, track: TrackId) -> String {
-        let stretches = self.followed(track).unwrap_or_default();
-        let shows = |side: usize| stretches.iter().any(|(of, _)| *of == Follows::One(side));
-        let letters: String =
-            [0, 1].into_iter().filter(|side| shows(*side)).map(|side| LETTERS[side]).collect();
+        let stretches = match self.followed(track) {
+            Some(stretches) if stretches.is_empty() => return "=".to_owned(),
+            stretches => stretches.unwrap_or_default(),
+        };
+        let shows = |side: &usize| stretches.iter().any(|(of, _)| *of == Follows::One(*side));
+        let letters: String = [0, 1].into_iter().filter(shows).map(|side| LETTERS[side]).collect();
         if letters.is_empty() { "·".to_owned() } else { letters }
     }
 
@@ -53,6 +55,9 @@ impl VersusList<'_> {
             stretches.iter().filter(|(one, _)| *one == of).map(|(_, frames)| frames.end - frames.start).sum()
         };
         let all = [Follows::One(0), Follows::One(1), Follows::Neither];
+        if stretches.is_empty() {
+            return Some(format!("track {track} shows both: they are the same"));
+        }
         let mostly = all.into_iter().rev().max_by_key(|of| n_frames(*of))?;
         let mut words = format!("track {track} shows {}", mostly.word());
         for of in all.into_iter().filter(|of| *of != mostly && n_frames(*of) > 0) {
@@ -84,7 +89,8 @@ impl Follows {
     }
 }
 
-/// Whose samples are shown, frame by frame, in stretches; frames in which A and B are the same go with those before.
+/// Whose samples are shown, frame by frame, in stretches; frames in which A and B are the same go with those
+/// before, at the beginning with those after. None where they are the same throughout.
 fn follows(shown: &honami_model::track::Span, paired: &Paired) -> Vec<(Follows, Range<u32>)> {
     let mut stretches: Vec<(Follows, Range<u32>)> = Vec::new();
     for (frame, sample) in shown.frames().zip(&shown.samples) {
@@ -95,14 +101,18 @@ fn follows(shown: &honami_model::track::Span, paired: &Paired) -> Vec<(Follows, 
             })
         };
         let of = match paired.spans.each_ref().map(is_its) {
-            [true, true] => stretches.last().map_or(Follows::One(0), |(of, _)| *of),
+            [true, true] => match stretches.last() {
+                Some((of, _)) => *of,
+                None => continue,
+            },
             [true, false] => Follows::One(0),
             [false, true] => Follows::One(1),
             [false, false] => Follows::Neither,
         };
         match stretches.last_mut() {
             Some((last, frames)) if *last == of => frames.end = frame + 1,
-            _ => stretches.push((of, frame..frame + 1)),
+            Some(_) => stretches.push((of, frame..frame + 1)),
+            None => stretches.push((of, shown.first_frame..frame + 1)),
         }
     }
     stretches
@@ -203,3 +213,6 @@ fn key_words(keys: &AtKeys) -> Vec<String> {
     }
     words
 }
+
+#[cfg(test)]
+mod tests;
