@@ -100,19 +100,19 @@ fn motion<E: Engine>(
     set_threads(if E::SCALES { max_threads } else { 1 })?;
     let grid = Grid::over(from.size().0, from.size().1, FIELD_STEP_PX);
     let nodes: Vec<_> = grid.nodes().map(|at| (0, at)).collect();
-    let mut dense = Dense { engine: E::new(params)?, is_back_wanted: true };
+    let mut engine = Dense { engine: E::new(params)?, is_back_wanted: true };
     // Where nothing can be measured nothing is known.
     let is_too_small = from.mat.cols().min(from.mat.rows()) < E::NEEDS.1;
     let steps = if is_too_small {
         vec![Step::LOST; nodes.len()]
     } else {
-        dense.follow(&from.mat, &to.mat, &nodes, cx)?
+        engine.follow(&from.mat, &to.mat, &nodes, cx)?
     };
     let moved = nodes.iter().zip(steps).map(|(&(_, from), step)| {
         let is_known = step.fb.is_some_and(|fb| fb <= ASTRAY_PX);
         is_known.then(|| [step.to[0] - from[0], step.to[1] - from[1]])
     });
-    Ok(dense(grid, moved))
+    Ok(honami_follow::dense(grid, moved))
 }
 
 /// Dense inverse search.
