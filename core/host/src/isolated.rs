@@ -23,8 +23,12 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering::Relaxed;
 use std::time::{Duration, Instant};
 
-/// How often the host looks whether the user wants to stop.
+/// How often the host looks whether the user wants to stop,
 const TICK: Duration = Duration::from_millis(20);
+/// and after how many lines at the latest, however quickly they come.
+const LINES_A_LOOK: usize = 256;
+/// No answer of a process takes more: it may name any number of rows, and each costs memory here.
+const ANSWER_BYTES_MAX: usize = 1 << 30;
 
 /// What a plugin may take in a process of its own.
 #[derive(Clone, Copy, Debug)]
@@ -59,6 +63,8 @@ pub(crate) struct Isolated {
     at: String,
     /// The last line that it printed.
     last_words: String,
+    /// How far it has shut itself in.
+    sandbox: String,
 }
 
 /// Starts a process for a plugin of the library that the store keeps at `copy`.
@@ -79,10 +85,21 @@ pub(crate) fn create(
     let memories = Outbox::new().and_then(|input| Ok((input, Output::new()?)));
     let (input, output) = memories.map_err(|error| failed("no memory to share", error))?;
 
-    let mut made = Isolated { process, input, output, limits, at: String::new(), last_words: String::new() };
+    let mut made = Isolated {
+        process,
+        input,
+        output,
+        limits,
+        at: String::new(),
+        last_words: String::new(),
+        sandbox: "none".to_owned(),
+    };
     let hello = Ask::Hello { honami: wire::VERSION, plugin: info.id.clone() };
     match made.say(&hello).and_then(|()| made.listen(cx)).map_err(|error| failed("does not answer", error))? {
-        Heard::Answer(Answer { sandbox, .. }) => Ok((Box::new(made), sandbox)),
+        Heard::Answer(_) => {
+            let sandbox = made.sandbox.clone();
+            Ok((Box::new(made), sandbox))
+        }
         Heard::Refusal(refusal) => Err(refused(info, refusal)),
         Heard::End(Ended::Stopped) => Err(HostError::Cancelled { plugin: info.id.clone() }),
         Heard::End(how) => Err(HostError::Ended {
@@ -208,7 +225,12 @@ impl Isolated {
         let mut watch = Watch::new(&self.output);
         let mut has_ended = false;
         loop {
-            while let Some(line) = self.process.line()? {
+            let mut is_quiet = false;
+            for _ in 0..LINES_A_LOOK {
+                let Some(line) = self.process.line()? else {
+                    is_quiet = true;
+                    break;
+                };
                 match serde_json::from_slice(&line) {
                     Ok(Tell::Done(answer)) => {
                         self.overhear(cx);
@@ -217,12 +239,13 @@ impl Isolated {
                     Ok(Tell::Refused(refusal)) => return Ok(Heard::Refusal(refusal)),
                     Ok(Tell::Log { level, text }) => (cx.log)(Level::of(level), &text),
                     Ok(Tell::At { text }) => self.at = text,
+                    Ok(Tell::ShutIn { level }) => self.sandbox = level,
                     Err(error) => {
                         return Err(io::Error::other(format!("said what nobody understands: {error}")));
                     }
                 }
             }
-            if has_ended {
+            if has_ended && is_quiet {
                 while self.overhear(cx) {}
                 return self.process.end().map(Heard::End);
             }
@@ -302,6 +325,10 @@ impl Isolated {
             .map_err(|_too_many| format!("answered with {} rows", columns.rows))?;
         let row_bytes =
             |column: &crate::reply::ColumnType| dtype::size(column.1).unwrap_or(0) * column.2 as usize;
+        let bytes_a_row: usize = known.iter().map(|(column, _)| row_bytes(column)).sum();
+        if rows.checked_mul(bytes_a_row).is_none_or(|bytes| bytes > ANSWER_BYTES_MAX) {
+            return Err(format!("answered with {rows} rows of {id}, more than 1 GiB"));
+        }
         let types = known.iter().map(|(column, _)| (Some(*column), row_bytes(column)));
         let table = reply.slot(schema);
         let starts =

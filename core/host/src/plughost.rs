@@ -62,6 +62,7 @@ fn serve_library(library: &Path, read: &[PathBuf]) -> io::Result<()> {
         )));
     };
     let sandbox = sandbox::enter(library, read, Programs::Refused);
+    ear.tell(&Tell::ShutIn { level: sandbox.word().to_owned() })?;
     ear.end_with_host()?;
     let (inbox, mut output) = (Inbox::of(&input)?, Output::of(output)?);
 
@@ -69,7 +70,7 @@ fn serve_library(library: &Path, read: &[PathBuf]) -> io::Result<()> {
         Ok(made) => made,
         Err(error) => return ear.tell(&Tell::Refused(refusal(error))),
     };
-    ear.tell(&Tell::Done(Answer { sandbox: sandbox.word().to_owned(), ..Answer::default() }))?;
+    ear.tell(&Tell::Done(Answer::default()))?;
     let mut reply = Reply::default();
     while let Some(line) = ear.line()? {
         let ask: Ask = serde_json::from_str(&line)?;

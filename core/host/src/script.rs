@@ -48,8 +48,12 @@ fn stem(path: &Path) -> String {
 /// A manifest and the program's own files, which lie beside it.
 pub(crate) fn parts(manifest: &Path) -> Vec<PathBuf> {
     let exec = fs::read(manifest).ok().and_then(|json| Manifest::parse(&json).ok()).map(|m| m.exec);
+    with_own(manifest, &exec.unwrap_or_default())
+}
+
+fn with_own(manifest: &Path, exec: &[String]) -> Vec<PathBuf> {
     let folder = manifest.parent().unwrap_or(Path::new("."));
-    let own = exec.into_iter().flatten().map(|word| folder.join(word)).filter(|path| path.is_file());
+    let own = exec.iter().map(|word| folder.join(word)).filter(|path| path.is_file());
     std::iter::once(manifest.to_owned()).chain(own).collect()
 }
 
@@ -62,7 +66,8 @@ pub(crate) fn keep(info: &PluginInfo, store: &Path) -> Result<Stored, HostError>
     if let Trust::No(why) = &info.trust {
         return Err(HostError::NotTrusted { path: info.library.clone(), why: why.clone() });
     }
-    let parts = parts(&info.library);
+    // Those of the manifest that was scanned; that it is still the same is seen below.
+    let parts = with_own(&info.library, &info.exec);
     let contents: Vec<Vec<u8>> = parts
         .iter()
         .map(|part| fs::read(part).map_err(|e| file_error(format!("cannot be read: {e}"))))

@@ -79,6 +79,8 @@ pub(crate) enum Ask {
 pub(crate) enum Tell {
     /// A line of the plugin's log.
     Log { level: i32, text: String },
+    /// Before the plugin is loaded: how far the process has shut itself in.
+    ShutIn { level: String },
     /// What the plugin is at; how far is in the memory.
     At { text: String },
     /// The answer to a request.
@@ -113,8 +115,6 @@ pub(crate) struct Answer {
     pub(crate) faults: Vec<String>,
     /// Committed tables by schema.
     pub(crate) tables: BTreeMap<String, Columns>,
-    /// To `hello`: how far the process has shut itself in.
-    pub(crate) sandbox: String,
 }
 
 /// A table: where each column begins.

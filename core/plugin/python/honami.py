@@ -203,7 +203,7 @@ class _Host:
         if plugin is None:
             why = f"has no plugin {self.hello['plugin']!r}: write its manifest anew"
             return self.say({"m": "refused", "kind": "unusable", "why": why})
-        self.say({"m": "done", "sandbox": os.environ.get("HONAMI_SANDBOX", "none")})
+        self.say({"m": "done"})
         self.instance, self.gone = plugin(), set()
         self.instance.params = plugin.Params({})
         for line in self.socket.makefile("rb"):

@@ -117,7 +117,7 @@ impl Lab {
             Ok(_) => true,
             Err(error) => {
                 let line = format!("{error:#}");
-                let why = line.rsplit("honami: ").next().unwrap_or(&line);
+                let why = line.rsplit("no row: ").next().unwrap_or(&line);
                 left_out.push(format!("{}: {why}", tracker.name()));
                 eprintln!("left out: {}: {line}", tracker.name());
                 false

@@ -1,6 +1,9 @@
 //! Plugins that are programs: the process gives up what it must, and becomes the program.
 
-use super::sandbox::{self, Programs};
+use super::sandbox::{self, Level, Programs};
+use crate::wire::Tell;
+use rustix::net::{SendFlags, send};
+use rustix::stdio::stdin;
 use std::ffi::{OsStr, OsString};
 use std::io;
 use std::os::unix::process::CommandExt as _;
@@ -28,6 +31,9 @@ pub(super) fn become_it(
     read.extend(places.iter().flatten().filter_map(|path| path.parent()?.parent().map(Path::to_owned)));
     read.retain(|path| path.parent().is_some());
     let level = sandbox::enter(folder, &read, Programs::Allowed);
+    if let Err(error) = shut_in(level) {
+        return error;
+    }
     let own = |arg: &OsString| {
         let file = folder.join(arg);
         if file.is_file() { file.into_os_string() } else { arg.clone() }
@@ -36,7 +42,6 @@ pub(super) fn become_it(
         .args(args.iter().map(own))
         .env("PYTHONPATH", folder)
         .env("PYTHONDONTWRITEBYTECODE", "1")
-        .env("HONAMI_SANDBOX", level.word())
         .exec()
 }
 
@@ -50,9 +55,19 @@ fn find(program: &OsStr) -> Option<PathBuf> {
     std::env::split_paths(&folders).map(|folder| folder.join(program)).find(|place| place.is_file())
 }
 
+/// Tells the host before the plugin can tell it anything.
+fn shut_in(level: Level) -> io::Result<()> {
+    let mut line = serde_json::to_string(&Tell::ShutIn { level: level.word().to_owned() })?;
+    line.push('\n');
+    let sent = send(stdin(), line.as_bytes(), SendFlags::NOSIGNAL)?;
+    if sent == line.len() { Ok(()) } else { Err(io::ErrorKind::WriteZero.into()) }
+}
+
 /// The interpreter behind a name, which may be a script that chooses one, and the folders that it imports from.
 fn python(program: &Path) -> Option<(PathBuf, Vec<PathBuf>)> {
     let said = Command::new(program)
+        // Where nothing lies that could be imported.
+        .current_dir("/")
         .args(["-c", "import sys; print(sys.executable, *sys.path, sep='\\n')"])
         .stdin(Stdio::null())
         .stderr(Stdio::null())

@@ -35,7 +35,10 @@ const SYSTEM: [&str; 14] = [
 ];
 
 /// Calls that a plugin has no business with.
-const REFUSED: [libc::c_long; 17] = [
+const REFUSED: [libc::c_long; 19] = [
+    // What it starts is to end with it.
+    libc::SYS_setsid,
+    libc::SYS_setpgid,
     libc::SYS_execve,
     libc::SYS_execveat,
     libc::SYS_ptrace,

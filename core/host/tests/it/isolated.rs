@@ -125,3 +125,28 @@ fn a_constructor_can_do_nothing_and_its_end_is_named() {
         assert!(!file.exists(), "{fault}");
     }
 }
+
+#[test]
+fn what_becomes_of_a_file_does_not_reach_who_works_from_it() {
+    if !has_cc() {
+        return;
+    }
+    for host in [host(), isolating()] {
+        let registry = bad("NONE", &["-DIN_USE"]);
+        let library = registry.plugins()[0].library.clone();
+        let whole = std::fs::read(&library).unwrap();
+        let cx = CallContext::silent();
+        let (mut tracker, _) = host.tracker(&registry.plugins()[0], &Values::default(), &cx).unwrap();
+        tracker.begin(stream(), &cx).unwrap();
+        tracker.seed(&[point(3, 1.0, 1.0)], &cx).unwrap();
+        // Overwritten in place, cut short, and gone.
+        std::fs::write(&library, vec![0xA5; whole.len()]).unwrap();
+        assert_eq!(tracker.push(&view(&pixels(0), 0), &cx).unwrap()[0].rows.len(), 1);
+        std::fs::write(&library, &whole[..whole.len() / 2]).unwrap();
+        assert_eq!(tracker.push(&view(&pixels(1), 1), &cx).unwrap()[0].rows.len(), 1);
+        let half = crate::tools::named(&[&library]);
+        assert_eq!((half.plugins().len(), half.problems().len()), (0, 1), "half a library is none");
+        std::fs::remove_file(&library).unwrap();
+        assert_eq!(tracker.push(&view(&pixels(2), 2), &cx).unwrap()[0].rows.len(), 1);
+    }
+}
