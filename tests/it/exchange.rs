@@ -222,3 +222,23 @@ fn other_peoples_readers_read_what_is_written() {
         }
     }
 }
+
+#[test]
+fn nothing_is_written_over_a_project_or_a_clip() {
+    let bench = Bench::new();
+    bench.synth("clip.y4m", 4, "--leaves 20");
+    let _said = bench.text("new p.honami clip.y4m");
+    let _said = bench.text("track p.honami --with klt");
+    for (line, file, what) in [
+        ("export p.honami tracks p.honami --format csv", "p.honami", "a project"),
+        ("export p.honami tracks clip.y4m --format csv", "clip.y4m", "a clip"),
+        ("compare p.honami --with klt --quick --svg p.honami", "p.honami", "a project"),
+        ("compare clip.y4m --with klt --quick --svg clip.y4m", "clip.y4m", "a clip"),
+    ] {
+        let before = std::fs::read(bench.path(file)).unwrap();
+        let ran = bench.line(line);
+        let wanted = format!("is {what}, and honami does not write over it");
+        assert!(ran.code != Some(0) && ran.stderr.contains(&wanted), "{line}: {ran:?}");
+        assert_eq!(std::fs::read(bench.path(file)).unwrap(), before, "{line}");
+    }
+}

@@ -57,10 +57,40 @@ fn a_plugin_that_was_just_begun_works_in_every_language() {
 }
 
 #[test]
+fn a_program_is_allowed_with_its_files_and_other_parameters_want_another_manifest() {
+    let Some(bench) = with_example(|text| text) else { return };
+    fs::write(bench.path("points.csv"), "id,x,y\n1,60,60\n").unwrap();
+    let _said = bench.text("new p.honami clip.y4m");
+    let folder = bench.path("XDG_DATA_HOME").join("honami/plugins/template");
+    fs::create_dir_all(&folder).unwrap();
+    for file in ["template.py", "template.honami.json"] {
+        fs::copy(bench.path(file), folder.join(file)).unwrap();
+    }
+    let first = "track p.honami --with template --points points.csv";
+    assert!(bench.line("plugin list").stdout.contains("not trusted"));
+    let _said = bench.text("plugin allow template");
+    assert!(bench.text(first).contains("frames 0-11"));
+    let track = "track p.honami --with template";
+    let script = folder.join("template.py");
+    let text = fs::read_to_string(&script).unwrap();
+    fs::write(&script, text.replace("Int(6, 1, 30", "Int(9, 1, 30")).unwrap();
+    assert!(bench.line(track).stderr.contains("has changed since you allowed it"));
+    let _said = bench.text("plugin allow template");
+    let said = bench.line(track).stderr;
+    assert!(
+        said.contains("has other parameters than its manifest: `python3 template.py --honami-manifest`"),
+        "{said}"
+    );
+    let _said = bench.text("plugin deny template");
+    let named = bench.line(&format!("{track} --plugin {}", script.display())).stderr;
+    assert!(named.contains("it was denied"), "{named}");
+}
+
+#[test]
 fn what_python_raises_is_told_in_its_words() {
     for (push, wanted) in [
         ("raise honami.Error('too dark for me')", "too dark for me (unusable data)"),
-        ("return 1 / 0", "ZeroDivisionError: division by zero (a fault in the plugin)"),
+        ("return 1 / 0", "ZeroDivisionError: division by zero, template.py line 40 (a fault in the plugin)"),
         ("return honami.Points([1, 2], [0], [0], [1])", "columns of honami.points/1 have [1, 2] rows"),
         ("open('/etc/passwd')", "PermissionError: [Errno 13] Permission denied: '/etc/passwd'"),
         ("import os; os._exit(3)", "ended its process with status 3 in push of frame"),

@@ -16,8 +16,12 @@ impl AtomicFile {
     /// Starts the file `path`.
     ///
     /// # Errors
-    /// [`TableError::File`] when the folder cannot be written to.
+    /// [`TableError::File`] when the folder cannot be written to, [`TableError::Precious`] when a project, a clip or a
+    /// library stands there: nobody means to lose it.
     pub fn create(path: &Path) -> Result<Self, TableError> {
+        if let Some(what) = precious(path) {
+            return Err(TableError::Precious { path: path.into(), what });
+        }
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let mut builder = tempfile::Builder::new();
         #[cfg(unix)]
@@ -54,6 +58,29 @@ impl AtomicFile {
             .map_err(|source| TableError::File { path: path.clone(), source })?;
         Ok(())
     }
+}
+
+/// What a file is that no table may take the place of, by its first bytes.
+fn precious(path: &Path) -> Option<&'static str> {
+    const KNOWN: [(usize, &[u8], &str); 9] = [
+        (0, b"SQLite format 3", "a project"),
+        (0, b"YUV4MPEG2", "a clip"),
+        (4, b"ftyp", "a video"),
+        (0, &[0x1A, 0x45, 0xDF, 0xA3], "a video"),
+        (0, b"RIFF", "a video"),
+        (0, b"\x89PNG", "a picture"),
+        (0, &[0xFF, 0xD8, 0xFF], "a picture"),
+        (0, b"II*\0", "a picture"),
+        (0, b"\x7FELF", "a library"),
+    ];
+    let mut head = [0; 16];
+    // What cannot be read is told when it is written.
+    let n =
+        std::fs::File::open(path).and_then(|mut file| std::io::Read::read(&mut file, &mut head)).unwrap_or(0);
+    let is_it = |(at, magic, _): &&(usize, &[u8], &str)| {
+        head[..n].get(*at..).is_some_and(|rest| rest.starts_with(magic))
+    };
+    KNOWN.iter().find(is_it).map(|(.., what)| *what)
 }
 
 impl Write for AtomicFile {

@@ -20,6 +20,14 @@ pub enum TableError {
         /// What the system said.
         source: std::io::Error,
     },
+    /// Something stands there that must not be lost.
+    #[error("{path} is {what}, and honami does not write over it: choose another name", path = path.display())]
+    Precious {
+        /// The file.
+        path: PathBuf,
+        /// What it is.
+        what: &'static str,
+    },
     /// The text is not CSV: uneven rows, or not UTF-8.
     #[error("{path}: not a CSV table: {source}", path = path.display())]
     Csv {

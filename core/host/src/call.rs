@@ -2,6 +2,7 @@
 #![allow(unsafe_code, reason = "these functions are called from C")]
 
 use crate::context::{CallContext, Flow, Level};
+use crate::plain::plain;
 use crate::reply::{Reply, Schema};
 use honami_abi::{Call, Code, Column, code, dtype};
 use std::any::Any;
@@ -135,7 +136,7 @@ unsafe extern "C" fn progress(call: *const Call, fraction: f64, words: *const c_
     let Some(desk) = desk else { return 1 };
     let fraction = if fraction.is_nan() { -1.0 } else { fraction.min(1.0) };
     // With no call or a broken listener there is nobody to go on for.
-    let flow = desk.hear("progress", |cx| (cx.progress)(fraction, &words)).unwrap_or(Flow::Stop);
+    let flow = desk.hear("progress", |cx| (cx.progress)(fraction, &plain(&words))).unwrap_or(Flow::Stop);
     if flow == Flow::Stop {
         desk.open().reply.stopped = true;
     }
@@ -146,7 +147,7 @@ unsafe extern "C" fn log(call: *const Call, level: i32, line: *const c_char) {
     // SAFETY: see `progress`.
     let (desk, line) = unsafe { (desk(call), text(line)) };
     if let Some(desk) = desk {
-        desk.hear("log", |cx| (cx.log)(Level::of(level), &line));
+        desk.hear("log", |cx| (cx.log)(Level::of(level), &plain(&line)));
     }
 }
 
@@ -154,7 +155,7 @@ unsafe extern "C" fn fail(call: *const Call, code: Code, why: *const c_char) -> 
     // SAFETY: see `progress`.
     let (desk, why) = unsafe { (desk(call), text(why)) };
     if let Some(desk) = desk {
-        desk.open().reply.text = why.into_owned();
+        desk.open().reply.text = plain(&why);
     }
     code
 }

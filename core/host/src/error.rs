@@ -91,11 +91,14 @@ pub enum HostError {
     /// The plugin has failed too often lately.
     #[error(
         "{plugin} has failed three times within ten minutes and is not started again ({why}); a rebuilt one is, and this \
-         one after `honami plugin retry {plugin}`"
+         one after `honami plugin retry {}`",
+        library.display()
     )]
     Quarantined {
         /// Its id.
         plugin: String,
+        /// Its file.
+        library: PathBuf,
         /// What became of it last.
         why: String,
     },

@@ -7,7 +7,7 @@ use crate::error::HostError;
 use crate::instance::{Handle, Instance, Request};
 use crate::isolated::Limits;
 use crate::manifest::{Kind, ParamKind};
-use crate::quarantine::Quarantine;
+use crate::quarantine::{self, Quarantine};
 use crate::registry::{PluginInfo, Trust};
 use crate::reply::Reply;
 use crate::tracker::Tracker;
@@ -145,8 +145,8 @@ impl Host {
     ///
     /// # Errors
     /// [`HostError::Quarantined`] when that was one too many.
-    pub fn blame(&self, origin: &Origin, why: &str) -> Result<(), HostError> {
-        Quarantine::beside(&self.store).blame(&origin.plugin_id, &origin.plugin_sha256, why)
+    pub fn blame(&self, info: &PluginInfo, origin: &Origin, why: &str) -> Result<(), HostError> {
+        Quarantine::beside(&self.store).blame(info, &origin.plugin_sha256, why)
     }
 
     /// Lets a plugin start again that has failed too often; whether it was held.
@@ -230,7 +230,7 @@ impl Host {
                     script::keep(info, &self.store)?
                 };
                 if let Some(why) = Quarantine::beside(&self.store).why(&copy.sha256) {
-                    return Err(HostError::Quarantined { plugin: info.id.clone(), why });
+                    return Err(quarantine::held(info, why));
                 }
                 let read = files_of(info, values);
                 let (instance, sandbox) = isolated::create(info, &copy.path, read, self.limits, cx)?;

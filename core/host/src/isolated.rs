@@ -8,6 +8,7 @@ pub use process::Ended;
 use crate::context::{CallContext, Flow, Level};
 use crate::error::{Code, HostError};
 use crate::instance::{Instance, Request};
+use crate::plain::plain;
 use crate::plughost;
 use crate::registry::PluginInfo;
 use crate::reply::{Reply, Schema};
@@ -27,6 +28,8 @@ use std::time::{Duration, Instant};
 const TICK: Duration = Duration::from_millis(20);
 /// and after how many lines at the latest, however quickly they come.
 const LINES_A_LOOK: usize = 256;
+/// So many pieces of what it has printed are read after its end.
+const LAST_PRINTS: usize = 64;
 /// No answer of a process takes more: it may name any number of rows, and each costs memory here.
 const ANSWER_BYTES_MAX: usize = 1 << 30;
 
@@ -37,6 +40,8 @@ pub struct Limits {
     pub tell: Duration,
     /// After so long it is ended.
     pub end: Duration,
+    /// So long it may take to start: an interpreter may have much to import.
+    pub start: Duration,
     /// After so long it is ended when it was asked to stop.
     pub stop: Duration,
     /// It is given no more memory than this.
@@ -45,8 +50,8 @@ pub struct Limits {
 
 impl Default for Limits {
     fn default() -> Self {
-        let [tell, end, stop] = [2, 10, 3].map(Duration::from_secs);
-        Self { tell, end, stop, memory_bytes: None }
+        let [tell, end, start, stop] = [2, 10, 60, 3].map(Duration::from_secs);
+        Self { tell, end, start, stop, memory_bytes: None }
     }
 }
 
@@ -65,6 +70,8 @@ pub(crate) struct Isolated {
     last_words: String,
     /// How far it has shut itself in.
     sandbox: String,
+    /// Whether the user wants the call to stop that is going on.
+    is_asked_to_stop: bool,
 }
 
 /// Starts a process for a plugin of the library that the store keeps at `copy`.
@@ -93,9 +100,14 @@ pub(crate) fn create(
         at: String::new(),
         last_words: String::new(),
         sandbox: "none".to_owned(),
+        is_asked_to_stop: false,
     };
     let hello = Ask::Hello { honami: wire::VERSION, plugin: info.id.clone() };
-    match made.say(&hello).and_then(|()| made.listen(cx)).map_err(|error| failed("does not answer", error))? {
+    match made
+        .say(&hello)
+        .and_then(|()| made.listen(cx, limits.start))
+        .map_err(|error| failed("does not answer", error))?
+    {
         Heard::Answer(_) => {
             let sandbox = made.sandbox.clone();
             Ok((Box::new(made), sandbox))
@@ -129,13 +141,13 @@ fn refused(info: &PluginInfo, refusal: Refusal) -> HostError {
     let plugin = info.id.clone();
     match refusal {
         Refusal::Failed { code, text } => {
-            HostError::Failed { plugin, function: "create", code: Code(code), text }
+            HostError::Failed { plugin, function: "create", code: Code(code), text: plain(&text) }
         }
         Refusal::Misbehaved { function, what } => {
             let function = if function == "create" { "create" } else { "get_interface" };
-            HostError::Misbehaved { plugin, function, what }
+            HostError::Misbehaved { plugin, function, what: plain(&what) }
         }
-        Refusal::Unusable { why } => HostError::File { path: info.library.clone(), why },
+        Refusal::Unusable { why } => HostError::File { path: info.library.clone(), why: plain(&why) },
     }
 }
 
@@ -185,10 +197,10 @@ impl Isolated {
     ) {
         reply.clear();
         self.output.cancel().store(0, Relaxed);
-        let ended = self.say(ask).and_then(|()| self.listen(cx));
+        let ended = self.say(ask).and_then(|()| self.listen(cx, self.limits.end));
         match ended {
             Ok(Heard::Answer(answer)) => {
-                reply.stopped = answer.stopped;
+                reply.stopped = self.is_asked_to_stop;
                 self.take(answer, schemas, reply);
             }
             Ok(Heard::End(how)) => {
@@ -221,8 +233,9 @@ impl Isolated {
     }
 
     /// Hears what the process says until it answers or ends.
-    fn listen(&mut self, cx: &CallContext<'_>) -> io::Result<Heard> {
-        let mut watch = Watch::new(&self.output);
+    fn listen(&mut self, cx: &CallContext<'_>, at_most: Duration) -> io::Result<Heard> {
+        let mut watch = Watch::new(&self.output, at_most);
+        self.is_asked_to_stop = false;
         let mut has_ended = false;
         loop {
             let mut is_quiet = false;
@@ -237,16 +250,20 @@ impl Isolated {
                         return Ok(Heard::Answer(answer));
                     }
                     Ok(Tell::Refused(refusal)) => return Ok(Heard::Refusal(refusal)),
-                    Ok(Tell::Log { level, text }) => (cx.log)(Level::of(level), &text),
-                    Ok(Tell::At { text }) => self.at = text,
-                    Ok(Tell::ShutIn { level }) => self.sandbox = level,
+                    Ok(Tell::Log { level, text }) => (cx.log)(Level::of(level), &plain(&text)),
+                    Ok(Tell::At { text }) => self.at = plain(&text),
+                    Ok(Tell::ShutIn { level }) => self.sandbox = plain(&level),
                     Err(error) => {
                         return Err(io::Error::other(format!("said what nobody understands: {error}")));
                     }
                 }
             }
             if has_ended && is_quiet {
-                while self.overhear(cx) {}
+                for _ in 0..LAST_PRINTS {
+                    if !self.overhear(cx) {
+                        break;
+                    }
+                }
                 return self.process.end().map(Heard::End);
             }
             has_ended = self.process.wait(TICK)?;
@@ -279,9 +296,9 @@ impl Isolated {
         if (cx.progress)(fraction, &words) == Flow::Stop && watch.asked.is_none() {
             self.output.cancel().store(1, Relaxed);
             watch.asked = Some(Instant::now());
+            self.is_asked_to_stop = true;
         }
-        let is_late =
-            watch.asked.map_or(silent > self.limits.end, |asked| asked.elapsed() > self.limits.stop);
+        let is_late = watch.asked.map_or(silent > watch.at_most, |asked| asked.elapsed() > self.limits.stop);
         if !is_late || std::env::var_os("HONAMI_NO_WATCHDOG").is_some() || self.process.is_traced() {
             return None;
         }
@@ -299,8 +316,8 @@ impl Isolated {
     /// Copies committed tables into the reply.
     fn take(&mut self, answer: Answer, schemas: &'static [&'static Schema], reply: &mut Reply) {
         let Answer { code, text, faults, tables, .. } = answer;
-        (reply.code, reply.text) = (code, text);
-        reply.faults.extend(faults);
+        (reply.code, reply.text) = (code, plain(&text));
+        reply.faults.extend(faults.iter().map(|fault| plain(fault)));
 
         for (id, columns) in &tables {
             let schema = schemas.iter().find(|schema| schema.id.to_bytes() == id.as_bytes());
@@ -357,11 +374,19 @@ struct Watch {
     is_alive: bool,
     since: Instant,
     asked: Option<Instant>,
+    /// How long it may be silent.
+    at_most: Duration,
 }
 
 impl Watch {
-    fn new(output: &Output) -> Self {
-        Self { beat: output.heartbeat().load(Relaxed), is_alive: false, since: Instant::now(), asked: None }
+    fn new(output: &Output, at_most: Duration) -> Self {
+        Self {
+            beat: output.heartbeat().load(Relaxed),
+            is_alive: false,
+            since: Instant::now(),
+            asked: None,
+            at_most,
+        }
     }
 
     fn silence(&mut self, output: &Output) -> Duration {

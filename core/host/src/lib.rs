@@ -19,6 +19,7 @@ mod instance;
 mod isolated;
 mod manifest;
 mod note;
+mod plain;
 mod plughost;
 mod quarantine;
 mod registry;
@@ -43,6 +44,7 @@ pub use manifest::{Caps, Entry, Kind, Numeric, Param, ParamKind};
 pub use note::needed;
 pub use plughost::serve;
 pub use registry::{PluginInfo, Registry, SearchPath, Trust};
+pub use script::manifest_of as file_of;
 pub use tracker::Tracker;
 pub use trust::TrustBook;
 pub use types::{

@@ -2,6 +2,7 @@
 
 use crate::error::HostError;
 use crate::manifest::Manifest;
+use crate::script;
 use object::elf::{self, FileHeader64};
 use object::read::ReadRef;
 use object::read::elf::{Dyn, FileHeader, ProgramHeader, Sym};
@@ -80,11 +81,14 @@ fn exports<'d, R: ReadRef<'d>>(
     }
 }
 
-/// The libraries that a library needs, as the linker has noted them.
+/// The libraries that a library needs, as the linker has noted them; none of a program.
 ///
 /// # Errors
 /// When the file cannot be read or is no whole library.
 pub fn needed(path: &Path) -> Result<Vec<String>, HostError> {
+    if script::is_manifest(path) {
+        return Ok(Vec::new());
+    }
     let file_error = |why: String| HostError::File { path: path.to_owned(), why };
     let broken = |e: object::Error| file_error(format!("is no whole ELF file: {e}"));
     let file = File::open(path).map_err(|e| file_error(format!("cannot be read: {e}")))?;

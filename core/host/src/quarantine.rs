@@ -3,6 +3,7 @@
 //! Failures are counted by the hash of the library, so that a rebuilt one begins anew.
 
 use crate::error::HostError;
+use crate::registry::PluginInfo;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -12,6 +13,11 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 const FAILURES: usize = 3;
 /// within so long are too many.
 const WITHIN: Duration = Duration::from_secs(600);
+
+/// A plugin is not started, for this reason.
+pub(crate) fn held(info: &PluginInfo, why: String) -> HostError {
+    HostError::Quarantined { plugin: info.id.clone(), library: info.library.clone(), why }
+}
 
 /// The folder of what is known of failures.
 #[derive(Clone, Debug)]
@@ -30,13 +36,20 @@ impl Quarantine {
     ///
     /// # Errors
     /// [`HostError::Quarantined`] then. What cannot be written is not counted.
-    pub(crate) fn blame(&self, plugin: &str, sha256: &str, why: &str) -> Result<(), HostError> {
-        if self.count(sha256, SystemTime::now()).unwrap_or(0) < FAILURES {
+    pub(crate) fn blame(&self, info: &PluginInfo, sha256: &str, why: &str) -> Result<(), HostError> {
+        if !self.is_too_much(sha256, why) {
             return Ok(());
         }
-        // A disk that is full must not keep a plugin that fails on going.
-        fs::write(self.held(sha256), why).unwrap_or_default();
-        Err(HostError::Quarantined { plugin: plugin.to_owned(), why: why.to_owned() })
+        Err(held(info, why.to_owned()))
+    }
+
+    fn is_too_much(&self, sha256: &str, why: &str) -> bool {
+        let is_too_much = self.count(sha256, SystemTime::now()).unwrap_or(FAILURES) >= FAILURES;
+        if is_too_much {
+            // Where nothing can be written it is not held, but this run has ended.
+            fs::write(self.held(sha256), why).unwrap_or_default();
+        }
+        is_too_much
     }
 
     fn count(&self, sha256: &str, now: SystemTime) -> io::Result<usize> {

@@ -139,7 +139,9 @@ impl Registry {
     pub fn scan_path(path: &SearchPath) -> Self {
         let mut registry = Self::default();
         let denied = || Trust::No("it was denied; `honami plugin allow` allows it".into());
-        let of_named = |file: &Path| if path.book.is_denied(file) { denied() } else { Trust::Named };
+        let of_named = |file: &Path| {
+            if path.book.is_denied(&script::manifest_of(file)) { denied() } else { Trust::Named }
+        };
         for named in &path.named {
             if named.is_dir() {
                 registry.scan_folder(named, of_named);
@@ -204,11 +206,18 @@ impl Registry {
     }
 
     fn scan_folder(&mut self, folder: &Path, trust: impl Fn(&Path) -> Trust) {
-        let mut files: Vec<PathBuf> = fs::read_dir(folder)
+        let within = |folder: &Path| -> Vec<PathBuf> {
+            fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()).collect()
+        };
+        // A program may have a folder of its own there.
+        let own = |path: PathBuf| {
+            let files = if path.is_dir() { within(&path) } else { Vec::new() };
+            let files = files.into_iter().filter(|file| script::is_manifest(file)).collect::<Vec<_>>();
+            std::iter::once(path).chain(files)
+        };
+        let mut files: Vec<PathBuf> = within(folder)
             .into_iter()
-            .flatten()
-            .flatten()
-            .map(|entry| entry.path())
+            .flat_map(own)
             .filter(|path| {
                 path.extension().is_some_and(|extension| extension == "so") || script::is_manifest(path)
             })

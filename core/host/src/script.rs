@@ -19,8 +19,9 @@ pub(crate) fn is_manifest(path: &Path) -> bool {
     path.file_name().is_some_and(|name| name.to_string_lossy().ends_with(ENDING))
 }
 
-/// The manifest that belongs to a file that a user names: of `mine.py` it is `mine.honami.json`.
-pub(crate) fn manifest_of(file: &Path) -> PathBuf {
+/// The file that stands for a plugin of which a user names one: of `mine.py` it is its manifest, `mine.honami.json`.
+#[must_use]
+pub fn manifest_of(file: &Path) -> PathBuf {
     let is_script = file.extension().is_some_and(|extension| extension == "py");
     if is_script { file.with_extension(&ENDING[1..]) } else { file.to_owned() }
 }
@@ -37,6 +38,12 @@ pub(crate) fn read(path: &Path) -> Result<(Manifest, Vec<u8>), HostError> {
     let manifest = Manifest::parse(&json).map_err(file_error)?;
     if manifest.exec.is_empty() {
         return Err(file_error("its manifest does not say how it is started (exec)".into()));
+    }
+    let is_own = |word: &String| Path::new(word).components().count() == 1 && word != FOR_PYTHON.0;
+    if let Some(word) = manifest.exec.iter().skip(1).find(|word| !word.starts_with('-') && !is_own(word)) {
+        return Err(file_error(format!(
+            "is started with {word:?}: wanted a file beside it, by its name alone"
+        )));
     }
     Ok((manifest, json))
 }

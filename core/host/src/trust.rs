@@ -6,6 +6,7 @@
 
 use crate::error::HostError;
 use crate::registry::Trust;
+use crate::script;
 use crate::store::{self, Identity};
 use rustix::process::geteuid;
 use serde::{Deserialize, Serialize};
@@ -75,7 +76,7 @@ impl TrustBook {
             self.lab
                 .folders
                 .iter()
-                .any(|folder| library.starts_with(folder) && only_root_writes(library).is_ok())
+                .any(|folder| library.starts_with(folder) && all_parts(library, only_root_writes).is_ok())
         };
         if by_the_lab() {
             return Trust::Lab;
@@ -91,7 +92,7 @@ impl TrustBook {
                 library.display()
             ));
         };
-        if let Err(why) = only_owner_writes(library, geteuid().as_raw()) {
+        if let Err(why) = all_parts(library, only_user_writes) {
             return Trust::No(why);
         }
         let is_same = store::identity(library).is_ok_and(|now| now == identity)
@@ -117,7 +118,7 @@ impl TrustBook {
     /// not be kept.
     pub fn allow(&self, library: &Path) -> Result<String, HostError> {
         let refused = |why| HostError::NotTrusted { path: library.to_owned(), why };
-        only_owner_writes(library, geteuid().as_raw()).map_err(refused)?;
+        all_parts(library, only_user_writes).map_err(refused)?;
         let sha256 = store::sha256_of(library)?;
         self.keep(library, Some(sha256.clone()))?;
         Ok(sha256)
@@ -159,6 +160,18 @@ impl TrustBook {
         let name = store::hex(path.as_os_str().as_encoded_bytes());
         self.folder.as_ref().map(|folder| folder.join(format!("{name}.json")))
     }
+}
+
+/// Holds a library, or a manifest and the files of its program, against a rule.
+fn all_parts(library: &Path, rule: fn(&Path) -> Result<(), String>) -> Result<(), String> {
+    if !script::is_manifest(library) {
+        return rule(library);
+    }
+    script::parts(library).iter().try_for_each(|part| rule(part))
+}
+
+fn only_user_writes(path: &Path) -> Result<(), String> {
+    only_owner_writes(path, geteuid().as_raw())
 }
 
 fn only_root_writes(path: &Path) -> Result<(), String> {

@@ -153,13 +153,23 @@ def run(library=None, version="0", license=""):
     _host.serve()
 
 
+def _manifest_file(script):
+    return os.path.splitext(os.path.abspath(script))[0] + ".honami.json"
+
+
+def _kept_manifest():
+    """What honami knows of the plugins: it runs a copy of the program with its manifest beside it."""
+    with open(_manifest_file(sys.argv[0])) as file:
+        return json.load(file)["plugins"]
+
+
 def _write_manifest(library, version, license):
     script = os.path.abspath(sys.argv[0])
     plugins = [cls._manifest for cls in _plugins.values()]
     about = {"id": library or plugins[0]["id"], "version": version, "license": license}
     manifest = {"honami": 1, "abi": [1, 1], "library": about, "plugins": plugins,
                 "exec": ["python3", os.path.basename(script)]}
-    path = os.path.splitext(script)[0] + ".honami.json"
+    path = _manifest_file(script)
     with open(path, "w") as file:
         json.dump(manifest, file, indent=1)
     print(path)
@@ -173,6 +183,7 @@ class _Host:
         self.socket = socket.socket(fileno=os.dup(0))
         os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
         sys.stdout.reconfigure(line_buffering=True)
+        self.turn = threading.Lock()
         threading.Thread(target=self.end_with_host, daemon=True).start()
         line, memories, _, _ = socket.recv_fds(self.socket, _PAGE, 2)
         self.hello = json.loads(line)
@@ -187,7 +198,8 @@ class _Host:
         os._exit(0)
 
     def say(self, message):
-        self.socket.sendall(json.dumps(message).encode() + b"\n")
+        with self.turn:
+            self.socket.sendall(json.dumps(message).encode() + b"\n")
 
     def progress(self, fraction, text):
         beat = struct.unpack_from("<Q", self.output, 8)[0] + 1
@@ -203,9 +215,18 @@ class _Host:
         if plugin is None:
             why = f"has no plugin {self.hello['plugin']!r}: write its manifest anew"
             return self.say({"m": "refused", "kind": "unusable", "why": why})
-        self.say({"m": "done"})
-        self.instance, self.gone = plugin(), set()
+        if plugin._manifest not in _kept_manifest():
+            script = os.path.basename(sys.argv[0])
+            why = f"has other parameters than its manifest: `python3 {script} --honami-manifest` writes it anew"
+            return self.say({"m": "refused", "kind": "unusable", "why": why})
+        try:
+            self.instance, self.gone = plugin(), set()
+        except Exception as error:
+            traceback.print_exc()
+            text = "".join(traceback.format_exception_only(error)).strip()
+            return self.say({"m": "refused", "kind": "failed", "code": _INTERNAL, "text": text})
         self.instance.params = plugin.Params({})
+        self.say({"m": "done"})
         for line in self.socket.makefile("rb"):
             ask = json.loads(line)
             self.say({"m": "done", **self.answer(ask)})
@@ -219,7 +240,10 @@ class _Host:
             return {"code": _DATA, "text": str(error)}
         except Exception as error:
             traceback.print_exc()
-            return {"code": _INTERNAL, "text": "".join(traceback.format_exception_only(error)).strip()}
+            what = "".join(traceback.format_exception_only(error)).strip()
+            of_plugin = [at for at in traceback.extract_tb(error.__traceback__) if at.filename != __file__]
+            where = f", {os.path.basename(of_plugin[-1].filename)} line {of_plugin[-1].lineno}" if of_plugin else ""
+            return {"code": _INTERNAL, "text": what + where}
 
     def on_set_params(self, ask):
         self.instance.params = type(self.instance).Params(ask["values"])

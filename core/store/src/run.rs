@@ -182,6 +182,7 @@ impl RunWriter {
     pub fn discard(mut self) -> Result<(), StoreError> {
         let tx = self.conn.transaction_with_behavior(TransactionBehavior::Immediate)?;
         tx.execute("DELETE FROM chunk WHERE run = ?1", [self.run.0])?;
+        tx.execute("DELETE FROM seam WHERE run = ?1", [self.run.0])?;
         tx.execute("DELETE FROM run WHERE id = ?1", [self.run.0])?;
         Ok(tx.commit()?)
     }

@@ -1,6 +1,6 @@
 //! Driving a tracker over the frames of a clip: seeds where they are due, detection where it is asked for.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
@@ -74,7 +74,19 @@ pub type Rows = Vec<(TrackId, Sample)>;
 pub type Sink<'a> = &'a mut dyn FnMut(u32, &Rows) -> Result<(), WorkbenchError>;
 
 /// Gives another tracker like the one that has died, unless it has died too often.
-pub type Restart<'a> = &'a mut dyn FnMut(&Seam) -> Result<Tracker, WorkbenchError>;
+pub type Restart<'a> = &'a mut dyn FnMut(&Seam, Death) -> Result<Tracker, WorkbenchError>;
+
+/// So often a tracker may die in one frame, whatever is known of it otherwise.
+const MAX_DEATHS: u32 = 3;
+
+/// Whether a tracker has died in this frame before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Death {
+    /// It has not: the frame is tried again.
+    First,
+    /// It has: the frame is left out.
+    Again,
+}
 
 /// How far it came.
 #[derive(Clone, Debug, PartialEq)]
@@ -108,7 +120,8 @@ pub fn check_seeds(seeds: &[Seed], clip: &Clip) -> Result<(), WorkbenchError> {
 /// Follows the plan and hands every frame's rows to `sink`.
 ///
 /// When the tracker's process dies another one goes on from where the features were seen last; a frame in which that
-/// dies, too, is left out, and all are lost there. Where a person stops it, or the tracker fails, the frames before are with the sink already.
+/// dies, too, is left out, and all are lost there. Where a person stops it, or the tracker fails, the frames before are
+/// with the sink already.
 ///
 /// # Errors
 /// What the clip, the tracker or the sink met.
@@ -136,16 +149,23 @@ pub fn drive(
             break;
         }
         stopped = ear.call(done, total, |call| ride.step(frame, numbers, call));
-        let mut n_deaths = 0;
+        let (mut death, mut n_deaths) = (Death::First, 0);
         while let (Err(WorkbenchError::Plugin(HostError::Ended { how, .. })), Some(restart)) =
             (&stopped, restart.as_mut())
         {
-            n_deaths += 1;
             let seam = Seam { frame: ride.board.end, why: how.to_string() };
-            stopped = restart(&seam).and_then(|tracker| {
+            stopped = restart(&seam, death).and_then(|tracker| {
                 *ride.tracker = tracker;
-                ear.call(done, total, |call| ride.resume(frame, n_deaths > 1, numbers, call))
+                ear.call(done, total, |call| ride.resume(frame, death, numbers, call))
             });
+            death = Death::Again;
+            n_deaths += 1;
+            if n_deaths == MAX_DEATHS {
+                break;
+            }
+            if progress.report(done, total, "frame") == Flow::Stop {
+                stopped = Err(WorkbenchError::Stopped);
+            }
         }
         ride.board.flush(sink)?;
     }
@@ -234,26 +254,32 @@ impl Ride<'_> {
     fn resume(
         &mut self,
         fatal: u32,
-        is_fatal_again: bool,
+        death: Death,
         numbers: Numbers<'_>,
         call: &CallContext<'_>,
     ) -> Result<(), WorkbenchError> {
-        let first = self.board.back();
+        let (first, seen_in) = self.board.back();
         // Its own points of before are features like any other now.
         self.born.clear();
         self.begin(call)?;
-        if first > self.plan.frames.start {
-            let picture = self.media.frame(first - 1)?;
+        if let Some(seen_in) = seen_in {
+            let picture = self.media.frame(seen_in)?;
             let seen: Vec<Point> = self.board.seen().collect();
             self.tracker.seed(&seen, call)?;
             // Where they are there is known already.
-            self.tracker.push(&view(self.media, &picture, first - 1), call)?;
+            self.tracker.push(&view(self.media, &picture, seen_in), call)?;
         }
         for frame in first..fatal {
             self.step(frame, numbers, call)?;
         }
-        if is_fatal_again && fatal > self.plan.frames.start {
+        if death == Death::Again && fatal > self.plan.frames.start {
             self.board.lose(fatal);
+            // What begins there begins all the same, a frame early for the tracker.
+            let new: Vec<Point> = due(&self.plan.seeds, fatal).collect();
+            if !new.is_empty() {
+                self.tracker.seed(&new, call)?;
+                self.board.place(fatal, &new);
+            }
             return Ok(());
         }
         self.step(fatal, numbers, call)
@@ -350,8 +376,11 @@ struct Board {
     placed: BTreeMap<u32, Vec<Point>>,
     /// Where the live points were seen last.
     last: BTreeMap<u32, Point>,
-    /// Where they were seen in the last frame that was handed over.
+    /// Where they were seen in the last frame that was handed over and not lost, and which that was.
     handed: Vec<Point>,
+    handed_frame: Option<u32>,
+    /// Frames that nobody could look at.
+    lost: BTreeSet<u32>,
 }
 
 impl Board {
@@ -362,6 +391,8 @@ impl Board {
             placed: BTreeMap::new(),
             last: BTreeMap::new(),
             handed: Vec::new(),
+            handed_frame: None,
+            lost: BTreeSet::new(),
         }
     }
 
@@ -387,16 +418,17 @@ impl Board {
         }
     }
 
-    /// Forgets the answers that were not handed over; the first frame without rows.
-    fn back(&mut self) -> u32 {
+    /// Forgets the answers that were not handed over; the first frame without rows, and that in which all were seen last.
+    fn back(&mut self) -> (u32, Option<u32>) {
         self.answered.clear();
         self.last = self.handed.iter().map(|point| (point.id, *point)).collect();
-        self.end
+        (self.end, self.handed_frame)
     }
 
     /// All are lost in a frame that nobody could look at.
     fn lose(&mut self, frame: u32) {
         let (status, source, quality) = (Status::Lost, Source::Tracked, Quality::default());
+        self.lost.insert(frame);
         let rows =
             self.last.values().map(|p| (TrackId(p.id), Sample { x: p.x, y: p.y, status, source, quality }));
         self.answered.insert(frame, rows.collect());
@@ -423,9 +455,12 @@ impl Board {
                 rows.push((TrackId(point.id), Sample { x: point.x, y: point.y, status, source, quality }));
             }
             sink(frame, &rows)?;
-            let seen = rows.iter().filter(|(_, sample)| sample.status.is_seen());
-            self.handed =
-                seen.map(|(track, sample)| Point { id: track.0, x: sample.x, y: sample.y }).collect();
+            if !self.lost.contains(&frame) {
+                let seen = rows.iter().filter(|(_, sample)| sample.status.is_seen());
+                self.handed =
+                    seen.map(|(track, sample)| Point { id: track.0, x: sample.x, y: sample.y }).collect();
+                self.handed_frame = Some(frame);
+            }
             self.end = frame + 1;
         }
         Ok(())

@@ -14,7 +14,7 @@ use honami_model::edit::Transaction;
 use honami_model::track::{TrackId, TrackSet};
 use honami_store::{Project, RunHead, RunWriter, Seam};
 
-use crate::drive::{self, Detect, Driven, Plan, Rows, Seed};
+use crate::drive::{self, Death, Detect, Driven, Plan, Rows, Seed};
 use crate::error::WorkbenchError;
 use crate::progress::Progress;
 use crate::session::Session;
@@ -240,9 +240,12 @@ impl Kept {
         progress: &dyn Progress,
     ) -> Result<Driven, WorkbenchError> {
         let kept = std::cell::RefCell::new(self);
-        let mut again = |seam: &Seam| {
-            maker.host.blame(&maker.origin, &seam.why)?;
-            kept.borrow_mut().writer.seam(seam)?;
+        let mut again = |seam: &Seam, death: Death| {
+            // What dies twice of the same frame has failed once.
+            if death == Death::First {
+                maker.host.blame(&maker.plugin, &maker.origin, &seam.why)?;
+                kept.borrow_mut().writer.seam(seam)?;
+            }
             // A file that was rebuilt meanwhile is another one, and begins anew.
             let (tracker, origin) = make(&maker.host, &maker.plugin, &maker.params)?;
             maker.origin = origin;

@@ -61,15 +61,18 @@ pub(super) fn plugin(command: &Plugin, common: &Common) -> anyhow::Result<Answer
         Plugin::List => Ok(list(&registry)),
         Plugin::Info { name } => info(named(&registry, name)?),
         Plugin::New { name, lang } => begun(name, *lang),
-        Plugin::Allow { plugin } => allow(&file(&registry, plugin)),
+        Plugin::Allow { plugin } => allow(&file(&registry, plugin)?),
         Plugin::Deny { plugin } => {
-            let library = file(&registry, plugin);
+            let library = file(&registry, plugin)?;
             TrustBook::of_user().deny(&library)?;
             let text = format!("{} is never loaded, until you allow it", library.display());
             Ok(Answer { json: json!({ "denied": library }), text, done: true })
         }
         Plugin::Retry { name } => {
-            let plugin = named(&registry, name)?;
+            let library = file(&registry, name)?;
+            let again = SearchPath { named: vec![library], ..SearchPath::default() };
+            let again = Registry::scan_path(&again);
+            let plugin = again.plugins().first().with_context(|| format!("{name} is no plugin"))?;
             let was_held = Host::new().retry(plugin)?;
             let words = if was_held { "may start again" } else { "was not held: nothing to do" };
             let json = json!({ "plugin": plugin.id, "was_held": was_held });
@@ -104,18 +107,20 @@ fn begun(name: &str, lang: Lang) -> anyhow::Result<Answer> {
         fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))?;
     }
     let files: Vec<&str> = files.iter().map(|(file, _)| file.as_str()).collect();
-    let text = format!("{name}: {}. It works already; change it, and\n  {next}", files.join(", "));
+    let text = format!(
+        "{name}: {}, a tracker that works; change it. Before it is there, and when its parameters change:\n  {next}",
+        files.join(", ")
+    );
     Ok(Answer { json: json!({ "folder": name, "files": files }), text, done: true })
 }
 
 /// The file of a plugin: a path, or a name of one that there is.
-fn file(registry: &Registry, plugin: &str) -> PathBuf {
+fn file(registry: &Registry, plugin: &str) -> anyhow::Result<PathBuf> {
     let path = Path::new(plugin);
     if path.is_file() {
-        path.to_owned()
-    } else {
-        named(registry, plugin).map_or(path.to_owned(), |p| p.library.clone())
+        return Ok(honami_workbench::plugins::file_of(path));
     }
+    Ok(named(registry, plugin)?.library.clone())
 }
 
 /// Allows a library, and says what was allowed.
@@ -148,11 +153,11 @@ fn named<'r>(registry: &'r Registry, name: &str) -> anyhow::Result<&'r PluginInf
     let is_it = |plugin: &&PluginInfo| plugin.id == name || plugin.short_name == name;
     let known =
         || registry.plugins().iter().map(|plugin| plugin.short_name.as_str()).collect::<Vec<_>>().join(", ");
-    registry
-        .plugins()
-        .iter()
-        .find(is_it)
-        .with_context(|| format!("there is no plugin {name:?}; there are: {}", known()))
+    registry.plugins().iter().find(is_it).with_context(|| {
+        // What was named and could not be read is why it is not there.
+        let problems: String = registry.problems().iter().map(|problem| format!("; {problem}")).collect();
+        format!("there is no plugin {name:?}; there are: {}{problems}", known())
+    })
 }
 
 /// The plugins there are, as text.

@@ -1,6 +1,6 @@
 //! `log`: everything that was done to a project, with its provenance.
 
-use honami_workbench::store::{LogItem, LogLine};
+use honami_workbench::store::{LogItem, LogLine, Seam};
 use serde_json::json;
 
 use super::args::Project;
@@ -23,8 +23,10 @@ fn line(line: &LogLine) -> String {
         LogItem::Run(run) => {
             let (made, found) = (&run.head.provenance, &run.found);
             let state = &run.state;
+            let seam = |seam: &Seam| format!(", started again at {} (it {})", seam.frame, seam.why);
+            let seams: String = run.seams.iter().map(seam).collect();
             format!(
-                "{date}  run {}  {}: {} frames {}..{}, {state}  {made}",
+                "{date}  run {}  {}: {} frames {}..{}, {state}{seams}  {made}",
                 run.id, made.what, run.tracks, found.start, found.end
             )
         }
@@ -48,6 +50,7 @@ fn entry(line: &LogLine) -> serde_json::Value {
             "state": run.state.to_string(),
             "tracks": run.tracks.len(),
             "frames": [run.found.start, run.found.end],
+            "started_again": run.seams.iter().map(|seam| json!({ "frame": seam.frame, "why": seam.why })).collect::<Vec<_>>(),
             "provenance": run.head.provenance,
         }),
         LogItem::Clustering(info) => json!({

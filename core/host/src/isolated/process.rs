@@ -1,5 +1,6 @@
 //! A plugin's own process: how it begins, what it says, and that it ends.
 
+use crate::plain::plain;
 use crate::wire::memory::{Outbox, Output};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fs::{OFlags, fcntl_setfl};
@@ -90,6 +91,10 @@ pub(crate) struct Process {
     prints: OwnedFd,
     /// What has been printed of the line that is not whole.
     printed: Vec<u8>,
+    /// Whether it may print more.
+    can_print: bool,
+    /// Whether it has been waited for.
+    is_over: bool,
 }
 
 impl Process {
@@ -114,7 +119,18 @@ impl Process {
         let group = Pid::from_child(&child);
         let pidfd = pidfd_open(group, PidfdFlags::empty())?;
         let (heard, printed) = (Vec::new(), Vec::new());
-        Ok(Self { child, group, pidfd, socket: UnixStream::from(ours), heard, searched: 0, prints, printed })
+        Ok(Self {
+            child,
+            group,
+            pidfd,
+            socket: UnixStream::from(ours),
+            heard,
+            searched: 0,
+            prints,
+            printed,
+            can_print: true,
+            is_over: false,
+        })
     }
 
     /// Says the first line, and hands over the memories.
@@ -151,7 +167,9 @@ impl Process {
     pub(crate) fn wait(&mut self, at_most: Duration) -> io::Result<bool> {
         let timeout =
             Timespec { tv_sec: at_most.as_secs() as i64, tv_nsec: i64::from(at_most.subsec_nanos()) };
-        let mut wanted = [&self.socket as &dyn AsFd, &self.prints, &self.pidfd]
+        // A pipe that is closed would wake the host for ever.
+        let prints: &dyn AsFd = if self.can_print { &self.prints } else { &self.pidfd };
+        let mut wanted = [&self.socket as &dyn AsFd, prints, &self.pidfd]
             .map(|file| PollFd::from_borrowed_fd(file.as_fd(), PollFlags::IN));
         match poll(&mut wanted, Some(&timeout)) {
             Ok(_) => Ok(!wanted[2].revents().is_empty()),
@@ -162,7 +180,11 @@ impl Process {
 
     /// How it has ended.
     pub(crate) fn end(&mut self) -> io::Result<Ended> {
-        self.child.wait().map(Ended::of)
+        // What it has started ends with it; the number of the group is its own until it is waited for.
+        self.signal(Signal::KILL);
+        let ended = self.child.wait().map(Ended::of)?;
+        self.is_over = true;
+        Ok(ended)
     }
 
     /// The next whole line that it has said, if there is one; it never waits.
@@ -196,16 +218,17 @@ impl Process {
     pub(crate) fn prints(&mut self) -> Vec<String> {
         let mut piece = [0; PRINT_BYTES];
         if let Ok(n) = read(&self.prints, &mut piece) {
+            self.can_print = n > 0;
             self.printed.extend_from_slice(&piece[..n]);
         }
         let mut lines = Vec::new();
         while let Some(end) = self.printed.iter().position(|byte| *byte == b'\n') {
             let line: Vec<u8> = self.printed.drain(..=end).collect();
-            lines.push(plain(&line[..end]));
+            lines.push(plain(&String::from_utf8_lossy(&line[..end])));
         }
         // A line without end is cut.
         if self.printed.len() >= PRINT_BYTES {
-            lines.push(plain(&std::mem::take(&mut self.printed)));
+            lines.push(plain(&String::from_utf8_lossy(&std::mem::take(&mut self.printed))));
         }
         lines
     }
@@ -227,45 +250,15 @@ impl Process {
 
     /// Kills it, and waits for its end.
     pub(crate) fn kill(&mut self) -> Ended {
-        self.signal(Signal::KILL);
-        self.child.wait().map_or(Ended::Signal(Signal::KILL.as_raw()), Ended::of)
+        self.end().unwrap_or(Ended::Signal(Signal::KILL.as_raw()))
     }
 }
 
 impl Drop for Process {
     fn drop(&mut self) {
-        self.kill();
-    }
-}
-
-/// Text without control characters: escape sequences go with their letters and numbers.
-fn plain(bytes: &[u8]) -> String {
-    let text = String::from_utf8_lossy(bytes);
-    let mut plain = String::with_capacity(text.len());
-    let mut letters = text.chars().peekable();
-    while let Some(letter) = letters.next() {
-        match letter {
-            '\u{1b}' => skip_escape(&mut letters),
-            '\t' => plain.push(' '),
-            letter if letter.is_control() => {}
-            letter => plain.push(letter),
+        if !self.is_over {
+            self.kill();
         }
-    }
-    plain
-}
-
-/// Skips what follows an ESC: `[` up to its final letter, `]` and its like up to their terminator, else one letter.
-fn skip_escape(letters: &mut std::iter::Peekable<std::str::Chars<'_>>) {
-    match letters.next() {
-        Some('[') => drop(letters.find(|letter| ('@'..='~').contains(letter))),
-        Some(']' | 'P' | '_' | '^' | 'X') => {
-            while let Some(letter) = letters.next() {
-                if letter == '\u{7}' || (letter == '\u{1b}' && letters.next_if_eq(&'\\').is_some()) {
-                    break;
-                }
-            }
-        }
-        _ => {}
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::wire::Tell;
 use rustix::event::{PollFd, PollFlags, poll};
 use rustix::net::{RecvAncillaryBuffer, RecvAncillaryMessage, RecvFlags, recvmsg};
-use rustix::process::{Signal, getpid, kill_process};
+use rustix::process::{Signal, kill_current_process_group};
 use rustix::stdio::{dup2_stdin, stdin};
 use std::fs::File;
 use std::io::{self, BufRead as _, BufReader, IoSliceMut, Write as _};
@@ -48,7 +48,7 @@ impl Ear {
         let wait = move || {
             let mut gone = [PollFd::new(&socket, PollFlags::RDHUP)];
             while poll(&mut gone, None).is_err() || gone[0].revents().is_empty() {}
-            kill_process(getpid(), Signal::KILL).unwrap_or_default();
+            kill_current_process_group(Signal::KILL).unwrap_or_default();
         };
         std::thread::Builder::new().name("host".into()).spawn(wait).map(drop)
     }

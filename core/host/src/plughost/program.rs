@@ -17,10 +17,13 @@ pub(super) fn become_it(
     args: &[OsString],
     mut read: Vec<PathBuf>,
 ) -> io::Error {
+    let is_bare = Path::new(program).components().count() == 1;
     let Some(mut program) = find(program) else {
         return io::Error::other(format!("there is no program {}", program.display()));
     };
-    if program.file_name().is_some_and(|name| name.to_string_lossy().starts_with("python"))
+    // Only the interpreter of the user's own search path may say where it imports from: it does so unfettered.
+    if is_bare
+        && program.file_name().is_some_and(|name| name.to_string_lossy().starts_with("python"))
         && let Some((real, folders)) = python(&program)
     {
         program = real;
@@ -29,7 +32,9 @@ pub(super) fn become_it(
     // A program's libraries lie beside its folder: /opt/it/bin/it, /opt/it/lib.
     let places = [program.canonicalize().ok(), Some(program.clone())];
     read.extend(places.iter().flatten().filter_map(|path| path.parent()?.parent().map(Path::to_owned)));
-    read.retain(|path| path.parent().is_some());
+    // Never all of what is the user's own.
+    let home = std::env::var_os("HOME").map(PathBuf::from).unwrap_or_default();
+    read.retain(|path| path.parent().is_some() && !home.starts_with(path));
     let level = sandbox::enter(folder, &read, Programs::Allowed);
     if let Err(error) = shut_in(level) {
         return error;

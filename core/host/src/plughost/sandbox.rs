@@ -35,10 +35,11 @@ const SYSTEM: [&str; 14] = [
 ];
 
 /// Calls that a plugin has no business with.
-const REFUSED: [libc::c_long; 19] = [
+const REFUSED: [libc::c_long; 20] = [
     // What it starts is to end with it.
     libc::SYS_setsid,
     libc::SYS_setpgid,
+    libc::SYS_pidfd_getfd,
     libc::SYS_execve,
     libc::SYS_execveat,
     libc::SYS_ptrace,
@@ -89,6 +90,8 @@ pub(super) fn limit(memory_bytes: Option<u64>) {
     let no_more = |bytes| Rlimit { current: Some(bytes), maximum: Some(bytes) };
     // What the system does not let it give up it keeps.
     setrlimit(Resource::Core, no_more(0)).unwrap_or_default();
+    // Also the memory that it shares with the host.
+    setrlimit(Resource::Fsize, no_more(2 << 30)).unwrap_or_default();
     if let Some(bytes) = memory_bytes {
         setrlimit(Resource::Data, no_more(bytes)).unwrap_or_default();
     }

@@ -40,13 +40,13 @@ static void *cut(const void *whole, size_t n) {
 }
 
 #ifdef CONSTRUCTOR
-static int written = -1, socketed = -1;
+static int written = -1;
 __attribute__((constructor)) static void before_main(void) {
   char *const nothing[] = {NULL};
   if (FAULT == CTOR_WRITES) written = open(CONSTRUCTOR, O_CREAT | O_WRONLY, 0600);
   if (FAULT == CTOR_EXECS) execve("/bin/true", nothing, nothing);
   if (FAULT == CTOR_DIES) abort();
-  (void)written, (void)socketed;
+  (void)written;
 }
 #endif
 
@@ -96,13 +96,14 @@ static honami_code begin(honami_instance *instance, const honami_call *call, con
 
 static honami_code seed(honami_instance *instance, const honami_call *call, const honami_table *points) {
   (void)instance;
-  n_points = points->rows < 64 ? points->rows : 64;
+  uint64_t n = n_points + points->rows < 64 ? points->rows : 64 - n_points;
   for (uint32_t c = 0; c < points->ncols; c++) {
     const honami_column *col = &points->cols[c];
-    if (strcmp(col->name, "id") == 0) memcpy(ids, col->data, n_points * 4);
-    if (strcmp(col->name, "x") == 0) memcpy(xs, col->data, n_points * 4);
-    if (strcmp(col->name, "y") == 0) memcpy(ys, col->data, n_points * 4);
+    if (strcmp(col->name, "id") == 0) memcpy(ids + n_points, col->data, n * 4);
+    if (strcmp(col->name, "x") == 0) memcpy(xs + n_points, col->data, n * 4);
+    if (strcmp(col->name, "y") == 0) memcpy(ys + n_points, col->data, n * 4);
   }
+  n_points += n;
   if (FAULT == SEED_RESULT) {
     honami_column col = {"id", HONAMI_U32, 1, NULL, 0};
     call->reserve(call, HONAMI_POINTS, 1, 1, &col);

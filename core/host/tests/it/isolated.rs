@@ -50,8 +50,8 @@ fn in_frame_2(fault: &str, host: &Host) -> (Result<Vec<Points>, HostError>, Stri
 }
 
 fn hasty() -> Host {
-    let [tell, end, stop] = [20, 200, 100].map(Duration::from_millis);
-    isolating().limits(Limits { tell, end, stop, memory_bytes: Some(1 << 29) })
+    let [tell, end, start, stop] = [20, 200, 60_000, 100].map(Duration::from_millis);
+    isolating().limits(Limits { tell, end, start, stop, memory_bytes: Some(1 << 29) })
 }
 
 #[test]
