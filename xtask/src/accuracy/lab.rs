@@ -149,6 +149,13 @@ impl Lab {
         read(&self.kept(case, tracker, case.n_points(pace)?))
     }
 
+    /// Whether a row is wanted that is not kept.
+    pub(super) fn lacks(&self, case: &Case, tracker: &Tracker) -> bool {
+        let pace = read(&self.probe(tracker)).map_or(Pace::Quick, |kept| pace_of(&kept));
+        let is_for_it = matches!(tracker, Tracker::Plugin { .. }) || case.is_generated;
+        is_for_it && case.n_points(pace).is_some() && self.kept_row(case, tracker).is_none()
+    }
+
     fn kept(&self, case: &Case, tracker: &Tracker, n_points: usize) -> PathBuf {
         let name = format!("{}-{}-{n_points}.json", case.name, tracker.key());
         self.folder.join("rows").join(name)

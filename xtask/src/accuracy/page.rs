@@ -43,6 +43,13 @@ pub(super) fn write(lab: &Lab, cases: &[Case], trackers: &[Tracker], left_out: &
     if !left_out.is_empty() {
         page.put(format_args!("\nNot measured with its defaults: {}.", left_out.join("; ")));
     }
+    for tracker in trackers {
+        let is_missing = |case: &&Case| lab.lacks(case, tracker);
+        let missing: Vec<&str> = cases.iter().filter(is_missing).map(|case| case.name.as_str()).collect();
+        if !missing.is_empty() {
+            page.put(format_args!("\nNot measured yet, {}: {}.", tracker.name(), missing.join(", ")));
+        }
+    }
     if lab.data.is_none() {
         page.text +=
             "\nThe rows of real data need `HONAMI_DATA`, the folder of the data, which was not set.\n";
