@@ -19,6 +19,9 @@ pub const BAD_PX: f64 = 8.0;
 /// are almost surely wrong: it is looked at after them.
 pub const LOST: f32 = 0.85;
 
+/// Suspicion, at least, of a sample of a stepwise tracker that an anchored one sees farther away than [`BAD_PX`].
+pub const CONTRADICTED: f64 = 0.5;
+
 /// Number of parts.
 pub const N_PARTS: usize = 7;
 
@@ -75,7 +78,11 @@ pub fn weights(kind: Kind) -> &'static Weights {
 /// Probability that a sample with this evidence is bad, 0..=1.
 #[must_use]
 pub fn probability(parts: &Parts) -> f64 {
-    weights(parts.kind).probability(parts)
+    let fitted = weights(parts.kind).probability(parts);
+    // Where all else looks right, as on a smooth clip, the sum of the parts would outvote a contradiction: two places
+    // farther apart than a bad sample is off cannot both be right, and the anchored tracker is the one that seldom errs.
+    let is_far = parts.anchored_px.is_some_and(|px| f64::from(px) > BAD_PX);
+    if parts.kind == Kind::Stepwise && is_far { fitted.max(CONTRADICTED) } else { fitted }
 }
 
 impl Weights {

@@ -64,6 +64,27 @@ fn a_stepwise_tracker_that_an_anchored_one_contradicts_is_doubtful() {
 }
 
 #[test]
+fn a_contradiction_is_not_outvoted_by_all_that_looks_right() {
+    // As on malva, where KLT sits on another vein: every measure of the step is perfect.
+    let smooth = Parts {
+        kind: Kind::Stepwise,
+        fb_px: Some(0.01),
+        ncc: Some(0.99),
+        jump: Some(0.1),
+        nbr_px: Some(0.2),
+        dis_px: Some(12.2),
+        ..Parts::default()
+    };
+    for (anchored_px, wanted) in [(None, 0.0), (Some(1.0), 0.0), (Some(7.9), 0.0), (Some(12.2), CONTRADICTED)]
+    {
+        let came = probability(&Parts { anchored_px, ..smooth });
+        assert!((came - wanted).abs() < 0.02, "{anchored_px:?}: {came}");
+    }
+    let anchored = Parts { kind: Kind::Anchored, anchored_px: Some(12.2), ..smooth };
+    assert!(probability(&anchored) < 0.1, "the other way round it says little");
+}
+
+#[test]
 fn a_persons_word_is_not_doubted_and_a_loss_is() {
     let sample = |status, source| Sample { x: 0.0, y: 0.0, status, source, quality: Quality::default() };
     let of = |status, source| of_sample(&sample(status, source), &Parts::default());
