@@ -58,11 +58,9 @@ impl Host {
     /// `in-process` or `isolated`.
     #[must_use]
     pub fn new() -> Self {
-        let hosting = std::env::var_os("HONAMI_HOSTING").and_then(|word| match word.to_str()? {
-            "in-process" => Some(Hosting::InProcess),
-            "isolated" => Some(Hosting::Isolated),
-            _ => None,
-        });
+        // What is misspelt is safe.
+        let hosting = std::env::var_os("HONAMI_HOSTING")
+            .map(|word| if word == "in-process" { Hosting::InProcess } else { Hosting::Isolated });
         Self { hosting, ..Self::with_store(store::folder_of_user()) }
     }
 

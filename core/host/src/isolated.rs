@@ -91,7 +91,6 @@ pub(crate) fn create(
         .map_err(|error| failed("cannot be started", error))?;
     let memories = Outbox::new().and_then(|input| Ok((input, Output::new()?)));
     let (input, output) = memories.map_err(|error| failed("no memory to share", error))?;
-
     let mut made = Isolated {
         process,
         input,
@@ -315,10 +314,9 @@ impl Isolated {
 
     /// Copies committed tables into the reply.
     fn take(&mut self, answer: Answer, schemas: &'static [&'static Schema], reply: &mut Reply) {
-        let Answer { code, text, faults, tables, .. } = answer;
+        let Answer { code, text, faults, tables } = answer;
         (reply.code, reply.text) = (code, plain(&text));
         reply.faults.extend(faults.iter().map(|fault| plain(fault)));
-
         for (id, columns) in &tables {
             let schema = schemas.iter().find(|schema| schema.id.to_bytes() == id.as_bytes());
             let taken = match schema {

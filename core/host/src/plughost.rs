@@ -17,7 +17,6 @@ use crate::reply::Reply;
 use crate::wire::memory::{Inbox, Output};
 use crate::wire::{self, Answer, Ask, Columns, Refusal, Tell};
 use ear::Ear;
-
 use sandbox::Programs;
 use std::ffi::OsString;
 use std::io;
@@ -65,7 +64,6 @@ fn serve_library(library: &Path, read: &[PathBuf]) -> io::Result<()> {
     ear.tell(&Tell::ShutIn { level: sandbox.word().to_owned() })?;
     ear.end_with_host()?;
     let (inbox, mut output) = (Inbox::of(&input)?, Output::of(output)?);
-
     let (info, mut instance) = match make(library, &plugin, &ear, &output) {
         Ok(made) => made,
         Err(error) => return ear.tell(&Tell::Refused(refusal(error))),
@@ -143,7 +141,6 @@ fn answer(reply: &mut Reply, output: &mut Output) -> io::Result<Answer> {
     let mut answer = Answer {
         code: reply.code,
         text: std::mem::take(&mut reply.text),
-        stopped: reply.stopped,
         faults: std::mem::take(&mut reply.faults),
         ..Answer::default()
     };

@@ -138,10 +138,7 @@ impl Registry {
     #[must_use]
     pub fn scan_path(path: &SearchPath) -> Self {
         let mut registry = Self::default();
-        let denied = || Trust::No("it was denied; `honami plugin allow` allows it".into());
-        let of_named = |file: &Path| {
-            if path.book.is_denied(&script::manifest_of(file)) { denied() } else { Trust::Named }
-        };
+        let of_named = |file: &Path| path.book.of_named(&script::manifest_of(file));
         for named in &path.named {
             if named.is_dir() {
                 registry.scan_folder(named, of_named);

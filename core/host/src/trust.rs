@@ -70,7 +70,7 @@ impl TrustBook {
     pub(crate) fn of(&self, library: &Path) -> Trust {
         let entry = self.entry(library);
         if entry.as_ref().is_some_and(|entry| entry.sha256.is_none()) {
-            return Trust::No("it was denied; `honami plugin allow` allows it".into());
+            return denied();
         }
         let by_the_lab = || {
             self.lab
@@ -106,9 +106,9 @@ impl TrustBook {
         ))
     }
 
-    /// Whether a person has said that it is never to be loaded, also when it is named.
-    pub(crate) fn is_denied(&self, library: &Path) -> bool {
-        self.entry(library).is_some_and(|entry| entry.sha256.is_none())
+    /// Whether a library may be loaded that the user names: unless it was denied.
+    pub(crate) fn of_named(&self, library: &Path) -> Trust {
+        if self.entry(library).is_some_and(|entry| entry.sha256.is_none()) { denied() } else { Trust::Named }
     }
 
     /// Allows a library as it is now; its hash.
@@ -160,6 +160,10 @@ impl TrustBook {
         let name = store::hex(path.as_os_str().as_encoded_bytes());
         self.folder.as_ref().map(|folder| folder.join(format!("{name}.json")))
     }
+}
+
+fn denied() -> Trust {
+    Trust::No("it was denied; `honami plugin allow` allows it".into())
 }
 
 /// Holds a library, or a manifest and the files of its program, against a rule.

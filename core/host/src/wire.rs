@@ -109,8 +109,6 @@ pub(crate) struct Answer {
     pub(crate) code: i32,
     /// Of a failure, in the plugin's words.
     pub(crate) text: String,
-    /// Whether the plugin was told to stop.
-    pub(crate) stopped: bool,
     /// How it broke the contract.
     pub(crate) faults: Vec<String>,
     /// Committed tables by schema.

@@ -235,7 +235,7 @@ class _Host:
         try:
             return {"code": 0, "tables": self.lay_down(getattr(self, "on_" + ask["m"])(ask) or {})}
         except Cancelled:
-            return {"code": _CANCELLED, "stopped": True}
+            return {"code": _CANCELLED}
         except Error as error:
             return {"code": _DATA, "text": str(error)}
         except Exception as error:

@@ -119,8 +119,8 @@ pub fn check_seeds(seeds: &[Seed], clip: &Clip) -> Result<(), WorkbenchError> {
 
 /// Follows the plan and hands every frame's rows to `sink`.
 ///
-/// When the tracker's process dies another one goes on from where the features were seen last; a frame in which that
-/// dies, too, is left out, and all are lost there. Where a person stops it, or the tracker fails, the frames before are
+/// When the tracker's process dies another one goes on with the features that were seen in the frame before; a frame
+/// in which that dies, too, is left out, and all are lost there. Where a person stops it, or the tracker fails, the frames before are
 /// with the sink already.
 ///
 /// # Errors

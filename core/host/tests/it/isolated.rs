@@ -49,8 +49,18 @@ fn in_frame_2(fault: &str, host: &Host) -> (Result<Vec<Points>, HostError>, Stri
     (last, log.into_inner().unwrap())
 }
 
+/// Whether this kernel keeps files away from a process that has given them up; says so if not.
+fn is_shut_in() -> bool {
+    let info = of_zoo(Kind::Tracker, "drift");
+    let (_, origin) = isolating().tracker(&info, &Values::default(), &CallContext::silent()).unwrap();
+    if origin.sandbox != "full" {
+        eprintln!("skipped: needs landlock in the kernel (the process is shut in {})", origin.sandbox);
+    }
+    origin.sandbox == "full"
+}
+
 fn hasty() -> Host {
-    let [tell, end, start, stop] = [20, 200, 60_000, 100].map(Duration::from_millis);
+    let [tell, end, start, stop] = [20, 2_000, 60_000, 100].map(Duration::from_millis);
     isolating().limits(Limits { tell, end, start, stop, memory_bytes: Some(1 << 29) })
 }
 
@@ -66,14 +76,17 @@ fn what_a_plugin_does_in_frame_2_costs_that_frame_and_no_more() {
         ),
         ("ABORTS", "org.honami.bad died of SIGABRT (it gave up) in push of frame 2"),
         ("EXITS", "org.honami.bad ended its process with status 0 in push of frame 2"),
-        ("LOOPS", "org.honami.bad was ended after 0 s without a sign of life in push of frame 2"),
-        ("SLEEPS", "org.honami.bad was ended after 0 s without a sign of life in push of frame 2"),
-        ("FLOODS", "org.honami.bad was ended after 0 s without a sign of life in push of frame 2"),
+        ("LOOPS", "org.honami.bad was ended after 2 s without a sign of life in push of frame 2"),
+        ("SLEEPS", "org.honami.bad was ended after 2 s without a sign of life in push of frame 2"),
+        ("FLOODS", "org.honami.bad was ended after 2 s without a sign of life in push of frame 2"),
         ("FORKS", "org.honami.bad died of SIGSEGV"),
         ("LEAKS", "no memory for a gigabyte"),
         ("SOCKET", "no socket"),
         ("FILES", "no file"),
     ] {
+        if fault == "FILES" && !is_shut_in() {
+            continue;
+        }
         let (last, _) = in_frame_2(fault, &hasty());
         let got = last.expect_err(fault).to_string();
         assert!(got.contains(wanted), "{fault}: wanted {wanted:?}, got {got:?}");
@@ -116,6 +129,9 @@ fn a_constructor_can_do_nothing_and_its_end_is_named() {
         ("CTOR_EXECS", None),
         ("CTOR_DIES", Some("org.honami.bad died of SIGABRT (it gave up) in create")),
     ] {
+        if fault == "CTOR_WRITES" && !is_shut_in() {
+            continue;
+        }
         let registry = bad(fault, &[&named]);
         let made = isolating().tracker(&registry.plugins()[0], &Values::default(), &CallContext::silent());
         match wanted {
