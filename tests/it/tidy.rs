@@ -15,6 +15,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("honami-plugin", &["honami-abi"]),
     ("honami-host", &["honami-abi", "honami-model"]),
     ("honami-plughost", &["honami-host"]),
+    ("honami-check", &["honami-abi", "honami-host", "honami-model", "honami-synth"]),
     ("honami-model", &[]),
     ("honami-media", &["honami-model"]),
     ("honami-store", &["honami-model"]),
@@ -31,6 +32,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
         &[
             "honami-model",
             "honami-host",
+            "honami-check",
             "honami-store",
             "honami-media",
             "honami-exchange",
@@ -50,7 +52,7 @@ const ONLY_USER: &[(&str, &str)] =
     &[("libloading", "honami-host"), ("rusqlite", "honami-store"), ("ratatui", "honami")];
 
 /// Folders in which `unsafe` is allowed by name.
-const UNSAFE_IN: &[&str] = &["core/abi", "core/plugin", "core/host", "core/media", "core/vision"];
+const UNSAFE_IN: &[&str] = &["core/abi", "core/plugin", "core/host", "core/check", "core/media", "core/vision"];
 
 /// A file longer than this is split.
 const MAX_LINES: usize = 800;

@@ -1,0 +1,56 @@
+//! What a plugin must bear before anybody relies on it: checks in ten levels, each with a seed that repeats it.
+//!
+//! 1 file, 2 loading, 3 ABI, 4 parameters, 5 state, 6 frames, 7 truth of trackers, 8 truth of the other kinds, 9 running,
+//! 10 stress. [`checks`] is the table of all; a [`Subject`] is the plugin under test. A check runs where it is called:
+//! who calls many gives each a process of its own, because a plugin may take its process with it.
+
+mod file;
+mod subject;
+
+pub use subject::Subject;
+
+use honami_host::HostError;
+use std::time::Duration;
+
+/// One thing that a plugin must do, or must not.
+#[derive(Clone, Copy, Debug)]
+pub struct Check {
+    /// `subject.fault-or-virtue`, as typed after `--only`.
+    pub id: &'static str,
+    /// 1 to 10: the lower, the fewer plugins can do without.
+    pub level: u8,
+    /// What holds of a plugin that passes, in a sentence.
+    pub claim: &'static str,
+    /// After so long it has failed.
+    pub deadline: Duration,
+    /// Finds out.
+    pub run: fn(&Subject) -> Result<Verdict, Fault>,
+}
+
+/// What a check has found, when it found no fault.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// The claim holds; with what was measured, or nothing.
+    Holds(String),
+    /// It holds, and somebody should look at this all the same.
+    Doubtful(String),
+    /// It says nothing of this plugin, and why.
+    Beside(String),
+}
+
+/// Why the claim of a check does not hold: what was wanted, and what came.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+pub struct Fault(pub String);
+
+impl From<HostError> for Fault {
+    fn from(error: HostError) -> Self {
+        Self(error.to_string())
+    }
+}
+
+/// All checks, level by level.
+#[must_use]
+pub fn checks() -> Vec<Check> {
+    [file::CHECKS].concat()
+}

@@ -1,0 +1,46 @@
+//! The plugin under test, and handles to it.
+
+use crate::Fault;
+use honami_host::{CallContext, Clusterer, Host, Hosting, PluginInfo, Tracker, Values};
+use rand_pcg::Pcg64;
+
+/// A plugin under test.
+#[derive(Clone, Debug)]
+pub struct Subject {
+    /// As its manifest describes it.
+    pub info: PluginInfo,
+    /// Of every random choice of a check.
+    pub seed: u64,
+    host: Host,
+}
+
+impl Subject {
+    /// A plugin that `host` is to start; where it works is up to each check.
+    #[must_use]
+    pub fn new(info: PluginInfo, host: Host, seed: u64) -> Self {
+        Self { info, seed, host }
+    }
+
+    /// A tracker at work with these values, where the others have their defaults.
+    ///
+    /// # Errors
+    /// What keeps it from starting.
+    pub fn tracker(&self, hosting: Hosting, values: &Values) -> Result<Tracker, Fault> {
+        Ok(self.host.clone().hosting(hosting).tracker(&self.info, values, &CallContext::silent())?.0)
+    }
+
+    /// A clusterer at work with these values, where the others have their defaults.
+    ///
+    /// # Errors
+    /// What keeps it from starting.
+    pub fn clusterer(&self, hosting: Hosting, values: &Values) -> Result<Clusterer, Fault> {
+        Ok(self.host.clone().hosting(hosting).clusterer(&self.info, values, &CallContext::silent())?.0)
+    }
+
+    /// Chance for one check: another stream for each id, the same for the same seed.
+    #[must_use]
+    pub fn chance(&self, check: &str) -> Pcg64 {
+        let stream = check.bytes().fold(0, |sum: u128, byte| sum.wrapping_mul(257).wrapping_add(byte.into()));
+        Pcg64::new(self.seed.into(), stream)
+    }
+}
