@@ -1,0 +1,74 @@
+//! The watch-dog: how far a plugin is, whether it lives, and that it stops.
+
+use super::process::Ended;
+use super::{Isolated, TICK};
+use crate::context::{CallContext, Flow};
+use crate::wire::memory::Output;
+use rustix::process::Signal;
+use std::sync::atomic::Ordering::Relaxed;
+use std::time::{Duration, Instant};
+
+/// After an abort, which leaves a trace for the plugin's author, it is killed.
+const ABORT: Duration = Duration::from_secs(1);
+
+/// When the plugin last gave a sign of life.
+pub(super) struct Watch {
+    beat: u64,
+    /// Whether there was one since the request.
+    is_alive: bool,
+    since: Instant,
+    asked: Option<Instant>,
+    /// How long it may be silent.
+    at_most: Duration,
+}
+
+impl Watch {
+    pub(super) fn new(output: &Output, at_most: Duration) -> Self {
+        Self {
+            beat: output.heartbeat().load(Relaxed),
+            is_alive: false,
+            since: Instant::now(),
+            asked: None,
+            at_most,
+        }
+    }
+
+    fn silence(&mut self, output: &Output) -> Duration {
+        let beat = output.heartbeat().load(Relaxed);
+        if beat != self.beat {
+            (self.beat, self.since, self.is_alive) = (beat, Instant::now(), true);
+        }
+        self.since.elapsed()
+    }
+}
+
+impl Isolated {
+    /// Passes on how far it is, asks whether to go on, and ends what does not live or does not stop.
+    pub(super) fn watch(&mut self, watch: &mut Watch, cx: &CallContext<'_>) -> Option<Ended> {
+        let silent = watch.silence(&self.output);
+        let fraction = if watch.is_alive { self.output.fraction() } else { -1.0 };
+        let words = if silent < self.limits.tell {
+            self.at.clone()
+        } else {
+            format!("{} (no sign of life for {} s)", self.at, silent.as_secs()).trim_start().to_owned()
+        };
+        if (cx.progress)(fraction, &words) == Flow::Stop && watch.asked.is_none() {
+            self.output.cancel().store(1, Relaxed);
+            watch.asked = Some(Instant::now());
+            self.is_asked_to_stop = true;
+        }
+        let is_late = watch.asked.map_or(silent > watch.at_most, |asked| asked.elapsed() > self.limits.stop);
+        if !is_late || std::env::var_os("HONAMI_NO_WATCHDOG").is_some() || self.process.is_traced() {
+            return None;
+        }
+        self.process.signal(Signal::ABORT);
+        let begun = Instant::now();
+        while begun.elapsed() < ABORT {
+            if self.process.wait(TICK).unwrap_or(true) {
+                break;
+            }
+        }
+        self.process.kill();
+        Some(if watch.asked.is_some() { Ended::Stopped } else { Ended::Silent(silent.as_secs()) })
+    }
+}
