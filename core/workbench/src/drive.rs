@@ -1,6 +1,6 @@
 //! Driving a tracker over the frames of a clip: seeds where they are due, detection where it is asked for.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
@@ -11,13 +11,17 @@ use honami_host::{
 use honami_media::{FrameRef, Media};
 use honami_model::clip::Clip;
 use honami_model::picture::Gray;
-use honami_model::track::{Quality, Sample, Source, Span, Status, TrackId};
+use honami_model::track::{Sample, Span, Status, TrackId};
 use honami_store::Seam;
 
 use crate::ear::Ear;
 use crate::error::WorkbenchError;
 use crate::progress::{Flow, Progress};
 use crate::stamp::SEED;
+
+mod board;
+
+use board::Board;
 
 /// More features than any tracker finds in a frame; a tracker's own parameter sets the real limit.
 pub(crate) const MAX_FEATURES: u32 = 100_000;
@@ -366,103 +370,4 @@ fn due(seeds: &[Seed], frame: u32) -> impl Iterator<Item = Point> {
     let start = seeds.partition_point(|seed| seed.frame < frame);
     let seeds = seeds[start..].iter().take_while(move |seed| seed.frame == frame);
     seeds.map(|seed| Point { id: seed.track.0, x: seed.x, y: seed.y })
-}
-
-/// Rows on their way to the sink: those the tracker gave, and the seeds of frames it has not answered yet.
-struct Board {
-    /// One past the last frame that was handed over.
-    end: u32,
-    answered: BTreeMap<u32, Rows>,
-    placed: BTreeMap<u32, Vec<Point>>,
-    /// Where the live points were seen last.
-    last: BTreeMap<u32, Point>,
-    /// Where they were seen in the last frame that was handed over and not lost, and which that was.
-    handed: Vec<Point>,
-    handed_frame: Option<u32>,
-    /// Frames that nobody could look at.
-    lost: BTreeSet<u32>,
-}
-
-impl Board {
-    fn new(first: u32) -> Self {
-        Self {
-            end: first,
-            answered: BTreeMap::new(),
-            placed: BTreeMap::new(),
-            last: BTreeMap::new(),
-            handed: Vec::new(),
-            handed_frame: None,
-            lost: BTreeSet::new(),
-        }
-    }
-
-    fn take(&mut self, answers: Vec<Points>) {
-        for answer in answers {
-            let frame = u32::try_from(answer.frame).unwrap_or(u32::MAX);
-            if frame < self.end {
-                // Handed over before a restart.
-                continue;
-            }
-            self.last.clear();
-            let mut rows = Rows::with_capacity(answer.rows.len());
-            for row in answer.rows {
-                if row.status.is_seen() {
-                    self.last.insert(row.id, Point { id: row.id, x: row.x, y: row.y });
-                }
-                let quality = Quality { fb_px: row.fb, ncc: row.ncc };
-                let sample =
-                    Sample { x: row.x, y: row.y, status: row.status, source: Source::Tracked, quality };
-                rows.push((TrackId(row.id), sample));
-            }
-            self.answered.insert(frame, rows);
-        }
-    }
-
-    /// Forgets the answers that were not handed over; the first frame without rows, and that in which all were seen last.
-    fn back(&mut self) -> (u32, Option<u32>) {
-        self.answered.clear();
-        self.last = self.handed.iter().map(|point| (point.id, *point)).collect();
-        (self.end, self.handed_frame)
-    }
-
-    /// All are lost in a frame that nobody could look at.
-    fn lose(&mut self, frame: u32) {
-        let (status, source, quality) = (Status::Lost, Source::Tracked, Quality::default());
-        self.lost.insert(frame);
-        let rows =
-            self.last.values().map(|p| (TrackId(p.id), Sample { x: p.x, y: p.y, status, source, quality }));
-        self.answered.insert(frame, rows.collect());
-    }
-
-    fn place(&mut self, frame: u32, points: &[Point]) {
-        if !points.is_empty() {
-            self.last.extend(points.iter().map(|point| (point.id, *point)));
-            self.placed.insert(frame, points.to_vec());
-        }
-    }
-
-    fn seen(&self) -> impl Iterator<Item = Point> {
-        self.last.values().copied()
-    }
-
-    /// Hands over the answered frames, with the seeds placed in them.
-    fn flush(&mut self, sink: Sink<'_>) -> Result<(), WorkbenchError> {
-        while let Some((frame, mut rows)) = self.answered.pop_first() {
-            for point in self.placed.remove(&frame).unwrap_or_default() {
-                rows.retain(|(track, _)| track.0 != point.id);
-                let quality = Quality::default();
-                let (status, source) = (Status::Tracked, Source::Tracked);
-                rows.push((TrackId(point.id), Sample { x: point.x, y: point.y, status, source, quality }));
-            }
-            sink(frame, &rows)?;
-            if !self.lost.contains(&frame) {
-                let seen = rows.iter().filter(|(_, sample)| sample.status.is_seen());
-                self.handed =
-                    seen.map(|(track, sample)| Point { id: track.0, x: sample.x, y: sample.y }).collect();
-                self.handed_frame = Some(frame);
-            }
-            self.end = frame + 1;
-        }
-        Ok(())
-    }
 }
