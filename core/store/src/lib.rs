@@ -25,7 +25,7 @@ pub use lock::Holder;
 pub use log::{LogItem, LogLine};
 pub use media::ClipRecord;
 pub use project::{Access, Project};
-pub use run::{RunHead, RunInfo, RunState, RunWriter, Seam};
+pub use run::{Build, RunHead, RunInfo, RunState, RunWriter, Seam};
 
 /// The time now, UTC to the second, RFC 3339: the form of every date in a project.
 #[must_use]

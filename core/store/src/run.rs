@@ -77,8 +77,34 @@ impl std::fmt::Display for RunState {
 pub struct Seam {
     /// The first frame that it tracked then.
     pub frame: u32,
-    /// What became of it before.
+    /// What became of it before, as is said of it: `died of SIGSEGV`.
     pub why: String,
+    /// Another build of the plugin than before, which goes on from there; `None`: the same.
+    pub build: Option<Build>,
+}
+
+/// Which build of a plugin it was.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Build {
+    /// Version of its library.
+    pub version: String,
+    /// Content hash of its library, hexadecimal.
+    pub sha256: String,
+}
+
+/// `1.1.0 (3f2a1c09…)`.
+impl std::fmt::Display for Build {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} ({}…)", self.version, self.sha256.get(..8).unwrap_or_default())
+    }
+}
+
+/// `started again at frame 2: it died of SIGSEGV`, and with which build where that is another one.
+impl std::fmt::Display for Seam {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "started again at frame {}: it {}", self.frame, self.why)?;
+        self.build.as_ref().map_or(Ok(()), |build| write!(f, ", and goes on as {build}"))
+    }
 }
 
 /// A run, without its samples.
@@ -94,8 +120,20 @@ pub struct RunInfo {
     pub tracks: TrackSet,
     /// The frames it has samples in, first to last; so far, while it runs.
     pub found: Range<u32>,
-    /// Where its plugin was started again.
+    /// Where its plugin was started again, in the order in which that happened.
     pub seams: Vec<Seam>,
+}
+
+impl RunInfo {
+    /// The build of the plugin that tracked a frame.
+    #[must_use]
+    pub fn build_of(&self, frame: u32) -> Build {
+        let Provenance { plugin_version, plugin_sha256, .. } = &self.head.provenance;
+        let first = || Build { version: plugin_version.clone(), sha256: plugin_sha256.clone() };
+        // What was said last of a frame holds: one that was given up has its frames tracked anew.
+        let before = self.seams.iter().rev().filter(|seam| seam.frame <= frame);
+        before.filter_map(|seam| seam.build.clone()).next().unwrap_or_else(first)
+    }
 }
 
 /// The pen of a working run: its own connection, to be given to the thread that tracks.
@@ -152,8 +190,11 @@ impl RunWriter {
     /// # Errors
     /// What SQLite met.
     pub fn seam(&mut self, seam: &Seam) -> Result<(), StoreError> {
-        let sql = "INSERT INTO seam (run, frame, why) VALUES (?1, ?2, ?3)";
-        self.conn.execute(sql, params![self.run.0, seam.frame, seam.why])?;
+        let sql =
+            "INSERT INTO seam (run, frame, why, plugin_version, plugin_sha256) VALUES (?1, ?2, ?3, ?4, ?5)";
+        let (version, sha256) =
+            seam.build.as_ref().map(|build| (build.version.as_str(), build.sha256.as_str())).unzip();
+        self.conn.execute(sql, params![self.run.0, seam.frame, seam.why, version, sha256])?;
         Ok(())
     }
 

@@ -157,7 +157,7 @@ pub fn drive(
         while let (Err(WorkbenchError::Plugin(HostError::Ended { how, .. })), Some(restart)) =
             (&stopped, restart.as_mut())
         {
-            let seam = Seam { frame: ride.board.end, why: how.to_string() };
+            let seam = Seam { frame: ride.board.end, why: how.to_string(), build: None };
             stopped = restart(&seam, death).and_then(|tracker| {
                 *ride.tracker = tracker;
                 ear.call(done, total, |call| ride.resume(frame, death, numbers, call))

@@ -299,8 +299,8 @@ pub fn finish(session: &mut Session, done: TrackDone) -> Result<TrackOutcome, Wo
         (false, 0) => "nothing was tracked".to_owned(),
         (false, _) => format!("the tracks stay as they were, run {run} is kept beside them"),
     };
-    for Seam { frame, why } in &info.seams {
-        line += &format!("; started again at frame {frame}: it {why}");
+    for seam in &info.seams {
+        line += &format!("; {seam}");
     }
     if stopped {
         line = format!("{plugin}: stopped at frame {}; {kept}", driven.end);

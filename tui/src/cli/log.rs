@@ -23,8 +23,7 @@ fn line(line: &LogLine) -> String {
         LogItem::Run(run) => {
             let (made, found) = (&run.head.provenance, &run.found);
             let state = &run.state;
-            let seam = |seam: &Seam| format!(", started again at {} (it {})", seam.frame, seam.why);
-            let seams: String = run.seams.iter().map(seam).collect();
+            let seams: String = run.seams.iter().map(|seam| format!(", {seam}")).collect();
             format!(
                 "{date}  run {}  {}: {} frames {}..{}, {state}{seams}  {made}",
                 run.id, made.what, run.tracks, found.start, found.end
@@ -50,7 +49,7 @@ fn entry(line: &LogLine) -> serde_json::Value {
             "state": run.state.to_string(),
             "tracks": run.tracks.len(),
             "frames": [run.found.start, run.found.end],
-            "started_again": run.seams.iter().map(|seam| json!({ "frame": seam.frame, "why": seam.why })).collect::<Vec<_>>(),
+            "started_again": run.seams.iter().map(started_again).collect::<Vec<_>>(),
             "provenance": run.head.provenance,
         }),
         LogItem::Clustering(info) => json!({
@@ -62,4 +61,10 @@ fn entry(line: &LogLine) -> serde_json::Value {
             "provenance": info.provenance,
         }),
     }
+}
+
+/// A seam; the version and hash of the build that goes on are null where it is the same as before.
+fn started_again(seam: &Seam) -> serde_json::Value {
+    let (version, sha256) = seam.build.as_ref().map(|build| (&build.version, &build.sha256)).unzip();
+    json!({ "frame": seam.frame, "why": seam.why, "plugin_version": version, "plugin_sha256": sha256 })
 }

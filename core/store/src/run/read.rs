@@ -6,7 +6,7 @@ use honami_model::document::RunId;
 use honami_model::track::{Span, TrackId, TrackSet};
 use rusqlite::{OptionalExtension, Row};
 
-use super::{RunHead, RunInfo, RunState, Seam, compact};
+use super::{Build, RunHead, RunInfo, RunState, Seam, compact};
 use crate::codec;
 use crate::error::StoreError;
 use crate::project::{Access, Project};
@@ -109,9 +109,14 @@ impl Project {
     }
 
     fn seams(&self, run: RunId) -> Result<Vec<Seam>, StoreError> {
-        let sql = "SELECT frame, why FROM seam WHERE run = ?1 ORDER BY id";
+        let sql = "SELECT frame, why, plugin_version, plugin_sha256 FROM seam WHERE run = ?1 ORDER BY id";
         let mut statement = self.conn.prepare_cached(sql)?;
-        let rows = statement.query_map([run.0], |row| Ok(Seam { frame: row.get(0)?, why: row.get(1)? }))?;
+        let seam = |row: &Row<'_>| {
+            let (version, sha256): (Option<String>, Option<String>) = (row.get(2)?, row.get(3)?);
+            let build = version.zip(sha256).map(|(version, sha256)| Build { version, sha256 });
+            Ok(Seam { frame: row.get(0)?, why: row.get(1)?, build })
+        };
+        let rows = statement.query_map([run.0], seam)?;
         Ok(rows.collect::<rusqlite::Result<_>>()?)
     }
 

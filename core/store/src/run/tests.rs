@@ -7,8 +7,9 @@ use honami_model::edit::Transaction;
 use honami_model::history::EntryId;
 use honami_model::track::{Sample, TrackId, TrackSet};
 use proptest::prelude::*;
+use rusqlite::Connection;
 
-use super::{RunInfo, RunState};
+use super::{Build, RunInfo, RunState, Seam};
 use crate::testing::{Bench, N_FRAMES, head, rows, sample, tracks};
 use crate::{Access, Project, StoreError};
 
@@ -213,4 +214,51 @@ fn an_interrupted_run_waits_until_it_was_shown() {
     drop(project);
     let project = Project::open(&bench.path(), Access::Write).unwrap();
     assert_eq!((project.interrupted(), project.document().runs().len()), (&[][..], 0));
+}
+
+#[test]
+fn every_frame_can_be_told_the_build_that_tracked_it_and_seams_of_before_have_none() {
+    let bench = Bench::new();
+    let mut project = bench.create();
+    let mut writer = project.begin_run(&head(0..2)).unwrap();
+    let id = writer.run();
+    let build = |name: &str| Build { version: name.to_owned(), sha256: format!("{name}-of-64-digits") };
+    let seam = |frame, build| Seam { frame, why: "was rebuilt".to_owned(), build };
+    // The second is given up at its third frame: what it had tracked is tracked anew by the first.
+    let first = Build {
+        version: project.run(id).unwrap().head.provenance.plugin_version,
+        sha256: project.run(id).unwrap().head.provenance.plugin_sha256,
+    };
+    let seams = [
+        seam(10, Some(build("second"))),
+        seam(10, Some(first.clone())),
+        seam(15, None),
+        seam(20, Some(build("third"))),
+    ];
+    for seam in &seams {
+        writer.seam(seam).unwrap();
+    }
+    writer.append(0, &rows(0..2, 0..30)).unwrap();
+    writer.finish().unwrap();
+    let run = project.run(id).unwrap();
+    assert_eq!(run.seams, seams);
+    assert_eq!(
+        seams[0].to_string(),
+        "started again at frame 10: it was rebuilt, and goes on as second (second-o…)"
+    );
+    let builds = [0, 9, 10, 19, 20, 29].map(|frame| run.build_of(frame));
+    let third = build("third");
+    assert_eq!(builds.each_ref(), [&first, &first, &first, &first, &third, &third]);
+    drop(project);
+    // As the schema before was.
+    let conn = Connection::open(bench.path()).unwrap();
+    conn.execute_batch(
+        "ALTER TABLE seam DROP COLUMN plugin_version; ALTER TABLE seam DROP COLUMN plugin_sha256;
+         PRAGMA user_version = 3",
+    )
+    .unwrap();
+    drop(conn);
+    let run = Project::open(&bench.path(), Access::Write).unwrap().run(id).unwrap();
+    assert_eq!(run.seams.iter().map(|seam| seam.frame).collect::<Vec<_>>(), [10, 10, 15, 20]);
+    assert_eq!(run.build_of(29), first);
 }
