@@ -6,27 +6,38 @@ use std::process::Command;
 
 use honami_tests::{Bench, root, skipped};
 
-/// A tracker that leaves its points where they are, with one fault; `None` without a C compiler.
+/// A tracker `bad.so` that leaves its points where they are, with one fault; `None` without a C compiler.
 fn bad(bench: &Bench, fault: &str) -> Option<PathBuf> {
-    if !Command::new("cc").arg("--version").output().is_ok_and(|output| output.status.success()) {
+    has_cc().then(|| compile(bench, "bad.so", &[&format!("-DFAULT={fault}")]))
+}
+
+/// Whether there is a C compiler; says so if not.
+pub(crate) fn has_cc() -> bool {
+    let there = Command::new("cc").arg("--version").output().is_ok_and(|output| output.status.success());
+    if !there {
         skipped("a C compiler (cc)");
-        return None;
     }
-    let library = bench.path("bad.so");
+    there
+}
+
+/// The tracker that has a fault by these flags, under this name.
+pub(crate) fn compile(bench: &Bench, name: &str, flags: &[&str]) -> PathBuf {
+    let library = bench.path(name);
     let output = Command::new("cc")
         .args(["-O1", "-shared", "-fPIC", "-fvisibility=hidden", "-I"])
         .arg(root().join("core/abi/include"))
-        .args([format!("-DFAULT={fault}").as_str(), "-o"])
+        .args(flags)
+        .arg("-o")
         .arg(&library)
         .arg(root().join("core/host/tests/bad/bad.c"))
         .output()
         .unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    Some(library)
+    library
 }
 
 /// A project with a clip of eight frames, and two points to follow.
-fn project(bench: &Bench) {
+pub(crate) fn project(bench: &Bench) {
     bench.synth("clip.y4m", 8, "--leaves 20");
     let _said = bench.text("new p.honami clip.y4m");
     fs::write(bench.path("points.csv"), "id,x,y\n1,20.5,30\n2,60,40.25\n").unwrap();

@@ -6,6 +6,7 @@ mod compare;
 mod dense;
 mod edit;
 mod exchange;
+mod faults;
 mod home;
 mod isolated;
 mod journal_kill;

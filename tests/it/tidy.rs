@@ -52,7 +52,8 @@ const ONLY_USER: &[(&str, &str)] =
     &[("libloading", "honami-host"), ("rusqlite", "honami-store"), ("ratatui", "honami")];
 
 /// Folders in which `unsafe` is allowed by name.
-const UNSAFE_IN: &[&str] = &["core/abi", "core/plugin", "core/host", "core/check", "core/media", "core/vision"];
+const UNSAFE_IN: &[&str] =
+    &["core/abi", "core/plugin", "core/host", "core/check", "core/media", "core/vision"];
 
 /// A file longer than this is split.
 const MAX_LINES: usize = 800;

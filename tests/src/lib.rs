@@ -202,7 +202,9 @@ impl Default for Bench {
     }
 }
 
-fn ran(output: Output) -> Ran {
+/// What a command that has ended did.
+#[must_use]
+pub fn ran(output: Output) -> Ran {
     let text = |bytes| String::from_utf8(bytes).unwrap();
     Ran { stdout: text(output.stdout), stderr: text(output.stderr), code: output.status.code() }
 }

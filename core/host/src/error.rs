@@ -10,7 +10,7 @@ use std::path::PathBuf;
 #[non_exhaustive]
 pub enum HostError {
     /// No plugin of that kind has that name.
-    #[error("there is no {kind} {name:?}{}; there are: {known}", alike(name, known))]
+    #[error("there is no {kind} {name:?}{}; there are: {known}{problems}", alike(name, known))]
     NotFound {
         /// What was asked for.
         kind: Kind,
@@ -18,6 +18,8 @@ pub enum HostError {
         name: String,
         /// The names that exist, comma-separated.
         known: String,
+        /// What files could not be used, and why; empty for none.
+        problems: String,
     },
     /// A short name that several plugins share.
     #[error("{name:?} may be any of {ids}: say the full id")]

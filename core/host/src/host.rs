@@ -7,7 +7,7 @@ use crate::error::HostError;
 use crate::instance::{Handle, Instance, Request};
 use crate::isolated::Limits;
 use crate::manifest::{Kind, ParamKind};
-use crate::quarantine::{self, Quarantine};
+use crate::quarantine::{self, Quarantine, Tally};
 use crate::registry::{PluginInfo, Trust};
 use crate::reply::Reply;
 use crate::tracker::Tracker;
@@ -45,6 +45,7 @@ pub struct Host {
     store: PathBuf,
     hosting: Option<Hosting>,
     limits: Limits,
+    has_quarantine: bool,
 }
 
 impl Default for Host {
@@ -67,7 +68,7 @@ impl Host {
     /// With a store of the caller's; the folder is made when it is first needed.
     #[must_use]
     pub fn with_store(store: PathBuf) -> Self {
-        Self { store, hosting: None, limits: Limits::default() }
+        Self { store, hosting: None, limits: Limits::default(), has_quarantine: true }
     }
 
     /// Lets all plugins work there; else shipped ones work in this process and others in their own.
@@ -80,6 +81,12 @@ impl Host {
     #[must_use]
     pub fn limits(self, limits: Limits) -> Self {
         Self { limits, ..self }
+    }
+
+    /// Counts no deaths, and starts what has died too often: for who wants to see why.
+    #[must_use]
+    pub fn without_quarantine(self) -> Self {
+        Self { has_quarantine: false, ..self }
     }
 
     /// Starts a tracker with these parameter values; those that are missing take their defaults.
@@ -139,14 +146,6 @@ impl Host {
         Ok((Simulator { handle, reply: Reply::default(), n_rows: None }, origin))
     }
 
-    /// Counts a failure of a plugin's process against its library.
-    ///
-    /// # Errors
-    /// [`HostError::Quarantined`] when that was one too many.
-    pub fn blame(&self, info: &PluginInfo, origin: &Origin, why: &str) -> Result<(), HostError> {
-        Quarantine::beside(&self.store).blame(info, &origin.plugin_sha256, why)
-    }
-
     /// Lets a plugin start again that has failed too often; whether it was held.
     ///
     /// # Errors
@@ -188,7 +187,8 @@ impl Host {
             abi: info.abi,
             sandbox,
         };
-        let mut handle = Handle::new(info.id.clone(), instance);
+        let tally = self.tally(&origin.plugin_sha256);
+        let mut handle = Handle::new(info.id.clone(), instance, tally);
         let checked: Vec<_> = info
             .params
             .iter()
@@ -227,14 +227,25 @@ impl Host {
                 } else {
                     script::keep(info, &self.store)?
                 };
-                if let Some(why) = Quarantine::beside(&self.store).why(&copy.sha256) {
+                let tally = self.tally(&copy.sha256);
+                if let Some(why) = tally.as_ref().and_then(Tally::held) {
                     return Err(quarantine::held(info, why));
                 }
                 let read = files_of(info, values);
-                let (instance, sandbox) = isolated::create(info, &copy.path, read, self.limits, cx)?;
+                let made = isolated::create(info, &copy.path, read, self.limits, cx);
+                if let (Err(HostError::Ended { how, .. }), Some(tally)) = (&made, tally) {
+                    tally.ended(how);
+                }
+                let (instance, sandbox) = made?;
                 Ok((instance, copy.sha256, sandbox))
             }
         }
+    }
+
+    /// Where the deaths of a library are counted, if they are.
+    fn tally(&self, sha256: &str) -> Option<Tally> {
+        let tally = || Tally::new(Quarantine::beside(&self.store), sha256.to_owned());
+        self.has_quarantine.then(tally)
     }
 }
 

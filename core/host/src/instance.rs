@@ -6,6 +6,7 @@ use crate::context::CallContext;
 use crate::draft::{Gust, Node};
 use crate::error::{Code, HostError};
 use crate::isolated::Ended;
+use crate::quarantine::Tally;
 use crate::reply::{self, Reply, Schema};
 use crate::types::{DetectRequest, FrameView, Point, StreamInfo, Tracks};
 use crate::values::Value;
@@ -73,6 +74,8 @@ pub(crate) struct Handle {
     pub(crate) plugin: String,
     instance: Box<dyn Instance>,
     failed: bool,
+    /// Where its deaths are counted, if they are.
+    pub(crate) tally: Option<Tally>,
 }
 
 /// How a call ended that did not fail.
@@ -84,8 +87,8 @@ pub(crate) enum Done {
 }
 
 impl Handle {
-    pub(crate) fn new(plugin: String, instance: Box<dyn Instance>) -> Self {
-        Self { plugin, instance, failed: false }
+    pub(crate) fn new(plugin: String, instance: Box<dyn Instance>, tally: Option<Tally>) -> Self {
+        Self { plugin, instance, failed: false, tally }
     }
 
     pub(crate) fn ask(
@@ -101,6 +104,9 @@ impl Handle {
         let function = request.function();
         if let Some(how) = reply.ended.take() {
             self.failed = true;
+            if let Some(tally) = &self.tally {
+                tally.ended(&how);
+            }
             let plugin = self.plugin.clone();
             if how == Ended::Stopped {
                 return Err(HostError::Cancelled { plugin });

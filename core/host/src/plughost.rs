@@ -18,6 +18,7 @@ use crate::wire::memory::{Inbox, Output};
 use crate::wire::{self, Answer, Ask, Columns, Refusal, Tell};
 use ear::Ear;
 use sandbox::Programs;
+pub(crate) use sandbox::ROOM;
 use std::ffi::OsString;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -60,8 +61,8 @@ fn serve_library(library: &Path, read: &[PathBuf]) -> io::Result<()> {
             wire::VERSION
         )));
     };
-    let sandbox = sandbox::enter(library, read, Programs::Refused);
-    ear.tell(&Tell::ShutIn { level: sandbox.word().to_owned() })?;
+    let level = shut_in(library, read).to_owned();
+    ear.tell(&Tell::ShutIn { level })?;
     ear.end_with_host()?;
     let (inbox, mut output) = (Inbox::of(&input)?, Output::of(output)?);
     let (info, mut instance) = match make(library, &plugin, &ear, &output) {
@@ -81,6 +82,12 @@ fn serve_library(library: &Path, read: &[PathBuf]) -> io::Result<()> {
         ear.tell(&Tell::Done(answer))?;
     }
     Ok(())
+}
+
+/// Gives up all that a plugin's process gives up before it loads this library: for good, and for this thread and those
+/// it starts. How far this system could: `full`, `partial` or `none`.
+pub fn shut_in(library: &Path, read: &[PathBuf]) -> &'static str {
+    sandbox::enter(library, read, Programs::Refused).word()
 }
 
 fn make(

@@ -3,6 +3,7 @@
 //! Failures are counted by the hash of the library, so that a rebuilt one begins anew.
 
 use crate::error::HostError;
+use crate::isolated::Ended;
 use crate::registry::PluginInfo;
 use std::fs;
 use std::io;
@@ -19,6 +20,37 @@ pub(crate) fn held(info: &PluginInfo, why: String) -> HostError {
     HostError::Quarantined { plugin: info.id.clone(), library: info.library.clone(), why }
 }
 
+/// Counts the deaths of one library, wherever it is at work.
+#[derive(Clone, Debug)]
+pub(crate) struct Tally {
+    quarantine: Quarantine,
+    sha256: String,
+    is_paused: bool,
+}
+
+impl Tally {
+    pub(crate) fn new(quarantine: Quarantine, sha256: String) -> Self {
+        Self { quarantine, sha256, is_paused: false }
+    }
+
+    /// Whether deaths from now on are another's fault, or have been counted already.
+    pub(crate) fn pause(&mut self, is_paused: bool) {
+        self.is_paused = is_paused;
+    }
+
+    /// Why it is not started, when it has died too often.
+    pub(crate) fn held(&self) -> Option<String> {
+        self.quarantine.why(&self.sha256)
+    }
+
+    /// Its process has ended; who was asked to stop has not died.
+    pub(crate) fn ended(&self, how: &Ended) {
+        if *how != Ended::Stopped && !self.is_paused {
+            self.quarantine.blame(&self.sha256, how);
+        }
+    }
+}
+
 /// The folder of what is known of failures.
 #[derive(Clone, Debug)]
 pub(crate) struct Quarantine(pub(crate) PathBuf);
@@ -32,24 +64,11 @@ impl Quarantine {
         self.0.join(format!("{sha256}.held"))
     }
 
-    /// Counts a failure; with the last of too many the library is held.
-    ///
-    /// # Errors
-    /// [`HostError::Quarantined`] then. What cannot be written is not counted.
-    pub(crate) fn blame(&self, info: &PluginInfo, sha256: &str, why: &str) -> Result<(), HostError> {
-        if !self.is_too_much(sha256, why) {
-            return Ok(());
+    /// Counts a death; after the last of too many the library is held. Where nothing can be written it never is.
+    fn blame(&self, sha256: &str, how: &Ended) {
+        if self.count(sha256, SystemTime::now()).is_ok_and(|n| n >= FAILURES) {
+            fs::write(self.held(sha256), how.to_string()).unwrap_or_default();
         }
-        Err(held(info, why.to_owned()))
-    }
-
-    fn is_too_much(&self, sha256: &str, why: &str) -> bool {
-        let is_too_much = self.count(sha256, SystemTime::now()).unwrap_or(FAILURES) >= FAILURES;
-        if is_too_much {
-            // Where nothing can be written it is not held, but this run has ended.
-            fs::write(self.held(sha256), why).unwrap_or_default();
-        }
-        is_too_much
     }
 
     fn count(&self, sha256: &str, now: SystemTime) -> io::Result<usize> {

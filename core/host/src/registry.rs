@@ -193,7 +193,9 @@ impl Registry {
             [] => {
                 let known = list(&mut of_kind().map(|plugin| plugin.short_name.as_str()));
                 let known = if known.is_empty() { "none; see honami plugin list".into() } else { known };
-                Err(HostError::NotFound { kind, name: name.to_owned(), known })
+                // What was meant may lie in one of these.
+                let problems = self.problems.iter().map(|problem| format!("; {problem}")).collect();
+                Err(HostError::NotFound { kind, name: name.to_owned(), known, problems })
             }
             several => {
                 let ids = list(&mut several.iter().map(|plugin| plugin.id.as_str()));

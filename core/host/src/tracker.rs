@@ -38,6 +38,14 @@ impl Tracker {
         self.latency
     }
 
+    /// Whether its deaths are not counted: it begins where another one has died, and what dies twice of the same has
+    /// failed once.
+    pub fn pardon(&mut self, is_pardoned: bool) {
+        if let Some(tally) = &mut self.handle.tally {
+            tally.pause(is_pardoned);
+        }
+    }
+
     /// Starts a stream.
     ///
     /// # Errors

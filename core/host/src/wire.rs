@@ -3,8 +3,9 @@
 //! The process has a socket as its standard input: one JSON object a line, every request is answered by one `done`.
 //! With the first line come two memories (`SCM_RIGHTS`): one that only the host writes, one that the process writes.
 //! Pictures and columns lie there, at places that are bytes from the start, multiples of 64. A plugin of any language
-//! can be served so; members that the other side does not know are ignored. `lay.rs` is the host's side of a request,
-//! `hear.rs` the process'.
+//! can be served so; members that the other side does not know are ignored. After a picture nothing lies in the rest of
+//! its 64 KiB nor in the next 64: a process can put a guard there. `lay.rs` is the host's side of a request, `hear.rs` the
+//! process'.
 
 mod hear;
 mod lay;

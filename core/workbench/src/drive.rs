@@ -160,7 +160,10 @@ pub fn drive(
             let seam = Seam { frame: ride.board.end, why: how.to_string(), build: None };
             stopped = restart(&seam, death).and_then(|tracker| {
                 *ride.tracker = tracker;
-                ear.call(done, total, |call| ride.resume(frame, death, numbers, call))
+                ride.tracker.pardon(true);
+                let resumed = ear.call(done, total, |call| ride.resume(frame, death, numbers, call));
+                ride.tracker.pardon(false);
+                resumed
             });
             death = Death::Again;
             n_deaths += 1;

@@ -86,7 +86,6 @@ struct Maker {
     host: Host,
     plugin: PluginInfo,
     params: Values,
-    origin: Origin,
 }
 
 fn make(host: &Host, plugin: &PluginInfo, params: &Values) -> Result<(Tracker, Origin), WorkbenchError> {
@@ -174,7 +173,7 @@ fn begin(
 ) -> Result<TrackJob, WorkbenchError> {
     let (host, params) = (Host::new(), request.params.clone());
     let (tracker, origin) = make(&host, plugin, &params)?;
-    let maker = Maker { host, plugin: plugin.clone(), params, origin: origin.clone() };
+    let maker = Maker { host, plugin: plugin.clone(), params };
     let head = RunHead {
         provenance: stamp(session.project.revision(), "track", plugin, &request.params, origin),
         tracks: seeds.iter().map(|seed| seed.track).collect(),
@@ -202,7 +201,7 @@ impl TrackJob {
         let begun = Instant::now();
         let frames = self.plan.frames.clone();
         let mut kept = Kept { writer: self.writer, first_frame: frames.start, frames: Vec::new() };
-        let driven = kept.track(&self.media, &mut self.tracker, &mut self.maker, self.plan, progress);
+        let driven = kept.track(&self.media, &mut self.tracker, &self.maker, self.plan, progress);
         let run = kept.writer.run();
         let reached = kept.first_frame;
         let (driven, error) = match driven {
@@ -235,20 +234,17 @@ impl Kept {
         &mut self,
         media: &Media,
         tracker: &mut Tracker,
-        maker: &mut Maker,
+        maker: &Maker,
         plan: Plan,
         progress: &dyn Progress,
     ) -> Result<Driven, WorkbenchError> {
         let kept = std::cell::RefCell::new(self);
         let mut again = |seam: &Seam, death: Death| {
-            // What dies twice of the same frame has failed once.
+            // A file that was rebuilt meanwhile is another one, and begins anew.
+            let (tracker, _) = make(&maker.host, &maker.plugin, &maker.params)?;
             if death == Death::First {
-                maker.host.blame(&maker.plugin, &maker.origin, &seam.why)?;
                 kept.borrow_mut().writer.seam(seam)?;
             }
-            // A file that was rebuilt meanwhile is another one, and begins anew.
-            let (tracker, origin) = make(&maker.host, &maker.plugin, &maker.params)?;
-            maker.origin = origin;
             Ok(tracker)
         };
         let mut numbers = |n| Ok(kept.borrow_mut().writer.reserve_tracks(n)?);

@@ -1,6 +1,7 @@
 //! A plugin's own process: how it begins, what it says, and that it ends.
 
 use crate::plain::plain;
+use crate::plughost::ROOM;
 use crate::wire::memory::{Outbox, Output};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fs::{OFlags, fcntl_setfl};
@@ -19,6 +20,7 @@ use std::os::unix::process::{CommandExt as _, ExitStatusExt as _};
 use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::Duration;
+use tempfile::TempDir;
 
 /// A process says no longer line than this.
 const LINE_BYTES_MAX: usize = 1 << 20;
@@ -95,6 +97,8 @@ pub(crate) struct Process {
     can_print: bool,
     /// Whether it has been waited for.
     is_over: bool,
+    /// The folder in which it may write; goes after it.
+    _room: TempDir,
 }
 
 impl Process {
@@ -104,6 +108,7 @@ impl Process {
         let (prints, print_to) = rustix::pipe::pipe_with(rustix::pipe::PipeFlags::CLOEXEC)?;
         fcntl_setfl(&prints, OFlags::NONBLOCK)?;
         fcntl_setfl(&ours, OFlags::NONBLOCK)?;
+        let room = tempfile::Builder::new().prefix("honami-plugin-").tempdir()?;
         let child = Command::new(program)
             .args(args)
             .stdin(Stdio::from(theirs))
@@ -114,6 +119,7 @@ impl Process {
             .env_remove("LD_PRELOAD")
             .env_remove("LD_LIBRARY_PATH")
             .env_remove("LD_AUDIT")
+            .env(ROOM, room.path())
             .envs(memory_bytes.map(|bytes| (MEMORY, bytes.to_string())))
             .spawn()?;
         let group = Pid::from_child(&child);
@@ -130,6 +136,7 @@ impl Process {
             printed,
             can_print: true,
             is_over: false,
+            _room: room,
         })
     }
 

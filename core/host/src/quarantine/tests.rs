@@ -3,18 +3,27 @@
 use super::*;
 
 #[test]
-fn the_third_failure_within_ten_minutes_holds_a_library_until_it_is_released() {
+fn the_third_death_within_ten_minutes_holds_a_library_until_it_is_released() {
     let folder = tempfile::tempdir().unwrap();
     let quarantine = Quarantine(folder.path().join("new"));
-    for n in 1..=3 {
-        assert_eq!(quarantine.is_too_much("abc", "died of SIGSEGV"), n == 3, "failure {n}");
+    let [mut tally, rebuilt] = ["abc", "rebuilt"].map(|hash| Tally::new(quarantine.clone(), hash.into()));
+    let segfault = Ended::Signal(11);
+    let why = "died of SIGSEGV (it used memory that is not its own)";
+    for wanted in [None, None, Some(why)] {
+        // Neither who was asked to stop has died, nor who begins where another has.
+        tally.ended(&Ended::Stopped);
+        tally.pause(true);
+        tally.ended(&segfault);
+        tally.pause(false);
+        tally.ended(&segfault);
+        assert_eq!(tally.held().as_deref(), wanted);
     }
-    assert_eq!(quarantine.why("abc").as_deref(), Some("died of SIGSEGV"));
-    assert_eq!(quarantine.why("rebuilt"), None);
-    quarantine.release("abc").unwrap();
-    quarantine.release("abc").unwrap();
-    assert_eq!(quarantine.why("abc"), None);
-    assert!(!quarantine.is_too_much("abc", "again"));
+    assert_eq!(rebuilt.held(), None);
+    for _ in 0..2 {
+        quarantine.release("abc").unwrap();
+    }
+    tally.ended(&segfault);
+    assert_eq!(tally.held(), None);
 }
 
 #[test]

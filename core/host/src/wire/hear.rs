@@ -129,7 +129,7 @@ fn take_tracks(movement: &Movement, inbox: &Inbox) -> Result<Tracks, &'static st
 fn take_plane(plane: Plane, inbox: &Inbox) -> Result<Gray<'_>, &'static str> {
     let Plane { at, width, height } = plane;
     let data =
-        inbox.elements(at, width as usize * height as usize).ok_or("a picture lies outside the memory")?;
+        inbox.picture(at, width as usize * height as usize).ok_or("a picture lies outside the memory")?;
     Ok(Gray { data, width, height, stride: width as usize })
 }
 

@@ -116,10 +116,10 @@ fn put_tracks(tracks: &Tracks, out: &mut Outbox) -> Option<Movement> {
 fn put_plane(gray: &Gray<'_>, out: &mut Outbox) -> Option<Plane> {
     let (width, height) = (gray.width as usize, gray.height as usize);
     let at = if gray.stride == width {
-        out.put(width * height, std::iter::once(gray.data.get(..width * height)?))?
+        out.put_picture(width * height, std::iter::once(gray.data.get(..width * height)?))?
     } else {
         let rows = (0..height).map_while(|y| gray.data.get(y * gray.stride..y * gray.stride + width));
-        out.put(width * height, rows)?
+        out.put_picture(width * height, rows)?
     };
     Some(Plane { at, width: gray.width, height: gray.height })
 }

@@ -4,6 +4,9 @@
 use crate::reply::Element;
 use memmap2::{Mmap, MmapOptions, MmapRaw};
 use rustix::fs::{MemfdFlags, SealFlags, fcntl_add_seals, ftruncate, memfd_create};
+use rustix::mm::{MprotectFlags, mprotect};
+use std::cell::RefCell;
+use std::collections::BTreeSet;
 use std::fs::File;
 use std::io;
 use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
@@ -17,6 +20,8 @@ const INPUT_BYTES: usize = 1 << 32;
 const OUTPUT_BYTES: usize = 1 << 20;
 /// No answer takes more.
 const OUTPUT_BYTES_MAX: usize = 1 << 34;
+/// After a picture comes so much that nobody may read: a multiple of every system's page.
+const GUARD_BYTES: usize = 1 << 16;
 /// Of the output, before any column: cancel, heartbeat, progress.
 const PAGE_BYTES: usize = 4096;
 
@@ -64,11 +69,28 @@ impl Outbox {
 
     /// Lays down rows of bytes one after the other; where the first begins.
     pub(crate) fn put<'a>(&mut self, n: usize, rows: impl Iterator<Item = &'a [u8]>) -> Option<u64> {
-        let (mut to, at) = self.room(n)?;
+        let room = self.room(n)?;
+        self.fill(room, n, rows)
+    }
+
+    /// Lays down rows of a picture, as near as can be before a guard.
+    pub(crate) fn put_picture<'a>(&mut self, n: usize, rows: impl Iterator<Item = &'a [u8]>) -> Option<u64> {
+        let end = self.used.checked_add(n)?.checked_next_multiple_of(GUARD_BYTES)?;
+        self.used = (end - n) / ALIGN * ALIGN;
+        let room = self.room(end + GUARD_BYTES - self.used)?;
+        self.fill(room, n, rows)
+    }
+
+    fn fill<'a>(
+        &mut self,
+        (mut to, at): (*mut u8, u64),
+        n: usize,
+        rows: impl Iterator<Item = &'a [u8]>,
+    ) -> Option<u64> {
         let mut left = n;
         for row in rows {
             left = left.checked_sub(row.len())?;
-            // SAFETY: there is room for `n` bytes, of which so many are left; the plugin's process cannot write here.
+            // SAFETY: the callers have made room for `n` bytes, of which so many are left; the plugin's process cannot write here.
             unsafe {
                 std::ptr::copy_nonoverlapping(row.as_ptr(), to, row.len());
                 to = to.add(row.len());
@@ -83,20 +105,49 @@ impl Outbox {
 }
 
 /// What the plugin's process reads of it.
-pub(crate) struct Inbox(Mmap);
+pub(crate) struct Inbox {
+    map: Mmap,
+    /// Where guards begin that nobody can read now.
+    guards: RefCell<BTreeSet<usize>>,
+}
 
 impl Inbox {
     pub(crate) fn of(file: &OwnedFd) -> io::Result<Self> {
         // SAFETY: sealed by the host, which writes only between requests.
-        unsafe { MmapOptions::new().map(file) }.map(Self)
+        let map = unsafe { MmapOptions::new().map(file) }?;
+        Ok(Self { map, guards: RefCell::default() })
     }
 
     /// So many elements from a place on.
     pub(crate) fn elements<T: Element>(&self, at: u64, n: usize) -> Option<&[T]> {
         let at = usize::try_from(at).ok().filter(|at| at.is_multiple_of(ALIGN))?;
-        let bytes = self.0.get(at..at.checked_add(n.checked_mul(size_of::<T>())?)?)?;
+        let bytes = self.map.get(at..at.checked_add(n.checked_mul(size_of::<T>())?)?)?;
+        let mut guards = self.guards.borrow_mut();
+        // Of a request before this one, where other things lie now.
+        let before = guards.range((at + 1).saturating_sub(GUARD_BYTES)..at + bytes.len());
+        for guard in before.copied().collect::<Vec<_>>() {
+            self.protect(guard, MprotectFlags::READ)?;
+            guards.remove(&guard);
+        }
         // SAFETY: so many bytes are there, aligned for every number; every bit pattern is one.
         Some(unsafe { std::slice::from_raw_parts(bytes.as_ptr().cast(), n) })
+    }
+
+    /// The bytes of a picture; who reads on after them dies of it, but for the few that fill up the last multiple of
+    /// [`ALIGN`].
+    pub(crate) fn picture(&self, at: u64, n: usize) -> Option<&[u8]> {
+        let bytes: &[u8] = self.elements(at, n)?;
+        let guard = usize::try_from(at).ok()?.checked_add(n)?.checked_next_multiple_of(GUARD_BYTES)?;
+        if guard + GUARD_BYTES <= self.map.len() && self.guards.borrow_mut().insert(guard) {
+            self.protect(guard, MprotectFlags::empty())?;
+        }
+        Some(bytes)
+    }
+
+    /// Says who may read a guard.
+    fn protect(&self, guard: usize, flags: MprotectFlags) -> Option<()> {
+        // SAFETY: within the mapping; nothing of this request lies there.
+        unsafe { mprotect(self.map.as_ptr().add(guard).cast_mut().cast(), GUARD_BYTES, flags) }.ok()
     }
 }
 

@@ -1,13 +1,19 @@
-/* bad.c - a tracker with one fault, chosen by -DFAULT=NAME. Without a fault it leaves every point where it is. */
-#define _DEFAULT_SOURCE
+/* bad.c - a tracker with one fault, chosen by -DFAULT=NAME; -DFROM=N keeps what is wrong in push for frame N and later.
+   Without a fault it leaves every point where it is. */
+#define _GNU_SOURCE
 #include "honami.h"
-#include <math.h>
-#include <stdio.h>
+#include <errno.h>
 #include <fcntl.h>
+#include <math.h>
+#include <sched.h>
+#include <signal.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 enum fault {
@@ -17,10 +23,14 @@ enum fault {
   UNASKED_CANCEL, AGAIN, SEED_RESULT, REFUSES_PARAMS, COMMIT_RESERVE_COMMIT,
   /* From here on in frame 2: */
   SEGFAULT, ABORTS, EXITS, LOOPS, SLEEPS, DEAF, FLOODS, ESCAPES, LEAKS, FORKS, SOCKET, FILES, WITHERS,
+  READS_ON, WAITS, CONNECTS, SCRIBBLES, CALLS,
   /* or before main: */
   CTOR_WRITES, CTOR_EXECS, CTOR_DIES
 };
 
+#ifndef FROM
+#define FROM 0
+#endif
 #ifndef KNOWN
 #define KNOWN "\"honami\":1,\"abi\":[1,0],"
 #endif
@@ -50,11 +60,34 @@ __attribute__((constructor)) static void before_main(void) {
 }
 #endif
 
+/* Whether anything outside can be reached through a local socket; a pair within the process does no harm. */
+static int connects(void) {
+  int pair[2];
+  return socket(AF_UNIX, SOCK_STREAM, 0) >= 0 || socket(AF_UNIX, SOCK_DGRAM, 0) >= 0 ||
+         socketpair(AF_UNIX, SOCK_DGRAM, 0, pair) == 0 || socketpair(AF_UNIX, SOCK_STREAM, 0, pair) != 0;
+}
+
+/* The call under which this kernel does what a plugin must not; NULL when it does none of them. */
+static const char *calls(void) {
+  if (syscall(SYS_clone3, NULL, 0L) != -1 || errno != ENOSYS) return "clone3";
+  if (syscall(SYS_clone, (long)(CLONE_NEWUSER | SIGCHLD), 0L, 0L, 0L, 0L) != -1) return "clone to a new world";
+  if (syscall(SYS_unshare, (long)CLONE_NEWUSER) != -1) return "unshare";
+  if (syscall(SYS_ptrace, 0L, 0L, 0L, 0L) != -1) return "ptrace";
+  if (syscall(SYS_prlimit64, (long)getppid(), 7L, NULL, NULL) != -1) return "limits of others";
+#ifdef __x86_64__
+  if (syscall(0x40000000L + SYS_getpid) != -1 || errno != EPERM) return "x32";
+#endif
+  return NULL;
+}
+
 /* What a plugin must not do, in the middle of its work. */
-static honami_code misdeed(const honami_call *call) {
+static honami_code misdeed(const honami_call *call, const honami_frame *frame) {
   volatile int *nowhere = NULL;
   size_t gigabyte = (size_t)1 << 30;
-  char *memory;
+  char *memory, place[4096];
+  const uint8_t *past = frame->data + (frame->height - 1) * frame->stride + frame->width;
+  sigset_t set;
+  int number = 0;
   switch (FAULT) {
     case SEGFAULT: case WITHERS: *nowhere = 1; break;
     case ABORTS: abort();
@@ -72,6 +105,17 @@ static honami_code misdeed(const honami_call *call) {
     case FORKS: if (fork() == 0) for (;;) sleep(1000); else *nowhere = 1; break;
     case SOCKET: if (socket(AF_INET, SOCK_STREAM, 0) < 0) return call->fail(call, HONAMI_E_IO, "no socket"); break;
     case FILES: if (open("/etc/passwd", O_RDONLY) < 0) return call->fail(call, HONAMI_E_IO, "no file"); break;
+    case READS_ON: for (int k = 0; k < 4096; k++) number += *(volatile const uint8_t *)(past + k); break;
+    case WAITS:
+      sigemptyset(&set), sigaddset(&set, SIGUSR1), sigprocmask(SIG_BLOCK, &set, NULL);
+      prctl(PR_SET_NAME, "waits");
+      sigwait(&set, &number);
+      break;
+    case CONNECTS: return call->fail(call, HONAMI_E_IO, connects() ? "a socket" : "no socket");
+    case SCRIBBLES:
+      snprintf(place, sizeof place, "%s/scribble", getenv("TMPDIR") ? getenv("TMPDIR") : "/tmp");
+      return call->fail(call, HONAMI_E_IO, open(place, O_CREAT | O_WRONLY, 0600) < 0 ? "no room" : place);
+    case CALLS: return call->fail(call, HONAMI_E_IO, calls() ? calls() : "none of the calls");
     default: break;
   }
   return HONAMI_OK;
@@ -117,22 +161,23 @@ static honami_code retire(honami_instance *instance, const honami_call *call, co
 }
 
 static honami_code push(honami_instance *instance, const honami_call *call, const honami_frame *frame) {
+  enum fault fault = frame->index < FROM ? NONE : FAULT;
   honami_column c[5] = {{"id", HONAMI_U32, 1, NULL, 0}, {"x", HONAMI_F32, 1, NULL, 0}, {"y", HONAMI_F32, 1, NULL, 0},
-                        {"status", FAULT == WRONG_TYPE ? HONAMI_F64 : HONAMI_U8, 1, NULL, 0},
-                        {FAULT == BAD_QUALITY ? "fb" : "whatever", HONAMI_F32, 1, NULL, 0}};
-  uint64_t rows = FAULT == TOO_MUCH ? UINT64_MAX : n_points;
+                        {"status", fault == WRONG_TYPE ? HONAMI_F64 : HONAMI_U8, 1, NULL, 0},
+                        {fault == BAD_QUALITY ? "fb" : "whatever", HONAMI_F32, 1, NULL, 0}};
+  uint64_t rows = fault == TOO_MUCH ? UINT64_MAX : n_points;
   honami_code code;
   (void)instance;
-  if ((frame->index == 2 || (FAULT == WITHERS && frame->index > 2)) && misdeed(call) < 0) return HONAMI_E_FAILED;
-  if (FAULT == NO_ROWS) return HONAMI_OK;
-  if (FAULT == NEGATIVE) return call->fail(call, HONAMI_E_DATA, "the frame is too dark");
-  if (FAULT == SILENT) return -77;
-  if (FAULT == UNASKED_CANCEL) return HONAMI_E_CANCELLED;
-  if (FAULT == AGAIN) return HONAMI_AGAIN;
-  if (FAULT == COMMIT_ONLY) return call->commit(call, HONAMI_POINTS, n_points);
-  if (FAULT == PRINTS) printf("printed by a plugin\n"), fflush(stdout);
-  code = call->reserve(call, FAULT == OTHER_SCHEMA ? HONAMI_DENDROGRAM : HONAMI_POINTS, rows,
-                       FAULT == MISSING_COLUMN ? 3 : 5, c);
+  if ((frame->index == 2 || (fault == WITHERS && frame->index > 2)) && misdeed(call, frame) < 0) return HONAMI_E_FAILED;
+  if (fault == NO_ROWS) return HONAMI_OK;
+  if (fault == NEGATIVE) return call->fail(call, HONAMI_E_DATA, "the frame is too dark");
+  if (fault == SILENT) return -77;
+  if (fault == UNASKED_CANCEL) return HONAMI_E_CANCELLED;
+  if (fault == AGAIN) return HONAMI_AGAIN;
+  if (fault == COMMIT_ONLY) return call->commit(call, HONAMI_POINTS, n_points);
+  if (fault == PRINTS) printf("printed by a plugin\n"), fflush(stdout);
+  code = call->reserve(call, fault == OTHER_SCHEMA ? HONAMI_DENDROGRAM : HONAMI_POINTS, rows,
+                       fault == MISSING_COLUMN ? 3 : 5, c);
   if (code < 0) return call->fail(call, code, "the host gives nothing");
   for (uint64_t i = 0; i < n_points; i++) {
     ((uint32_t *)c[0].data)[i] = ids[i];
@@ -140,18 +185,18 @@ static honami_code push(honami_instance *instance, const honami_call *call, cons
     ((float *)c[2].data)[i] = ys[i];
     ((uint8_t *)c[3].data)[i] = HONAMI_TRACKED;
   }
-  if (FAULT == NAN_POSITION) ((float *)c[2].data)[0] = NAN;
-  if (FAULT == UNKNOWN_ID) ((uint32_t *)c[0].data)[0] = 999;
-  if (FAULT == TWICE) ((uint32_t *)c[0].data)[1] = ids[0];
-  if (FAULT == BAD_STATUS) ((uint8_t *)c[3].data)[0] = 6;
-  if (FAULT == BAD_QUALITY) ((float *)c[4].data)[0] = -3;
-  if (FAULT == PAST_THE_END) ((float *)c[1].data)[16] = 0;
-  if (FAULT == COMMIT_RESERVE_COMMIT) {
+  if (fault == NAN_POSITION) ((float *)c[2].data)[0] = NAN;
+  if (fault == UNKNOWN_ID) ((uint32_t *)c[0].data)[0] = 999;
+  if (fault == TWICE) ((uint32_t *)c[0].data)[1] = ids[0];
+  if (fault == BAD_STATUS) ((uint8_t *)c[3].data)[0] = 6;
+  if (fault == BAD_QUALITY) ((float *)c[4].data)[0] = -3;
+  if (fault == PAST_THE_END) ((float *)c[1].data)[16] = 0;
+  if (fault == COMMIT_RESERVE_COMMIT) {
     call->commit(call, HONAMI_POINTS, n_points);
     call->reserve(call, HONAMI_POINTS, n_points, 5, c);
   }
-  if (FAULT == COMMIT_TWICE) call->commit(call, HONAMI_POINTS, n_points);
-  return call->commit(call, HONAMI_POINTS, FAULT == OVERCOMMIT ? n_points + 1 : FAULT == FEWER ? 1 : n_points);
+  if (fault == COMMIT_TWICE) call->commit(call, HONAMI_POINTS, n_points);
+  return call->commit(call, HONAMI_POINTS, fault == OVERCOMMIT ? n_points + 1 : fault == FEWER ? 1 : n_points);
 }
 
 static honami_code end(honami_instance *instance, const honami_call *call) {

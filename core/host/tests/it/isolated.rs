@@ -3,6 +3,7 @@
 use crate::bad::bad;
 use crate::tools::{has_cc, host, isolating, of_zoo, pixels, point, stream, view};
 use honami_host::{CallContext, Flow, Host, HostError, Kind, Level, Limits, Points, Values};
+use std::path::Path;
 use std::sync::Mutex;
 use std::time::Duration;
 
@@ -83,6 +84,12 @@ fn what_a_plugin_does_in_frame_2_costs_that_frame_and_no_more() {
         ("LEAKS", "no memory for a gigabyte"),
         ("SOCKET", "no socket"),
         ("FILES", "no file"),
+        ("CONNECTS", "no socket"),
+        ("CALLS", "none of the calls"),
+        (
+            "READS_ON",
+            "org.honami.bad died of SIGSEGV (it used memory that is not its own) in push of frame 2",
+        ),
     ] {
         if fault == "FILES" && !is_shut_in() {
             continue;
@@ -115,6 +122,43 @@ fn a_plugin_that_does_not_stop_is_ended() {
     let cx = CallContext { progress: &stop, ..silent };
     let got = tracker.push(&view(&pixels(2), 2), &cx).expect_err("it never stops");
     assert!(matches!(got, HostError::Cancelled { .. }), "{got}");
+}
+
+#[test]
+fn a_plugin_writes_in_a_folder_of_its_own_that_goes_with_it() {
+    if !has_cc() {
+        return;
+    }
+    let told = in_frame_2("SCRIBBLES", &isolating()).0.expect_err("it says where").to_string();
+    let place = told.split_whitespace().find(|word| word.ends_with("/scribble"));
+    let room = Path::new(place.expect(&told)).parent().unwrap();
+    assert!(room.starts_with(std::env::temp_dir()) && !room.exists(), "{told}");
+}
+
+#[test]
+fn deaths_count_wherever_it_works_until_it_is_let_go_on() {
+    if !has_cc() {
+        return;
+    }
+    let registry = bad("WITHERS", &[]);
+    let (info, cx) = (&registry.plugins()[0], CallContext::silent());
+    let die = |host: &Host, is_pardoned: bool| {
+        let (mut tracker, _) = host.tracker(info, &Values::default(), &cx)?;
+        tracker.pardon(is_pardoned);
+        tracker.begin(stream(), &cx)?;
+        tracker.push(&view(&pixels(2), 2), &cx)
+    };
+    for is_pardoned in [true, true, true, false, false, true, false] {
+        let died = die(&isolating(), is_pardoned).expect_err("it dies");
+        assert!(matches!(died, HostError::Ended { .. }), "{died}");
+    }
+    let held = die(&isolating(), false).expect_err("it is held");
+    assert!(matches!(held, HostError::Quarantined { .. }), "{held}");
+    let seen = die(&isolating().without_quarantine(), false).expect_err("it dies again");
+    assert!(matches!(seen, HostError::Ended { .. }), "{seen}");
+    assert!(isolating().retry(info).unwrap());
+    let died = die(&isolating(), false).expect_err("it may again");
+    assert!(matches!(died, HostError::Ended { .. }), "{died}");
 }
 
 #[test]

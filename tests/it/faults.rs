@@ -1,0 +1,249 @@
+//! What a plugin can do wrong, each through the real program: it is told in one line, what was tracked before is kept, the
+//! project is whole, no process is left, and nothing lies where it should not.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+use honami_tests::{Bench, ran, root};
+use rustix::process::{Pid, Signal, kill_process};
+
+use crate::isolated::{compile, has_cc, project};
+
+/// A plugin, what is said of it, how the program ends, and in which frames a point was seen (1) or lost (0).
+type Row = (&'static str, Made, &'static str, i32, &'static str);
+
+/// How a library with a fault is made.
+#[derive(Clone, Copy)]
+enum Made {
+    /// `core/host/tests/bad/bad.c` with these flags.
+    C(&'static [&'static str]),
+    /// A part of a good one.
+    Cut,
+    /// In Rust, of the zoo.
+    Panics,
+}
+
+use Made::{C, Cut, Panics};
+
+/// What is wrong in every frame is so from frame 2 on.
+const FROM: &str = "-DFROM=2";
+/// What a constructor writes, were it let.
+const WRITTEN: &str = "-DCONSTRUCTOR=\"written\"";
+
+/// Those that take longest come first.
+const ROWS: &[Row] = &[
+    ("infinite loop", C(&["-DFAULT=LOOPS"]), "it was ended after 10 s without a sign of life", 0, "11011111"),
+    (
+        "endless output",
+        C(&["-DFAULT=FLOODS"]),
+        "it was ended after 10 s without a sign of life",
+        0,
+        "11011111",
+    ),
+    ("sleep", C(&["-DFAULT=SLEEPS"]), "it was ended after 10 s without a sign of life", 0, "11011111"),
+    ("segfault", C(&["-DFAULT=SEGFAULT"]), "started again at frame 2: it died of SIGSEGV", 0, "11011111"),
+    ("abort", C(&["-DFAULT=ABORTS"]), "started again at frame 2: it died of SIGABRT", 0, "11011111"),
+    ("exit", C(&["-DFAULT=EXITS"]), "frame 2: it ended its process with status 0", 0, "11011111"),
+    ("fork", C(&["-DFAULT=FORKS"]), "started again at frame 2: it died of SIGSEGV", 0, "11011111"),
+    ("reads past a frame", C(&["-DFAULT=READS_ON"]), "frame 2: it died of SIGSEGV", 0, "11011111"),
+    ("dies in every frame", C(&["-DFAULT=WITHERS"]), "has failed three times within ten minutes", 1, "1100"),
+    ("panic", Panics, "the wheel came off in push (a fault in the plugin)", 1, ""),
+    ("escape codes", C(&["-DFAULT=ESCAPES"]), "2 tracks, frames 0-7", 0, "11111111"),
+    ("NaN", C(&["-DFAULT=NAN_POSITION", FROM]), "put point 1 at (20.5, NaN)", 1, "11"),
+    ("id not seeded", C(&["-DFAULT=UNKNOWN_ID", FROM]), "committed point 999 in frame 2", 1, "11"),
+    ("rows over capacity", C(&["-DFAULT=OVERCOMMIT", FROM]), "committed 3 rows of honami.points/1", 1, "11"),
+    ("writes past a column", C(&["-DFAULT=PAST_THE_END", FROM]), "wrote past the end of column x", 1, "11"),
+    ("endless rows", C(&["-DFAULT=TOO_MUCH", FROM]), "the host gives nothing (no memory)", 1, "11"),
+    ("leak of 1 GB", C(&["-DFAULT=LEAKS"]), "no memory for a gigabyte", 1, "11"),
+    ("socket", C(&["-DFAULT=SOCKET"]), "push: no socket", 1, "11"),
+    ("local socket", C(&["-DFAULT=CONNECTS"]), "push: no socket", 1, "11"),
+    ("file in a constructor", C(&["-DFAULT=CTOR_WRITES", WRITTEN]), "2 tracks, frames 0-7", 0, "11111111"),
+    ("exec in a constructor", C(&["-DFAULT=CTOR_EXECS", WRITTEN]), "2 tracks, frames 0-7", 0, "11111111"),
+    (
+        "dies in a constructor",
+        C(&["-DFAULT=CTOR_DIES", WRITTEN]),
+        "died of SIGABRT (it gave up) in create",
+        1,
+        "",
+    ),
+    ("wrong major", C(&["-DFAULT=NONE", "-DSYMBOL=honami_library_v2"]), "is built for ABI 2", 2, ""),
+    ("missing symbol", C(&["-DFAULT=NONE", "-DSYMBOL=other"]), "does not export honami_library_v1", 2, ""),
+    ("no note", C(&["-DFAULT=NONE", "-DNO_NOTE"]), "it carries no manifest", 2, ""),
+    ("truncated", Cut, "plugin.so: ", 2, ""),
+    ("note of another", C(&["-DFAULT=OTHER_MANIFEST"]), "has another manifest than its note", 1, ""),
+    (
+        "note that lies",
+        C(&["-DFAULT=NULL_TABLE"]),
+        "its manifest has honami.tracker/1, the instance has none",
+        1,
+        "",
+    ),
+];
+
+/// Some of them wait for the watch-dog: they do so beside the others.
+const AT_ONCE: usize = 4;
+
+#[test]
+fn what_a_plugin_does_wrong_is_told_and_costs_no_more_than_it_must() {
+    if !has_cc() {
+        return;
+    }
+    let left = Mutex::new(ROWS.iter());
+    let next = || left.lock().unwrap().next();
+    std::thread::scope(|scope| {
+        for _ in 0..AT_ONCE {
+            scope.spawn(|| {
+                while let Some(row) = next() {
+                    check(row);
+                }
+            });
+        }
+    });
+}
+
+fn check(&(name, made, wanted, code, seen): &Row) {
+    let bench = Bench::new();
+    project(&bench);
+    let with = make(&bench, made);
+    let before = files(&bench);
+    let line = format!("track p.honami --plugin plugin.so --with {with} --points points.csv");
+    let ran = ran(tracking(&bench, &line).output().unwrap());
+    let said = format!("{}{}", ran.stdout, ran.stderr);
+    assert!(ran.code == Some(code) && said.contains(wanted), "{name}: {ran:?}");
+    assert!(!said.contains('\u{1b}') && said.lines().count() == 1, "{name}: {ran:?}");
+    assert_whole(&bench, name, seen);
+    assert_eq!(files(&bench), before, "{name}");
+}
+
+/// A command whose temporary files lie in its folder, too; the memory of plugins is limited.
+fn tracking(bench: &Bench, line: &str) -> Command {
+    let mut command = bench.command(line.split(' '));
+    fs::create_dir_all(bench.path("tmp")).unwrap();
+    command.env("TMPDIR", bench.path("tmp")).env("HONAMI_PLUGIN_MEMORY", (1 << 29).to_string());
+    command
+}
+
+/// Makes `plugin.so`; the name of its tracker.
+fn make(bench: &Bench, made: Made) -> &'static str {
+    let library = bench.path("plugin.so");
+    match made {
+        C(flags) => drop(compile(bench, "plugin.so", flags)),
+        Cut => {
+            let whole = fs::read(compile(bench, "plugin.so", &["-DFAULT=NONE"])).unwrap();
+            fs::write(library, &whole[..whole.len() / 3]).unwrap();
+        }
+        Panics => {
+            fs::copy(zoo(), library).unwrap();
+            return "panics";
+        }
+    }
+    "bad"
+}
+
+/// The zoo's library; cargo says where it lies.
+fn zoo() -> PathBuf {
+    let build = ["build", "--quiet", "--package", "honami-host", "--example", "zoo", "--message-format=json"];
+    let output = Command::new(env!("CARGO")).args(build).current_dir(root()).output().unwrap();
+    let text = String::from_utf8(output.stdout).unwrap();
+    let parsed = text.lines().filter_map(|line| serde_json::from_str::<serde_json::Value>(line).ok());
+    let mut files = parsed.filter(|what| what["target"]["name"] == "zoo");
+    PathBuf::from(files.next_back().unwrap()["filenames"][0].as_str().unwrap())
+}
+
+/// The project can be read, its tracks are as they must be, and no process works for anybody in this folder.
+fn assert_whole(bench: &Bench, name: &str, seen: &str) {
+    let runs = bench.log("p.honami", "run");
+    assert_eq!(runs.len(), usize::from(!seen.is_empty()), "{name}");
+    if !seen.is_empty() {
+        let samples = bench.samples("p.honami");
+        let statuses: String =
+            samples.iter().filter(|row| row["track"] == "1").map(|row| row["status"].as_str()).collect();
+        assert_eq!(statuses, seen, "{name}");
+        fs::remove_file(bench.path("p.honami.csv")).unwrap();
+    }
+    let left = processes(&bench.path(""));
+    assert!(left.is_empty(), "{name}: {left:?}");
+}
+
+/// The files in the folder, and whatever lies in that for temporary files.
+fn files(bench: &Bench) -> BTreeSet<PathBuf> {
+    let of = |folder: PathBuf| fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    of(bench.path("")).filter(|path| path.is_file()).chain(of(bench.path("tmp"))).collect()
+}
+
+/// Processes that have this folder in their arguments, with their names.
+fn processes(folder: &Path) -> Vec<(Pid, String)> {
+    let is_in = |place: &PathBuf| {
+        let arguments = fs::read(place.join("cmdline")).unwrap_or_default();
+        String::from_utf8_lossy(&arguments).contains(&*folder.to_string_lossy())
+    };
+    let places = fs::read_dir("/proc").unwrap().flatten().map(|entry| entry.path()).filter(is_in);
+    let named = |place: PathBuf| {
+        let pid = Pid::from_raw(place.file_name()?.to_str()?.parse().ok()?)?;
+        Some((pid, fs::read_to_string(place.join("comm")).ok()?))
+    };
+    places.filter_map(named).collect()
+}
+
+/// What becomes of the library's file while the plugin is at work in frame 2.
+#[derive(Clone, Copy, Debug)]
+enum Act {
+    /// Another one takes its place.
+    Replaced,
+    /// Another one is written over it.
+    Overwritten,
+    /// What is no library is written over it.
+    Spoilt,
+}
+
+#[test]
+fn what_becomes_of_a_file_during_a_run_is_met_when_the_plugin_starts_again() {
+    if !has_cc() {
+        return;
+    }
+    for (act, signal, wanted, code, seen) in [
+        (Act::Replaced, Signal::USR1, "2 tracks, frames 0-7", 0, "11111111"),
+        (Act::Overwritten, Signal::USR1, "2 tracks, frames 0-7", 0, "11111111"),
+        (Act::Spoilt, Signal::USR1, "2 tracks, frames 0-7", 0, "11111111"),
+        // The new one goes on where the old one was: no frame is lost.
+        (Act::Replaced, Signal::KILL, "started again at frame 2: it died of SIGKILL", 0, "11111111"),
+        (Act::Overwritten, Signal::KILL, "started again at frame 2: it died of SIGKILL", 0, "11111111"),
+        (Act::Spoilt, Signal::KILL, "failed at frame 2, 2 tracks up to there kept", 1, "11"),
+    ] {
+        let bench = Bench::new();
+        project(&bench);
+        let library = compile(&bench, "plugin.so", &["-DFAULT=WAITS"]);
+        let good = compile(&bench, "good.so", &["-DFAULT=NONE"]);
+        let line = "track p.honami --plugin plugin.so --with bad --points points.csv";
+        let child = tracking(&bench, line).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let plugin = waiting(&bench, &child);
+        match act {
+            Act::Replaced => fs::rename(good, library).unwrap(),
+            Act::Overwritten => fs::write(library, fs::read(good).unwrap()).unwrap(),
+            Act::Spoilt => fs::write(library, "no library").unwrap(),
+        }
+        kill_process(plugin, signal).unwrap();
+        let ran = ran(child.wait_with_output().unwrap());
+        let said = format!("{}{}", ran.stdout, ran.stderr);
+        assert!(ran.code == Some(code) && said.contains(wanted), "{act:?} {signal:?}: {ran:?}");
+        assert_eq!(said.contains("started again"), wanted.contains("started again"), "{act:?}: {ran:?}");
+        assert_whole(&bench, &format!("{act:?} {signal:?}"), seen);
+    }
+}
+
+/// The plugin's process, once it waits in frame 2.
+fn waiting(bench: &Bench, child: &Child) -> Pid {
+    let begun = Instant::now();
+    loop {
+        let found = processes(&bench.path("")).into_iter().find(|(_, name)| name.trim() == "waits");
+        if let Some((pid, _)) = found {
+            return pid;
+        }
+        assert!(begun.elapsed() < Duration::from_secs(60), "{} does not come to frame 2", child.id());
+        std::thread::yield_now();
+    }
+}
