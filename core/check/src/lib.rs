@@ -4,8 +4,15 @@
 //! 10 stress. [`checks`] is the table of all; a [`Subject`] is the plugin under test. A check runs where it is called:
 //! who calls many gives each a process of its own, because a plugin may take its process with it.
 
+mod clip;
+mod clusterer;
+mod course;
 mod file;
+mod frames;
+mod guarded;
+mod params;
 mod subject;
+mod truth;
 
 pub use subject::Subject;
 
@@ -52,5 +59,5 @@ impl From<HostError> for Fault {
 /// All checks, level by level.
 #[must_use]
 pub fn checks() -> Vec<Check> {
-    [file::CHECKS].concat()
+    [file::CHECKS, params::CHECKS, frames::CHECKS, &truth::checks(), clusterer::CHECKS].concat()
 }

@@ -1,7 +1,6 @@
 //! The plugin under test, and handles to it.
 
-use crate::Fault;
-use honami_host::{CallContext, Clusterer, Host, Hosting, PluginInfo, Tracker, Values};
+use honami_host::{CallContext, Clusterer, Host, HostError, Hosting, PluginInfo, Tracker, Values};
 use rand_pcg::Pcg64;
 
 /// A plugin under test.
@@ -25,7 +24,7 @@ impl Subject {
     ///
     /// # Errors
     /// What keeps it from starting.
-    pub fn tracker(&self, hosting: Hosting, values: &Values) -> Result<Tracker, Fault> {
+    pub fn tracker(&self, hosting: Hosting, values: &Values) -> Result<Tracker, HostError> {
         Ok(self.host.clone().hosting(hosting).tracker(&self.info, values, &CallContext::silent())?.0)
     }
 
@@ -33,7 +32,7 @@ impl Subject {
     ///
     /// # Errors
     /// What keeps it from starting.
-    pub fn clusterer(&self, hosting: Hosting, values: &Values) -> Result<Clusterer, Fault> {
+    pub fn clusterer(&self, hosting: Hosting, values: &Values) -> Result<Clusterer, HostError> {
         Ok(self.host.clone().hosting(hosting).clusterer(&self.info, values, &CallContext::silent())?.0)
     }
 

@@ -110,6 +110,12 @@ impl PluginInfo {
         self.interfaces.iter().any(|id| id == interface)
     }
 
+    /// Whether it is a program, which always has a process of its own, and no library.
+    #[must_use]
+    pub fn is_program(&self) -> bool {
+        !self.exec.is_empty()
+    }
+
     /// Hash of its library's file as it is now, lower-case hexadecimal.
     ///
     /// # Errors

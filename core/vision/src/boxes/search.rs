@@ -136,7 +136,8 @@ impl<'a> Search<'a> {
         self.places.extend((-1..2).flat_map(|y| (-1..2).map(move |x| [dx + x, dy + y])));
         self.measure(template, next, 0, false);
         let costs = std::array::from_fn(|i| f64::from(self.costs[i]));
-        let more = peak::minimum(&costs).unwrap_or([0.0; 2]);
+        // Nothing costs less than nothing: what is the same in every pixel has moved by whole ones.
+        let more = peak::minimum(&costs).filter(|_| cost > 0).unwrap_or([0.0; 2]);
         let to = [0, 1].map(|i| template.from[i] + best[i] as f32 + more[i] as f32);
         let sizes = [next.size().0, next.size().1];
         // It is where it could go no farther.

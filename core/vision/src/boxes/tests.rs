@@ -181,6 +181,15 @@ fn the_fraction_of_a_pixel_is_found() {
 }
 
 #[test]
+fn what_has_not_moved_is_found_where_it_was() {
+    let points: Vec<Point> = (0..50).map(|i| [30.3 + i as f32, 28.6 + i as f32 * 0.7]).collect();
+    let params = pyramidal(3, 0.07, exhaustive(10, 16, Measure::Ssd));
+    let i = picture(9, [0.0; 2]);
+    let found = track(&boxes(&i, &params), &boxes(&i, &params), &points, None, &params, 1);
+    assert_eq!(found.iter().map(|found| found.to).collect::<Vec<_>>(), points);
+}
+
+#[test]
 fn correlation_bears_another_brightness_and_contrast() {
     let i = picture(3, [0.0; 2]);
     let j: Vec<u8> = picture(3, [4.0, -3.0]).iter().map(|p| p / 2 + 100).collect();
