@@ -34,6 +34,7 @@ mod pace;
 pub mod panel;
 mod pictures;
 pub mod plotted;
+pub mod prints;
 pub mod queue;
 pub mod ranging;
 pub mod recent;

@@ -12,6 +12,7 @@ pub mod glyph;
 pub mod input;
 pub mod key;
 pub mod link;
+mod prints;
 pub mod screen;
 pub mod signals;
 pub mod still;

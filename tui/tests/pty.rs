@@ -16,6 +16,8 @@ mod correct;
 mod display;
 #[path = "pty/ends.rs"]
 mod ends;
+#[path = "pty/plugins.rs"]
+mod plugins;
 #[path = "pty/session.rs"]
 mod session;
 #[path = "pty/sizes.rs"]

@@ -42,6 +42,7 @@ pub use host::{Host, Hosting, Origin};
 pub use isolated::{Ended, Limits, program};
 pub use manifest::{Caps, Entry, Kind, Numeric, Param, ParamKind};
 pub use note::needed;
+pub use plain::plain;
 pub use plughost::{serve, shut_in};
 pub use registry::{PluginInfo, Registry, SearchPath, Trust};
 pub use script::manifest_of as file_of;

@@ -2,7 +2,8 @@
 
 /// Text without control characters: escape sequences go with their letters and numbers, and what separates words
 /// becomes a space.
-pub(crate) fn plain(text: &str) -> String {
+#[must_use]
+pub fn plain(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     let mut letters = text.chars().peekable();
     while let Some(letter) = letters.next() {

@@ -32,6 +32,12 @@ pub(crate) struct Stream {
 }
 
 impl Tracker {
+    /// Its id.
+    #[must_use]
+    pub fn plugin(&self) -> &str {
+        &self.handle.plugin
+    }
+
     /// By how many frames results lag behind; `u32::MAX`: all come at the end.
     #[must_use]
     pub fn latency(&self) -> u32 {

@@ -107,7 +107,7 @@ impl ClusterJob {
         if progress.report(0, 1000, WHAT) == Flow::Stop {
             return Err(WorkbenchError::Stopped);
         }
-        let ear = Ear::new(progress);
+        let ear = Ear::new(&self.plugin, progress);
         let found = match ear.whole(WHAT, |call| self.clusterer.run(&self.tracks, call)) {
             Err(HostError::Cancelled { .. }) => return Err(WorkbenchError::Stopped),
             other => other?,

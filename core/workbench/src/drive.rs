@@ -140,7 +140,7 @@ pub fn drive(
 ) -> Result<Driven, WorkbenchError> {
     plan.seeds.sort_by_key(|seed| (seed.frame, seed.track));
     let (first, total) = (plan.frames.start, u64::from(plan.frames.end - plan.frames.start));
-    let ear = Ear::new(progress);
+    let ear = Ear::new(tracker.plugin(), progress);
     let board = Board::new(first);
     let mut ride = Ride { media, tracker, plan: &plan, board, born: BTreeMap::new(), step_secs: Vec::new() };
     let mut stopped = ear.call(0, total, |call| ride.begin(call));

@@ -1,4 +1,4 @@
-//! Listening to a plugin at work: its progress goes on to whoever watches, its warnings are kept.
+//! Listening to a plugin at work: its progress and its words go on to whoever watches, its warnings are kept.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -11,13 +11,17 @@ const MAX_WARNINGS: usize = 20;
 
 /// Listens to the calls of one job.
 pub(crate) struct Ear<'a> {
+    /// Short name of the plugin.
+    plugin: String,
     progress: &'a dyn Progress,
     warnings: Mutex<Vec<String>>,
 }
 
 impl<'a> Ear<'a> {
-    pub(crate) fn new(progress: &'a dyn Progress) -> Self {
-        Self { progress, warnings: Mutex::default() }
+    /// Listens to the plugin of this id.
+    pub(crate) fn new(plugin: &str, progress: &'a dyn Progress) -> Self {
+        let plugin = plugin.rsplit('.').next().unwrap_or(plugin).to_owned();
+        Self { plugin, progress, warnings: Mutex::default() }
     }
 
     /// Makes one call while `done` of `total` steps are done.
@@ -34,6 +38,7 @@ impl<'a> Ear<'a> {
     }
 
     fn hear(&self, level: Level, text: &str) {
+        self.progress.hear(&self.plugin, level, text);
         let mut warnings = self.warnings.lock().unwrap_or_else(PoisonError::into_inner);
         let is_new = !warnings.iter().any(|known| known == text);
         if level >= Level::Warning && is_new && warnings.len() < MAX_WARNINGS {

@@ -1,7 +1,7 @@
 //! How a job says how far it is, and how it is told to stop.
 
 /// Whether a job goes on, or stops soon and keeps what can be kept.
-pub use honami_host::Flow;
+pub use honami_host::{Flow, Level};
 
 /// Whoever watches a job; called from the job's thread.
 pub trait Progress: Sync {
@@ -10,6 +10,9 @@ pub trait Progress: Sync {
 
     /// A part of the job begins that takes a while and has a name: `klt, 2 of 3`.
     fn part(&self, _name: &str) {}
+
+    /// A plugin, by its short name, has logged or printed a line; called from any thread.
+    fn hear(&self, _plugin: &str, _level: Level, _line: &str) {}
 }
 
 /// Somebody who watches, told of all steps under one name.
@@ -23,6 +26,10 @@ pub(crate) struct Named<'a> {
 impl Progress for Named<'_> {
     fn report(&self, done: u64, total: u64, _what: &str) -> Flow {
         self.progress.report(done, total, &self.name)
+    }
+
+    fn hear(&self, plugin: &str, level: Level, line: &str) {
+        self.progress.hear(plugin, level, line);
     }
 }
 

@@ -220,6 +220,7 @@ table! {
     PlotGroup "plot-group" ["P G"] [Review ""] "plot the selected track's group, or the track"
     WidePanel "panel-wide" ["P w"] [Review ""] "show the panel over all of the picture, or beside it"
     PanelVersus "panel-two-runs" ["P a"] [Review ""] "show or hide how two runs disagree"
+    PanelPrints "panel-prints" ["P o"] [Review ""] "show or hide what plugins print and log"
     PanelLog "panel-log" ["P l"] [Review ""] "show or hide the log of this session"
     SaveLog "save-log" ["P L"] [Review ""] "save the log of this session beside the project; `honami replay` does it again"
     Glyphs "glyphs" ["v q"] [Review ""] "show the picture in half blocks, quadrants, sextants or octants (what the font has)"

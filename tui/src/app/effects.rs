@@ -427,17 +427,22 @@ impl World {
 
     fn job_news(&mut self) -> Vec<Fact> {
         let Some((running, job)) = &mut self.running else { return Vec::new() };
-        if !running.is_finished() {
+        // Before its last words are asked for it must have ended.
+        let is_finished = running.is_finished();
+        let prints = running.prints();
+        let mut facts: Vec<Fact> =
+            (!prints.is_empty()).then_some(Fact::Printed(prints)).into_iter().collect();
+        if !is_finished {
             let step = running.step();
             let done = (step.done, step.total);
-            if done == job.done && step.what == job.what {
-                return Vec::new();
+            if done != job.done || step.what != job.what {
+                job.done = done;
+                job.what = step.what;
+                facts.push(Fact::Job(Some(job.clone())));
             }
-            job.done = done;
-            job.what = step.what;
-            return vec![Fact::Job(Some(job.clone()))];
+            return facts;
         }
-        let mut facts = vec![Fact::Job(None)];
+        facts.push(Fact::Job(None));
         facts.extend(self.finish().unwrap_or_else(|error| vec![failed(&error)]));
         facts
     }

@@ -13,7 +13,7 @@ use honami_model::history::{Entry, EntryId};
 use honami_model::over::{Laid, Over};
 use honami_model::track::{Quality, Sample, Source, Span, Status, TrackId};
 use honami_workbench::offer::{Errors, Wish};
-use honami_workbench::plugins::Param;
+use honami_workbench::plugins::{Level, Param};
 use honami_workbench::review::{Evidence, Kind, Review, Subject};
 use honami_workbench::versus::{Compared, Entrant, Paired, disagreement};
 use ratatui::layout::Rect;
@@ -21,6 +21,7 @@ use ratatui::layout::Rect;
 use super::correcting::{Answer, Ask};
 use super::form::{Plugin, Task};
 use super::layout::Lens;
+use super::prints::Print;
 use super::state::State;
 use super::tracks::{Groups, TrackRow};
 use super::update::{Effect, Fact, Msg, update};
@@ -41,6 +42,29 @@ pub(super) fn state() -> State {
     state.history.grow(edits(), EntryId(3));
     review(&mut state);
     state
+}
+
+/// What plugins print and log: of every level, from here and from elsewhere, long and short.
+pub(super) fn prints(state: &mut State) {
+    let print = |(t_s, plugin, level, text): (f64, &str, Level, &str)| Print {
+        t_s,
+        plugin: plugin.to_owned(),
+        level,
+        text: text.to_owned(),
+    };
+    let lines = [
+        (0.01, "my-flow", Level::Debug, "window 21, levels 3"),
+        (0.02, "my-flow", Level::Info, "weights read from flow.onnx"),
+        (1.5, "", Level::Info, "[libgomp] cannot set affinity"),
+        (
+            12.25,
+            "my-very-long-flow",
+            Level::Warning,
+            "frame 40: 12 of 135 points have no texture around them",
+        ),
+        (103.9, "my-flow", Level::Error, "no memory for level 2"),
+    ];
+    state.prints.add(lines.map(print));
 }
 
 /// The undo tree: after three edits one was taken back, and two others were made.

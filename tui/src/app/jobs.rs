@@ -1,5 +1,6 @@
 //! Work behind the screen: one job at a time, on a thread of its own, with progress and a stop.
 
+use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -8,10 +9,11 @@ use std::time::{Duration, Instant};
 
 use honami_workbench::WorkbenchError;
 use honami_workbench::cluster::{ClusterDone, ClusterJob};
-use honami_workbench::progress::{Flow, Progress};
+use honami_workbench::progress::{Flow, Level, Progress};
 use honami_workbench::retrack::{RetrackJob, Retracked};
 use honami_workbench::track::{TrackDone, TrackJob};
 
+use super::prints::{N_KEPT, Print};
 use crate::term::signals::Waker;
 
 /// Progress wakes the screen this often at most.
@@ -48,7 +50,10 @@ pub(super) struct Running {
 }
 
 struct Shared {
+    began: Instant,
     step: Mutex<(Step, Option<Instant>)>,
+    /// What plugins have printed and nobody has asked for yet.
+    prints: Mutex<VecDeque<Print>>,
     stop: AtomicBool,
     ended: Arc<AtomicBool>,
     waker: Waker,
@@ -63,6 +68,16 @@ impl Progress for Shared {
             self.waker.wake();
         }
         if self.stop.load(Ordering::Relaxed) { Flow::Stop } else { Flow::Continue }
+    }
+
+    fn hear(&self, plugin: &str, level: Level, line: &str) {
+        let t_s = self.began.elapsed().as_secs_f64();
+        let print = Print { t_s, plugin: plugin.to_owned(), level, text: line.to_owned() };
+        let mut prints = self.prints.lock().unwrap_or_else(PoisonError::into_inner);
+        prints.push_back(print);
+        if prints.len() > N_KEPT {
+            prints.pop_front();
+        }
     }
 }
 
@@ -80,7 +95,9 @@ impl Running {
         work: impl FnOnce(&dyn Progress) -> Done + Send + 'static,
     ) -> std::io::Result<Self> {
         let shared = Arc::new(Shared {
+            began: Instant::now(),
             step: Mutex::default(),
+            prints: Mutex::default(),
             stop: AtomicBool::new(false),
             ended: Arc::default(),
             waker,
@@ -101,6 +118,11 @@ impl Running {
 
     pub(super) fn step(&self) -> Step {
         self.shared.step.lock().unwrap_or_else(PoisonError::into_inner).0.clone()
+    }
+
+    /// What plugins have printed since it was asked last.
+    pub(super) fn prints(&self) -> Vec<Print> {
+        self.shared.prints.lock().unwrap_or_else(PoisonError::into_inner).drain(..).collect()
     }
 
     pub(super) fn is_finished(&self) -> bool {

@@ -17,6 +17,8 @@ pub enum Panel {
     Plots,
     /// Two runs beside each other.
     Versus,
+    /// What plugins print and log.
+    Prints,
     /// What was done in this session.
     Log,
 }
@@ -31,6 +33,7 @@ impl Panel {
         Self::History,
         Self::Plots,
         Self::Versus,
+        Self::Prints,
         Self::Log,
     ];
 
@@ -45,6 +48,7 @@ impl Panel {
             Self::History => "history",
             Self::Plots => "plots",
             Self::Versus => "A/B",
+            Self::Prints => "prints",
             Self::Log => "log",
         }
     }

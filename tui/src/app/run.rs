@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use honami_model::document::RunId;
+use honami_workbench::plugins::{Level, plain};
 use honami_workbench::versus::{self, Compared};
 use honami_workbench::{WorkbenchError, plots};
 
@@ -20,6 +21,7 @@ use super::pace::Pace;
 use super::panel::Panel;
 use super::pictures::Pictures;
 use super::plotted::{Lot, PlotRequest, Plotted};
+use super::prints::Print;
 use super::recent;
 use super::seat::Seat;
 use super::state::{Display, Link, Mode, Notice, State};
@@ -179,6 +181,7 @@ impl App {
                 self.frame = None;
             }
             is_leaving = is_leaving || self.hear(happened.events, screen, world)?;
+            self.overhear(screen);
             for fact in world.news() {
                 self.frame = None;
                 self.tell(Msg::Fact(fact), screen, world)?;
@@ -249,6 +252,19 @@ impl App {
             }
         }
         Ok(false)
+    }
+
+    /// Takes in what was printed in this process: nothing of it is on the screen.
+    fn overhear(&mut self, screen: &Screen) {
+        let since = self.state.job.as_ref().map_or(Duration::ZERO, |job| job.since);
+        let t_s = screen.now().saturating_sub(since).as_secs_f64();
+        let print =
+            |line: String| Print { t_s, plugin: String::new(), level: Level::Info, text: plain(&line) };
+        let prints: Vec<Print> = screen.printed().into_iter().map(print).collect();
+        if !prints.is_empty() {
+            update(&mut self.state, Msg::Fact(Fact::Printed(prints)));
+            self.frame = None;
+        }
     }
 
     fn decoding_tick(&self, screen: &Screen, world: &World) -> Option<Duration> {

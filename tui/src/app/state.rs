@@ -21,6 +21,7 @@ use super::menu::Menu;
 use super::motion::Motion;
 use super::panel::Panel;
 use super::plotted::Plotted;
+use super::prints::Prints;
 use super::queue::{Looked, Opened};
 use super::ranging::Ranging;
 use super::sketching::Sketching;
@@ -141,6 +142,8 @@ pub struct State {
     pub mouse: bool,
     /// The tutorial, in a project made for it.
     pub lesson: Option<Lesson>,
+    /// What plugins have printed and logged.
+    pub prints: Prints,
     /// What was done in this session.
     pub log: CommandLog,
     /// Keys that wait until a correction is worked out that they keep.
@@ -318,6 +321,7 @@ impl State {
             theme: 0,
             mouse: true,
             lesson: None,
+            prints: Prints::default(),
             log: CommandLog::default(),
             held: Vec::new(),
             is_asking: false,

@@ -33,6 +33,9 @@ pub(super) struct Common {
     /// Print one JSON object for machines instead of text.
     #[arg(long, global = true)]
     pub(super) json: bool,
+    /// Say what plugins print and log, on standard error.
+    #[arg(short, long, global = true)]
+    pub(super) verbose: bool,
     /// Look for plugins in this file or folder first.
     #[arg(long = "plugin", value_name = "PATH", global = true)]
     pub(super) plugins: Vec<PathBuf>,

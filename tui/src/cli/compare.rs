@@ -30,7 +30,7 @@ pub(super) fn compare(args: &Compare, common: &Common) -> anyhow::Result<Answer>
     let contestants = contestants(args, &registry)?;
     let Asked { question, n_unseen } = ask(args, opened, &contestants)?;
     let frames = question.frames.clone();
-    let found = compare::compare(&media, &registry, &contestants, question, &report::Bar::new())?;
+    let found = compare::compare(&media, &registry, &contestants, question, &report::Bar::with(common))?;
     let head = head(&found, &frames, n_unseen);
     if let Some(path) = &args.svg {
         let name = args.clip[0].file_name().unwrap_or_default().to_string_lossy().into_owned();

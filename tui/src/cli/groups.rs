@@ -18,7 +18,7 @@ pub(super) fn cluster(args: &Cluster, common: &Common) -> anyhow::Result<Answer>
     let plugin = args.plugin.with.as_deref().unwrap_or(DEFAULT).to_owned();
     let params = track::values(&session.registry, Kind::Clusterer, &plugin, &args.plugin.set)?;
     let request = ClusterRequest { plugin, params, groups: args.groups };
-    Ok(describe(&run(&mut session, &request, &report::Bar::new())?))
+    Ok(describe(&run(&mut session, &request, &report::Bar::with(common))?))
 }
 
 /// The default clusterer with its default parameters.

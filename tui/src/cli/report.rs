@@ -4,20 +4,29 @@ use std::io::{IsTerminal as _, Write as _};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use honami_workbench::progress::{Flow, Progress};
+use honami_workbench::progress::{Flow, Level, Progress};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use signal_hook::consts::SIGINT;
 use signal_hook::{SigId, flag};
 
+use super::args::Common;
+
 /// A progress bar on standard error; Ctrl-C asks the job to stop and keep what it has.
 pub(super) struct Bar {
     bar: ProgressBar,
+    /// Whether what plugins print is said.
+    verbose: bool,
     stop: Arc<AtomicBool>,
     handlers: Vec<SigId>,
 }
 
 impl Bar {
     pub(super) fn new() -> Self {
+        Self::with(&Common::default())
+    }
+
+    /// A bar over which plugins are heard, if that was asked for.
+    pub(super) fn with(common: &Common) -> Self {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(10));
         let style = "{msg} {pos}/{len} ▕{bar:20}▏ {eta} left";
         if let Ok(style) = ProgressStyle::with_template(style) {
@@ -30,7 +39,8 @@ impl Bar {
         if second.is_err() || first.is_err() {
             bar.suspend(|| say("Ctrl-C cannot be caught here: it ends the program at once"));
         }
-        Self { bar, stop, handlers: [second, first].into_iter().flatten().collect() }
+        let verbose = common.verbose;
+        Self { bar, verbose, stop, handlers: [second, first].into_iter().flatten().collect() }
     }
 }
 
@@ -54,6 +64,17 @@ impl Progress for Bar {
         self.bar.set_length(total);
         self.bar.set_position(done);
         if self.stop.load(Ordering::Relaxed) { Flow::Stop } else { Flow::Continue }
+    }
+
+    fn hear(&self, plugin: &str, level: Level, line: &str) {
+        if self.verbose {
+            let word = match level {
+                Level::Debug | Level::Info => "",
+                Level::Warning => "warning: ",
+                Level::Error => "error: ",
+            };
+            self.bar.suspend(|| say(&format!("{plugin}: {word}{line}")));
+        }
     }
 
     fn part(&self, name: &str) {

@@ -41,7 +41,7 @@ pub(super) fn track(args: &Track, common: &Common) -> anyhow::Result<Answer> {
         area: area(args),
     };
     // Before the run begins: from here on Ctrl-C stops it and keeps what it has.
-    let bar = report::Bar::new();
+    let bar = report::Bar::with(common);
     Ok(describe(&run(&mut session, &request, &bar)?, &args.project))
 }
 

@@ -108,7 +108,7 @@ impl Screen {
 
     fn enter(&mut self) -> io::Result<()> {
         let now = self.now();
-        let tty = self.tty.insert(Tty::enter(&self.log)?);
+        let tty = self.tty.insert(Tty::enter(&self.log, self.signals.waker())?);
         self.writer.begin(tty, tty::ENTER, now)?;
         self.set_mouse(self.mouse)
     }
@@ -143,6 +143,12 @@ impl Screen {
     #[must_use]
     pub fn waker(&self) -> Waker {
         self.signals.waker()
+    }
+
+    /// Lines that others have printed since it was asked last, as they were printed.
+    #[must_use]
+    pub fn printed(&self) -> Vec<String> {
+        self.tty.as_ref().map_or_else(Vec::new, Tty::printed)
     }
 
     /// Whether the terminal shows no colours.

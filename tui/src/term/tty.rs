@@ -1,7 +1,7 @@
 //! The terminal device: taken over for a session, given back exactly once, whatever happens.
 //!
 //! The terminal is opened anew (`/dev/tty`), so that non-blocking writes are ours alone and a plugin that prints
-//! writes to a log file and not into the screen: descriptors 1 and 2 point there for the session.
+//! does not print into the screen: descriptors 1 and 2 are a pipe for the session.
 
 use std::fs::{self, File};
 use std::io;
@@ -15,6 +15,9 @@ use std::time::Duration;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fs::{Mode, OFlags};
 use rustix::termios::{self, OptionalActions, Termios};
+
+use super::prints::Prints;
+use super::signals::Waker;
 
 /// Alternate screen, no cursor, mouse presses and drags, bracketed paste, unambiguous Esc where kitty's
 /// protocol is spoken.
@@ -51,15 +54,16 @@ static SAVED: Mutex<Option<Saved>> = Mutex::new(None);
 pub struct Tty {
     device: OwnedFd,
     raw: Termios,
+    prints: Prints,
 }
 
 impl Tty {
-    /// Takes the terminal over: raw mode, output of everybody else to the log file, or where that cannot be written
-    /// to one in the folder for temporary files, or nowhere.
+    /// Takes the terminal over: raw mode, output of everybody else to [`printed`](Self::printed) and to the log file,
+    /// or where that cannot be written to one in the folder for temporary files, or nowhere.
     ///
     /// # Errors
     /// When the process has no terminal.
-    pub fn enter(log: &Path) -> io::Result<Self> {
+    pub fn enter(log: &Path, waker: Waker) -> io::Result<Self> {
         let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC | OFlags::NONBLOCK;
         let device = rustix::fs::open("/dev/tty", flags, Mode::empty()).map_err(|error| {
             let what = "a terminal is wanted, this process has none; for work without one see `honami help`";
@@ -67,9 +71,10 @@ impl Tty {
         })?;
         let modes = termios::tcgetattr(&device)?;
         let spare = rustix::io::fcntl_dupfd_cloexec(&device, 3)?;
-        let log = open_any_log(log)?;
-        let stdout = redirect(rustix::stdio::stdout(), || rustix::stdio::dup2_stdout(&log))?;
-        let stderr = match redirect(rustix::stdio::stderr(), || rustix::stdio::dup2_stderr(&log)) {
+        let (pipe, print_to) = rustix::pipe::pipe_with(rustix::pipe::PipeFlags::CLOEXEC)?;
+        let prints = Prints::begin(pipe, open_any_log(log)?, waker)?;
+        let stdout = redirect(rustix::stdio::stdout(), || rustix::stdio::dup2_stdout(&print_to))?;
+        let stderr = match redirect(rustix::stdio::stderr(), || rustix::stdio::dup2_stderr(&print_to)) {
             Ok(stderr) => stderr,
             Err(error) => {
                 stdout.map_or(Ok(()), rustix::stdio::dup2_stdout)?;
@@ -82,7 +87,7 @@ impl Tty {
         hook_panics();
         let mut raw = modes;
         raw.make_raw();
-        let tty = Self { device, raw };
+        let tty = Self { device, raw, prints };
         tty.set_raw()?;
         Ok(tty)
     }
@@ -93,6 +98,12 @@ impl Tty {
     /// When the terminal is gone.
     pub fn set_raw(&self) -> io::Result<()> {
         Ok(termios::tcsetattr(&self.device, OptionalActions::Now, &self.raw)?)
+    }
+
+    /// Lines that were printed by others since it was asked last, as they were printed; none where output goes to files.
+    #[must_use]
+    pub fn printed(&self) -> Vec<String> {
+        self.prints.take()
     }
 
     /// Columns and rows; 80x24 where the terminal does not say.
@@ -114,6 +125,7 @@ impl AsFd for Tty {
 impl Drop for Tty {
     fn drop(&mut self) {
         restore();
+        self.prints.end();
     }
 }
 

@@ -91,7 +91,7 @@ impl Bench<'_> {
             births: 0..0,
         };
         let watch = self.pass(", there and back");
-        let ear = Ear::new(&watch);
+        let ear = Ear::new(tracker.plugin(), &watch);
         let total = frames.len() as u64;
         let silent = CallContext::silent();
         tracker.begin(info, &silent)?;

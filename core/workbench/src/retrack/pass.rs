@@ -82,7 +82,7 @@ impl Rider<'_> {
         let known = path.frames().zip(&path.samples).filter(|(frame, _)| pass.frames.contains(frame));
         known.for_each(|(_, sample)| bounds.add([sample.x, sample.y]));
         let mut margin_px = self.scene.margin_px;
-        let ear = Ear::new(self.scene.meter.progress);
+        let ear = Ear::new(self.tracker.plugin(), self.scene.meter.progress);
         let found = loop {
             let crop = Crop::round(&bounds, margin_px, self.scene.media.clip());
             match self.attempt(pass, &crop, margin_px, &ear)? {

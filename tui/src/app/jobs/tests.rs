@@ -29,3 +29,21 @@ fn one_that_panics_has_ended() {
     assert!(running.ends_within(Duration::from_secs(60)));
     assert!(running.join().is_none());
 }
+
+#[test]
+fn what_a_plugin_prints_is_told_once_and_bounded() {
+    let (waker, _woken) = signals::pair().unwrap();
+    let running = Running::spawn(waker, |progress| {
+        for n in 0..=N_KEPT {
+            progress.hear("mine", Level::Info, &n.to_string());
+        }
+        Done::Track(Box::new(Err(WorkbenchError::Stopped)))
+    });
+    let running = running.unwrap();
+    assert!(running.ends_within(Duration::from_secs(60)));
+    let prints = running.prints();
+    let texts: Vec<&str> =
+        [prints.first(), prints.last()].iter().flatten().map(|print| print.text.as_str()).collect();
+    assert_eq!((prints.len(), texts), (N_KEPT, vec!["1", "1000"]), "the oldest goes");
+    assert_eq!(running.prints(), []);
+}

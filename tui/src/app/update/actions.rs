@@ -127,6 +127,7 @@ fn look_about(state: &mut State, action: Action) -> Vec<Effect> {
         Action::PanelPlots => show_panel(state, Panel::Plots),
         Action::PlotGroup => look::plot_group(state),
         Action::WidePanel => state.panel_is_wide = !state.panel_is_wide,
+        Action::PanelPrints => show_panel(state, Panel::Prints),
         Action::PanelLog => show_panel(state, Panel::Log),
         Action::Glyphs => turn_glyphs(state),
         Action::Stills => turn_stills(state),

@@ -14,6 +14,7 @@ use crate::app::dense::FieldOf;
 use crate::app::files::Listing;
 use crate::app::menu::Menu;
 use crate::app::plotted::Subject;
+use crate::app::prints::Print;
 use crate::app::state::{Display, Job, Link, Notice};
 use crate::app::tracks::{Groups, TrackRow};
 use honami_workbench::plots::Plots;
@@ -42,6 +43,8 @@ pub enum Fact {
     ThereAgain(honami_model::track::TrackId),
     /// A job began, went on, or ended.
     Job(Option<Job>),
+    /// Plugins have printed or logged this.
+    Printed(Vec<Print>),
     /// Something worth a line.
     Said(Notice),
     /// What is known of the link.
@@ -138,6 +141,7 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
             state.history.grow(new, head);
             queue::on_history(state, from, has_grown);
         }
+        Fact::Printed(lines) => state.prints.add(lines),
         Fact::Refused => {
             if let Some(before) = state.before.take() {
                 before.put_back(state);

@@ -8,6 +8,7 @@ mod history;
 mod key_frames;
 mod log;
 mod plots;
+mod prints;
 mod queue;
 mod tracks;
 mod versus;
@@ -73,6 +74,7 @@ fn list<'a>(state: &'a State, panel: Panel) -> Option<Box<dyn List + 'a>> {
         Panel::KeyFrames => Box::new(key_frames::KeyFrames::of(state)),
         Panel::History => Box::new(history::History(state)),
         Panel::Versus => Box::new(versus::VersusList::of(state)),
+        Panel::Prints => Box::new(prints::PrintList(state)),
         Panel::Log => Box::new(log::Log(state)),
         Panel::Plots => return None,
     })

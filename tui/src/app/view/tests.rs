@@ -14,6 +14,7 @@ use honami_workbench::offer::{Errors, LeftOut, Model};
 use honami_workbench::overlay::VelocityField;
 use ratatui::style::{Color, Modifier};
 
+mod plugins;
 mod sizes;
 
 /// The screen as text, then its styles as runs: `row: columns style`. Cells of the picture in half blocks are `▒`
