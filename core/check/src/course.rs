@@ -39,7 +39,7 @@ pub(crate) fn of_able(
 }
 
 /// Why a tracker does not start without a file that only its user has.
-fn file_missed(subject: &Subject) -> Result<Option<String>, Fault> {
+pub(crate) fn file_missed(subject: &Subject) -> Result<Option<String>, Fault> {
     let is_open = |kind: &ParamKind| matches!(kind, ParamKind::Path { default, .. } if default.is_empty());
     let path = subject.info.params.iter().find(|param| is_open(&param.kind));
     let Some(path) = path.filter(|_| subject.info.kind == Kind::Tracker) else { return Ok(None) };

@@ -11,8 +11,11 @@ mod file;
 mod frames;
 mod guarded;
 mod params;
+mod running;
+mod stress;
 mod subject;
 mod truth;
+mod work;
 
 pub use subject::Subject;
 
@@ -59,5 +62,14 @@ impl From<HostError> for Fault {
 /// All checks, level by level.
 #[must_use]
 pub fn checks() -> Vec<Check> {
-    [file::CHECKS, params::CHECKS, frames::CHECKS, &truth::checks(), clusterer::CHECKS].concat()
+    [
+        file::CHECKS,
+        params::CHECKS,
+        frames::CHECKS,
+        &truth::checks(),
+        clusterer::CHECKS,
+        &running::checks(),
+        stress::CHECKS,
+    ]
+    .concat()
 }

@@ -82,6 +82,14 @@ impl<T: Tracker> TrackerState<T> {
             .ok_or_else(|| Error::with_code(code::STATE, "there is no stream: call begin first"))
     }
 
+    /// What was asked for beside the stream; a failure ends that too, as every failure does.
+    fn aside<R>(&mut self, result: Result<R>) -> Result<R> {
+        if result.is_err() {
+            self.running = None;
+        }
+        result
+    }
+
     /// Works on the stream; a failure ends it.
     fn with_running(&mut self, f: impl FnOnce(&mut T, &[Seed], &mut Points) -> Result<()>) -> Result<()> {
         self.running()?;
@@ -310,7 +318,8 @@ unsafe extern "C" fn detect<T: Tracker>(
                 seed: input.seed,
             };
             let find = T::DETECT.ok_or_else(|| Error::unsupported("this tracker detects nothing"))?;
-            let mut features = find(&state.params, &request, &Cx::new(call))?;
+            let found = find(&state.params, &request, &Cx::new(call));
+            let mut features = state.aside(found)?;
             features.truncate(input.max_features as usize);
             let columns = [(c"x", dtype::F32, 1), (c"y", dtype::F32, 1), (c"score", dtype::F32, 1)];
             let mut out = Reserved::new(call, schema::FEATURES, features.len(), &columns)?;
@@ -334,7 +343,8 @@ unsafe extern "C" fn field<T: Tracker>(
             let input = given(input)?;
             let (from, to) = (read_frame(input.from)?, read_frame(input.to)?);
             let measure = T::FIELD.ok_or_else(|| Error::unsupported("this tracker measures no field"))?;
-            let field = measure(&state.params, &from, &to, input.max_threads.max(1), &Cx::new(call))?;
+            let field = measure(&state.params, &from, &to, input.max_threads.max(1), &Cx::new(call));
+            let field = state.aside(field)?;
             let vectors = [(c"u", dtype::F32, 1), (c"v", dtype::F32, 1), (c"known", dtype::U8, 1)];
             let mut out = Reserved::new(call, schema::VECTORS, field.vectors.len(), &vectors)?;
             let part = |k: usize| field.vectors.iter().map(move |vector| vector.unwrap_or_default()[k]);

@@ -1,0 +1,186 @@
+//! Level 9: the same work in other circumstances gives the same result; whoever is told to stop does; nothing grows.
+
+mod growth;
+mod stopping;
+
+use crate::course::{HERE, file_missed};
+use crate::work::{Outcome, Task, Work};
+use crate::{Check, Fault, Subject, Verdict};
+use honami_host::{CallContext, HostError, Hosting};
+use std::thread;
+use std::time::Duration;
+
+pub(crate) fn checks() -> Vec<Check> {
+    [CHECKS, stopping::CHECKS, growth::CHECKS].concat()
+}
+
+const DEADLINE: Duration = Duration::from_secs(60);
+
+const CHECKS: &[Check] = &[
+    Check {
+        id: "running.twice",
+        level: 9,
+        claim: "the same input and seed give the same bits",
+        deadline: DEADLINE,
+        run: |subject| same(subject, |subject, task| Work::start(subject, HERE, task)?.finish()),
+    },
+    Check {
+        id: "running.threads",
+        level: 9,
+        claim: "1 thread and 4 give the same bits",
+        deadline: DEADLINE,
+        run: |subject| same(subject, |subject, task| Work::start(subject, HERE, task)?.threads(4).finish()),
+    },
+    Check {
+        id: "running.isolated",
+        level: 9,
+        claim: "in a process of its own it gives the same bits",
+        deadline: DEADLINE,
+        run: isolated,
+    },
+    Check {
+        id: "running.again",
+        level: 9,
+        claim: "an instance that has worked before gives what a fresh one does",
+        deadline: DEADLINE,
+        run: |subject| same(subject, again),
+    },
+    Check {
+        id: "running.left",
+        level: 9,
+        claim: "an instance that is dropped in the middle of its work disturbs nobody",
+        deadline: DEADLINE,
+        run: |subject| same(subject, left),
+    },
+    Check {
+        id: "running.turns",
+        level: 9,
+        claim: "two instances that take turns give what each gives alone",
+        deadline: DEADLINE,
+        run: |subject| same(subject, turns),
+    },
+    Check {
+        id: "running.parallel",
+        level: 9,
+        claim: "two instances that work at once give what each gives alone",
+        deadline: DEADLINE,
+        run: parallel,
+    },
+    Check {
+        id: "running.callers",
+        level: 9,
+        claim: "calls may come from any thread, one at a time",
+        deadline: DEADLINE,
+        run: |subject| same(subject, callers),
+    },
+];
+
+/// Does the task that plugins of its kind have, if any.
+fn with_task(
+    subject: &Subject,
+    task: fn(&Subject) -> Option<Task>,
+    check: impl Fn(&Task) -> Result<Verdict, Fault>,
+) -> Result<Verdict, Fault> {
+    match task(subject) {
+        Some(task) => check(&task),
+        None => Ok(Verdict::Beside(format!("the interface of a {} is a draft", subject.info.kind))),
+    }
+}
+
+/// Whether a way to work gives what an instance alone gives.
+fn same(subject: &Subject, way: fn(&Subject, &Task) -> Result<Outcome, HostError>) -> Result<Verdict, Fault> {
+    if let Some(beside) = file_missed(subject)? {
+        return Ok(Verdict::Beside(beside));
+    }
+    with_task(subject, Task::small, |task| {
+        let alone = Work::start(subject, HERE, task)?.finish()?;
+        let other = way(subject, task)?;
+        match alone.difference(&other) {
+            None => Ok(Verdict::Holds(String::new())),
+            Some(_) if !subject.info.caps.deterministic => {
+                Ok(Verdict::Holds("results differ, as its manifest says".into()))
+            }
+            Some(what) => Err(Fault(what)),
+        }
+    })
+}
+
+fn isolated(subject: &Subject) -> Result<Verdict, Fault> {
+    if subject.info.is_program() {
+        return Ok(Verdict::Beside("it is a program, which always has one".into()));
+    }
+    same(subject, |subject, task| Work::start(subject, Hosting::Isolated, task)?.finish())
+}
+
+fn again(subject: &Subject, task: &Task) -> Result<Outcome, HostError> {
+    // Pictures of another size, and other points, come first.
+    let Some(other) = Task::endless(subject) else { return Work::start(subject, HERE, task)?.finish() };
+    let mut work = Work::start(subject, HERE, &other)?;
+    work.finish()?;
+    work.again(task).finish()
+}
+
+fn left(subject: &Subject, task: &Task) -> Result<Outcome, HostError> {
+    let cx = CallContext::silent();
+    let mut whole = Work::start(subject, HERE, task)?;
+    for steps in 0..5 {
+        let mut other = Work::start(subject, HERE, task)?;
+        for _ in 0..steps {
+            if other.step(&cx)? {
+                break;
+            }
+        }
+        drop(other);
+        if whole.step(&cx)? {
+            return Ok(whole.outcome().clone());
+        }
+    }
+    whole.finish()
+}
+
+fn turns(subject: &Subject, task: &Task) -> Result<Outcome, HostError> {
+    let cx = CallContext::silent();
+    let other = Task::endless(subject);
+    let mut whole = Work::start(subject, HERE, task)?;
+    let mut beside = other.as_ref().map(|task| Work::start(subject, HERE, task)).transpose()?;
+    while !whole.step(&cx)? {
+        if let Some(work) = &mut beside
+            && work.step(&cx)?
+        {
+            beside = None;
+        }
+    }
+    Ok(whole.outcome().clone())
+}
+
+fn parallel(subject: &Subject) -> Result<Verdict, Fault> {
+    if !subject.info.caps.parallel_instances {
+        return Ok(Verdict::Beside("its manifest does not say that they may".into()));
+    }
+    same(subject, |subject, task| {
+        thread::scope(|scope| {
+            let work = || Work::start(subject, HERE, task)?.finish();
+            let others = [scope.spawn(work), scope.spawn(work)];
+            let mut outcome = work();
+            for other in others {
+                // A panic there is a fault of this program, which it takes with it.
+                let other = other.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+                outcome = outcome.and_then(|one| {
+                    let other = other?;
+                    Ok(if one == other { one } else { other })
+                });
+            }
+            outcome
+        })
+    })
+}
+
+fn callers(subject: &Subject, task: &Task) -> Result<Outcome, HostError> {
+    let mut work = Work::start(subject, HERE, task)?;
+    loop {
+        let step = thread::scope(|scope| scope.spawn(|| work.step(&CallContext::silent())).join());
+        if step.unwrap_or_else(|panic| std::panic::resume_unwind(panic))? {
+            return Ok(work.outcome().clone());
+        }
+    }
+}

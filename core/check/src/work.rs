@@ -1,0 +1,169 @@
+//! A plugin with something to do, in steps that may come from anybody, between those of another, or not at all.
+
+use crate::clip::{Clip, Texture, grid};
+use crate::course::difference;
+use crate::{Subject, clusterer};
+use honami_host::{
+    CallContext, Clusterer, Clustering, HostError, Hosting, Kind, Point, Points, StreamInfo, Tracker, Tracks,
+    Values,
+};
+
+/// What there is to do: a clip with points to follow, or tracks to group.
+#[derive(Clone, Debug)]
+pub(crate) enum Task {
+    Follow { clip: Clip, seeds: Vec<Point> },
+    Group(Tracks),
+}
+
+/// What came of it.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Outcome {
+    Points(Vec<Points>),
+    Clustering(Option<Clustering>),
+}
+
+impl Outcome {
+    /// Where another one differs, in words; `None` if they are the same.
+    pub(crate) fn difference(&self, other: &Self) -> Option<String> {
+        match (self, other) {
+            (Self::Points(a), Self::Points(b)) => difference(a, b),
+            (a, b) => (a != b).then(|| "another hierarchy".into()),
+        }
+    }
+}
+
+impl Task {
+    /// A small texture that moves, 20 points and 10 frames; or 40 tracks. `None` for kinds that are drafts.
+    pub(crate) fn small(subject: &Subject) -> Option<Self> {
+        Self::of(subject, [96, 72], 10, [5, 4], 40)
+    }
+
+    /// One that moves to and fro for ever, as small as makes sense.
+    pub(crate) fn endless(subject: &Subject) -> Option<Self> {
+        Self::of(subject, [48, 36], 8, [3, 2], 12)
+    }
+
+    /// As many points as take a while; or as many tracks.
+    pub(crate) fn large(subject: &Subject) -> Option<Self> {
+        Self::of(subject, [160, 120], 3, [160, 120], 400)
+    }
+
+    fn of(
+        subject: &Subject,
+        size: [u32; 2],
+        n_frames: usize,
+        columns_and_rows: [u32; 2],
+        n_tracks: usize,
+    ) -> Option<Self> {
+        let mut chance = subject.chance("work");
+        match subject.info.kind {
+            Kind::Tracker => {
+                let texture = Texture::new(&mut chance);
+                let at =
+                    |[x, y]: [f64; 2], t: usize| 128.0 + texture.at([x - 0.9 * t as f64, y + 0.4 * t as f64]);
+                let margin_px = 0.2 * f64::from(size[1]);
+                let seeds = grid(size, margin_px, columns_and_rows, &mut chance);
+                Some(Self::Follow { clip: Clip::new(size, n_frames, at), seeds })
+            }
+            Kind::Clusterer => Some(Self::Group(clusterer::two_groups(&mut chance, n_tracks))),
+            Kind::Structure | Kind::Simulator => None,
+        }
+    }
+}
+
+/// A plugin at a task.
+pub(crate) struct Work<'a> {
+    plugin: Plugin,
+    task: &'a Task,
+    n_threads: u32,
+    step: usize,
+    outcome: Outcome,
+}
+
+enum Plugin {
+    Tracker(Box<Tracker>),
+    Clusterer(Clusterer),
+}
+
+impl<'a> Work<'a> {
+    /// Starts a plugin with its defaults.
+    pub(crate) fn start(subject: &Subject, hosting: Hosting, task: &'a Task) -> Result<Self, HostError> {
+        let values = Values::default();
+        let (plugin, outcome) = match task {
+            Task::Follow { .. } => {
+                (Plugin::Tracker(Box::new(subject.tracker(hosting, &values)?)), Outcome::Points(Vec::new()))
+            }
+            Task::Group(_) => {
+                (Plugin::Clusterer(subject.clusterer(hosting, &values)?), Outcome::Clustering(None))
+            }
+        };
+        Ok(Self { plugin, task, n_threads: 1, step: 0, outcome })
+    }
+
+    /// Lets it use more threads than one.
+    pub(crate) fn threads(self, n_threads: u32) -> Self {
+        Self { n_threads, ..self }
+    }
+
+    /// The same instance at another task, or at the same again.
+    pub(crate) fn again(self, task: &'a Task) -> Self {
+        let outcome = match task {
+            Task::Follow { .. } => Outcome::Points(Vec::new()),
+            Task::Group(_) => Outcome::Clustering(None),
+        };
+        Self { task, step: 0, outcome, ..self }
+    }
+
+    /// Makes the next call; whether it was the last.
+    pub(crate) fn step(&mut self, cx: &CallContext<'_>) -> Result<bool, HostError> {
+        let step = self.step;
+        self.step += 1;
+        match (&mut self.plugin, self.task, &mut self.outcome) {
+            (Plugin::Tracker(tracker), Task::Follow { clip, seeds }, Outcome::Points(all)) => {
+                let n = clip.pictures.len();
+                match step {
+                    0 => {
+                        let stream = StreamInfo {
+                            max_threads: self.n_threads,
+                            births: 50_000..50_200,
+                            ..clip.stream()
+                        };
+                        tracker.begin(stream, cx)?;
+                    }
+                    1 => tracker.seed(seeds, cx)?,
+                    step if step < n + 2 => all.extend(tracker.push(&clip.view(step - 2), cx)?),
+                    _ => all.extend(tracker.end(cx)?),
+                }
+                Ok(step > n + 1)
+            }
+            (Plugin::Clusterer(clusterer), Task::Group(tracks), Outcome::Clustering(found)) => {
+                let mut tracks = tracks.clone();
+                tracks.max_threads = self.n_threads;
+                *found = Some(clusterer.run(&tracks, cx)?);
+                Ok(true)
+            }
+            // A plugin has one kind, and its tasks are of that kind.
+            _ => Ok(true),
+        }
+    }
+
+    /// All calls that are left.
+    pub(crate) fn finish(&mut self) -> Result<Outcome, HostError> {
+        let cx = CallContext::silent();
+        while !self.step(&cx)? {}
+        Ok(self.outcome.clone())
+    }
+
+    /// The tracker, if it is one.
+    pub(crate) fn tracker(&mut self) -> Option<&mut Tracker> {
+        match &mut self.plugin {
+            Plugin::Tracker(tracker) => Some(tracker),
+            Plugin::Clusterer(_) => None,
+        }
+    }
+
+    /// What has come so far.
+    pub(crate) fn outcome(&self) -> &Outcome {
+        &self.outcome
+    }
+}
