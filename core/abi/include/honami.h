@@ -24,8 +24,8 @@
  * (reserve, fill, commit). Nothing is ever freed across the border. Strings are UTF-8 and end with NUL.
  *
  * ERRORS. A negative code means that the call did nothing that counts; say why with call->fail. After a negative code
- * an instance has failed and only destroy is legal, with two exceptions: a refused set_params keeps the former values,
- * and HONAMI_E_CANCELLED leaves the instance idle. A lost point is no error: it is a row with status lost.
+ * an instance has failed and only destroy is legal, with three exceptions: a refused set_params keeps the former values,
+ * a refused save or load leaves the stream as it was, and HONAMI_E_CANCELLED leaves the instance idle. A lost point is no error: it is a row with status lost.
  * No exception and no panic may cross the border.
  *
  * MANNERS. At most max_threads threads work at a time; they have stopped before the call returns. Leave alone: file
@@ -376,6 +376,24 @@ typedef struct honami_field_v1 {
    * between pushes, and changes nothing that push sees.  [control] */
   honami_code (*field)(honami_instance *instance, const honami_call *call, const honami_field_input *input);
 } honami_field_v1;
+
+/* Optional for trackers, since 1.1: what is carried from frame to frame, as bytes of the plugin's own. The host keeps them
+ * for the case that the plugin's process dies, and to go on with another build. The table that save commits has the same
+ * id: bytes u8, a row a byte. */
+#define HONAMI_STATE "honami.state/1"
+typedef struct honami_state_v1 {
+  uint32_t struct_size;
+  uint32_t reserved;
+
+  /* Commits honami.state/1 with all that later frames depend on: with it the rest of the stream has the same bits as
+   * without. Changes nothing; the same state gives the same bytes.  [control & run] */
+  honami_code (*save)(honami_instance *instance, const honami_call *call);
+
+  /* Goes on where save was called: comes directly after begin, with the same parameters and of the same stream. Bytes that
+   * are not what save gave - cut, damaged, of another version - are refused with HONAMI_E_DATA, whatever is in them.
+   * [control & run] */
+  honami_code (*load)(honami_instance *instance, const honami_call *call, const uint8_t *bytes, uint64_t n);
+} honami_state_v1;
 
 /* ------------------------------------------------------------------------------------------------- clusterers --- */
 

@@ -100,6 +100,7 @@ layout! {
         crate::DetectV1 = "honami_detect_v1", 16, 8 { struct_size 0 4, reserved 4 4, detect 8 8, }
         crate::FieldInput = "honami_field_input", 24, 8 { struct_size 0 4, max_threads 4 4, from 8 8, to 16 8, }
         crate::FieldV1 = "honami_field_v1", 16, 8 { struct_size 0 4, reserved 4 4, field 8 8, }
+        crate::StateV1 = "honami_state_v1", 24, 8 { struct_size 0 4, reserved 4 4, save 8 8, load 16 8, }
         crate::ClustererInput = "honami_clusterer_input", 40, 8 {
             struct_size 0 4, max_threads 4 4, width 8 4, height 12 4, seed 16 8, tracks 24 8, times 32 8,
         }
@@ -182,6 +183,7 @@ pub const IDS: &[(&str, &core::ffi::CStr)] = &[
     ("HONAMI_TRACKER", crate::interface::TRACKER),
     ("HONAMI_DETECT", crate::interface::DETECT),
     ("HONAMI_FIELD", crate::interface::FIELD),
+    ("HONAMI_STATE", crate::interface::STATE),
     ("HONAMI_CLUSTERER", crate::interface::CLUSTERER),
     ("HONAMI_SKELETON", crate::draft::SKELETON),
     ("HONAMI_WIND", crate::draft::WIND),

@@ -12,7 +12,7 @@ pub mod layout;
 
 pub use structs::{
     Call, ClustererInput, ClustererV1, Column, DetectInput, DetectV1, FieldInput, FieldV1, Frame, HostInfo,
-    Instance, Library, LibraryFn, StreamInfo, Table, TrackerV1, Value,
+    Instance, Library, LibraryFn, StateV1, StreamInfo, Table, TrackerV1, Value,
 };
 
 use core::ffi::CStr;
@@ -114,6 +114,7 @@ pub mod schema {
     pub const TIMES: &CStr = c"honami.times/1";
     pub const DENDROGRAM: &CStr = c"honami.dendrogram/1";
     pub const FRAMES: &CStr = c"honami.frames/1";
+    pub const STATE: &CStr = super::interface::STATE;
 }
 
 /// Ids of interfaces.
@@ -123,6 +124,7 @@ pub mod interface {
     pub const TRACKER: &CStr = c"honami.tracker/1";
     pub const DETECT: &CStr = c"honami.detect/1";
     pub const FIELD: &CStr = c"honami.field/1";
+    pub const STATE: &CStr = c"honami.state/1";
     pub const CLUSTERER: &CStr = c"honami.clusterer/1";
 }
 

@@ -170,6 +170,15 @@ pub struct FieldV1 {
 }
 
 #[repr(C)]
+#[derive(Debug)]
+pub struct StateV1 {
+    pub struct_size: u32,
+    pub reserved: u32,
+    pub save: Option<unsafe extern "C" fn(*mut Instance, *const Call) -> Code>,
+    pub load: Option<unsafe extern "C" fn(*mut Instance, *const Call, *const u8, u64) -> Code>,
+}
+
+#[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct ClustererInput {
     pub struct_size: u32,

@@ -100,8 +100,8 @@ impl Host {
         cx: &CallContext<'_>,
     ) -> Result<(Tracker, Origin), HostError> {
         let (handle, origin) = self.start(info, Kind::Tracker, values, cx)?;
-        let latency = info.caps.latency;
-        Ok((Tracker { handle, reply: Reply::default(), latency, stream: None }, origin))
+        let (latency, has_state) = (info.caps.latency, info.offers("honami.state/1"));
+        Ok((Tracker { handle, reply: Reply::default(), latency, has_state, stream: None }, origin))
     }
 
     /// Starts a clusterer with these parameter values; those that are missing take their defaults.

@@ -43,6 +43,7 @@ struct Interfaces {
     tracker: Option<abi::TrackerV1>,
     detect: Option<abi::DetectV1>,
     field: Option<abi::FieldV1>,
+    state: Option<abi::StateV1>,
     clusterer: Option<abi::ClustererV1>,
     structure: Option<draft::StructureV1>,
     simulator: Option<draft::SimulatorV1>,
@@ -128,6 +129,7 @@ impl InProcess {
             ),
             detect: interface!(self, info, interface::DETECT, abi::DetectV1, [detect]),
             field: interface!(self, info, interface::FIELD, abi::FieldV1, [field]),
+            state: interface!(self, info, interface::STATE, abi::StateV1, [save, load]),
             clusterer: interface!(self, info, interface::CLUSTERER, abi::ClustererV1, [run]),
             structure: interface!(self, info, draft::STRUCTURE, draft::StructureV1, [run]),
             simulator: interface!(self, info, draft::SIMULATOR, draft::SimulatorV1, [prepare, reset, step]),
@@ -157,6 +159,10 @@ impl Instance for InProcess {
             // SAFETY: the context is alive, and what `call_plugin` passes lives until it returns.
             unsafe { call_plugin(self, request, call) }.unwrap_or(code::UNSUPPORTED)
         });
+    }
+
+    fn can_end(&self) -> bool {
+        false
     }
 }
 
@@ -195,6 +201,10 @@ unsafe fn call_plugin(plugin: &InProcess, request: &Request<'_>, call: *const ab
             }
             Request::Push(view) => (has.tracker.as_ref()?.push?)(raw, call, &frame(view)),
             Request::End => (has.tracker.as_ref()?.end?)(raw, call),
+            Request::Save => (has.state.as_ref()?.save?)(raw, call),
+            Request::Load(bytes) => {
+                (has.state.as_ref()?.load?)(raw, call, bytes.as_ptr(), bytes.len() as u64)
+            }
             Request::Detect(wanted) => {
                 let (picture, points) = (frame(&wanted.frame), InputTable::points(wanted.points));
                 (has.detect.as_ref()?.detect?)(raw, call, &input::detect(wanted, &picture, points.raw()))

@@ -21,13 +21,29 @@ pub(crate) enum Request<'a> {
     Retire(&'a [u32]),
     Push(&'a FrameView<'a>),
     End,
+    /// What the tracker carries: for a later `Load`, which comes directly after `Begin`.
+    Save,
+    Load(&'a [u8]),
     Detect(&'a DetectRequest<'a>),
-    Field { from: &'a FrameView<'a>, to: &'a FrameView<'a>, max_threads: u32 },
+    Field {
+        from: &'a FrameView<'a>,
+        to: &'a FrameView<'a>,
+        max_threads: u32,
+    },
     Cluster(&'a Tracks),
     Grow(&'a Tracks),
-    Prepare { nodes: &'a [Node], n_instances: u32, max_threads: u32, seed: u64 },
+    Prepare {
+        nodes: &'a [Node],
+        n_instances: u32,
+        max_threads: u32,
+        seed: u64,
+    },
     Reset,
-    Step { dt: f64, n_steps: u32, wind: &'a [Gust] },
+    Step {
+        dt: f64,
+        n_steps: u32,
+        wind: &'a [Gust],
+    },
 }
 
 impl Request<'_> {
@@ -40,6 +56,8 @@ impl Request<'_> {
             Self::Retire(_) => "retire",
             Self::Push(_) => "push",
             Self::End => "end",
+            Self::Save => "save",
+            Self::Load(_) => "load",
             Self::Detect(_) => "detect",
             Self::Field { .. } => "field",
             Self::Cluster(_) | Self::Grow(_) => "run",
@@ -49,10 +67,16 @@ impl Request<'_> {
         }
     }
 
+    /// Whether the plugin may refuse it and go on as it was.
+    fn can_be_refused(&self) -> bool {
+        matches!(self, Self::SetParams(_) | Self::Save | Self::Load(_))
+    }
+
     /// The tables that it may commit.
     pub(crate) fn schemas(&self) -> &'static [&'static Schema] {
         match self {
             Self::Push(_) | Self::End => &[&reply::POINTS],
+            Self::Save => &[&reply::STATE],
             Self::Detect(_) => &[&reply::FEATURES],
             Self::Field { .. } => &[&reply::VECTORS, &reply::GRID],
             Self::Cluster(_) => &[&reply::DENDROGRAM, &reply::FRAMES],
@@ -67,6 +91,9 @@ impl Request<'_> {
 pub(crate) trait Instance: Send {
     /// Passes on a request and fills the reply. Types and sizes of its tables are right; nothing else is sure.
     fn invoke(&mut self, request: &Request<'_>, cx: &CallContext<'_>, reply: &mut Reply);
+
+    /// Whether it can end while this process goes on.
+    fn can_end(&self) -> bool;
 }
 
 /// What every typed handle does: asks, reads the code, and gives up on an instance that failed.
@@ -126,12 +153,21 @@ impl Handle {
             0.. => Ok(Done::Ok),
             code::CANCELLED if reply.stopped => Err(HostError::Cancelled { plugin: self.plugin.clone() }),
             failure => {
-                // Refused parameters leave the former ones in force; everything else ends the instance.
-                self.failed = !matches!(request, Request::SetParams(_));
+                // Refused parameters leave the former ones in force; a fault is a fault in any function.
+                self.failed = !request.can_be_refused() || failure == code::INTERNAL;
                 let text = if reply.text.is_empty() { "gives no reason".into() } else { reply.text.clone() };
                 Err(HostError::Failed { plugin: self.plugin.clone(), function, code: Code(failure), text })
             }
         }
+    }
+
+    /// Whether it answers nothing any more.
+    pub(crate) fn has_failed(&self) -> bool {
+        self.failed
+    }
+
+    pub(crate) fn can_end(&self) -> bool {
+        self.instance.can_end()
     }
 
     /// The error of a broken contract; ends the instance.

@@ -82,6 +82,10 @@ impl Instance for Isolated {
             }
         }
     }
+
+    fn can_end(&self) -> bool {
+        true
+    }
 }
 
 impl Isolated {

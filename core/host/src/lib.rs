@@ -46,7 +46,7 @@ pub use plain::plain;
 pub use plughost::{serve, shut_in};
 pub use registry::{PluginInfo, Registry, SearchPath, Trust};
 pub use script::manifest_of as file_of;
-pub use tracker::Tracker;
+pub use tracker::{Checkpoint, Tracker};
 pub use trust::TrustBook;
 pub use types::{
     Clustering, DetectRequest, Feature, Field, FrameNote, FrameView, Point, PointRow, Points, StreamInfo,

@@ -56,6 +56,8 @@ pub(crate) const FRAMES: Schema = Schema {
     required: &[("frame", dtype::I64, 1), ("outlier", dtype::U8, 1), ("distance", dtype::F64, 1)],
     optional: &[],
 };
+pub(crate) const STATE: Schema =
+    Schema { id: schema::STATE, required: &[("bytes", dtype::U8, 1)], optional: &[] };
 pub(crate) const SKELETON: Schema = Schema {
     id: honami_abi::draft::SKELETON,
     required: &[

@@ -1,6 +1,9 @@
 //! A tracker at work, and the check of what it returns.
 
 mod live;
+mod state;
+
+pub use state::Checkpoint;
 
 use crate::context::CallContext;
 use crate::error::HostError;
@@ -20,6 +23,7 @@ pub struct Tracker {
     pub(crate) handle: Handle,
     pub(crate) reply: Reply,
     pub(crate) latency: u32,
+    pub(crate) has_state: bool,
     pub(crate) stream: Option<Stream>,
 }
 

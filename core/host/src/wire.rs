@@ -44,6 +44,10 @@ pub(crate) enum Ask {
         frame: Frame,
     },
     End,
+    Save,
+    Load {
+        state: Columns,
+    },
     Detect {
         frame: Frame,
         max_features: u32,

@@ -16,7 +16,9 @@
 
 `self.params` holds the values of the parameters. A tracker may also have `retire(ids)`, `end()`,
 `detect(frame, max_features, mask, points)`, which returns `honami.Features(x, y, score)`, and `field(a, b)`, which
-returns `honami.Field(gx, gy, step, u, v, known)`. Arrays that it is given are gone after the call: copy what you keep.
+returns `honami.Field(gx, gy, step, u, v, known)`. One with `save()`, which returns bytes with all that later frames depend
+on, and `load(bytes)`, which comes after `begin` in their place, goes on with the same numbers when its process has died; it
+only gets what it saved under the same parameters and the same `state_version`, a number of its class. Arrays that it is given are gone after the call: copy what you keep.
 
 `python3 mine.py --honami-manifest` writes `mine.honami.json`, from which honami lists the plugin and draws its form
 without running it. Write it anew when parameters change. What is printed is a line of the plugin's log.
@@ -31,6 +33,7 @@ import struct
 import sys
 import threading
 import traceback
+import zlib
 from types import SimpleNamespace
 
 import numpy as np
@@ -125,6 +128,7 @@ def tracker(id, name, *, params=Params, doc="", cite=(), deterministic=True):
     def keep(cls):
         cls.Params = params
         interfaces = ["honami.tracker/1"] + [f"honami.{f}/1" for f in ("detect", "field") if hasattr(cls, f)]
+        interfaces += ["honami.state/1"] if hasattr(cls, "save") and hasattr(cls, "load") else []
         caps = {"latency": 0, "deterministic": deterministic, "parallel_instances": True, "pixels": ["gray8"]}
         _plugins[id] = cls
         cls._manifest = {"id": id, "kind": "tracker", "name": name, "doc": doc, "cite": list(cite),
@@ -220,7 +224,7 @@ class _Host:
             why = f"has other parameters than its manifest: `python3 {script} --honami-manifest` writes it anew"
             return self.say({"m": "refused", "kind": "unusable", "why": why})
         try:
-            self.instance, self.gone = plugin(), set()
+            self.instance, self.gone, self.values = plugin(), set(), {}
         except Exception as error:
             traceback.print_exc()
             text = "".join(traceback.format_exception_only(error)).strip()
@@ -246,10 +250,14 @@ class _Host:
             return {"code": _INTERNAL, "text": what + where}
 
     def on_set_params(self, ask):
+        self.values = ask["values"]
         self.instance.params = type(self.instance).Params(ask["values"])
 
     def on_begin(self, ask):
         self.gone = set()
+        version = getattr(self.instance, "state_version", 0)
+        stream = [ask[name] for name in ("width", "height", "reversed", "seed", "birth_first", "birth_count")]
+        self.setting = [self.hello["plugin"], version, self.values, stream]
         self.call("begin", SimpleNamespace(**ask))
 
     def on_seed(self, ask):
@@ -272,6 +280,27 @@ class _Host:
 
     def on_end(self, ask):
         return self.call("end")
+
+    def on_save(self, ask):
+        head = json.dumps([self.setting, sorted(self.gone)]).encode()
+        saved = struct.pack("<I", len(head)) + head + bytes(self.instance.save())
+        return {"honami.state/1": {"bytes": (np.frombuffer(struct.pack("<I", zlib.crc32(saved)) + saved, "u1"), "u1")}}
+
+    def on_load(self, ask):
+        saved = self.column(ask["state"], "bytes", "u1").tobytes()
+        if len(saved) < 8 or struct.unpack_from("<I", saved)[0] != zlib.crc32(saved[4:]):
+            raise Error("what was saved is cut or damaged")
+        end = 8 + struct.unpack_from("<I", saved, 4)[0]
+        try:
+            setting, gone = json.loads(saved[8:end])
+            if setting != self.setting:
+                raise Error("what was saved is of another plugin or version, of other parameters or another stream")
+            self.instance.load(saved[end:])
+        except Error:
+            raise
+        except Exception as error:
+            raise Error(f"what was saved cannot be read: {error}")
+        self.gone = set(gone)
 
     def on_detect(self, ask):
         mask = self.plane(ask["mask"]) if ask["mask"] else None

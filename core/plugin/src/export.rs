@@ -4,6 +4,7 @@
 pub(crate) mod clusterer;
 pub(crate) mod draft;
 mod panics;
+mod state;
 mod stateless;
 pub(crate) mod table;
 pub(crate) mod tracker;
@@ -15,6 +16,7 @@ pub use panics::quiet_panics;
 pub use tracker::tracker;
 
 use crate::params::{Param, Params, Value};
+use crate::state::mix;
 use crate::{Error, Info, Listener, Result};
 use honami_abi::{self as abi, Call, Code, code};
 use std::ffi::{CStr, CString, c_char};
@@ -27,7 +29,7 @@ use std::panic::AssertUnwindSafe;
 pub struct Descriptor {
     pub(crate) kind: &'static str,
     pub(crate) info: Info,
-    pub(crate) interfaces: [(&'static str, bool); 3],
+    pub(crate) interfaces: [(&'static str, bool); 4],
     pub(crate) params: &'static [Param],
     pub(crate) latency: u32,
     pub(crate) create: fn() -> *mut abi::Instance,
@@ -202,6 +204,8 @@ pub(crate) trait State: Sized + 'static {
     fn new() -> Self;
     /// The parameters, if they may be set now.
     fn params(&mut self) -> Result<&mut Self::Params>;
+    /// A number for the parameters that were set, another for others.
+    fn told(&mut self, _params: u64) {}
     /// The table of functions behind an interface id.
     fn interface(id: &CStr) -> *const std::ffi::c_void;
 }
@@ -287,11 +291,13 @@ unsafe extern "C" fn set_params<S: State>(
     // SAFETY: the host keeps the contract of honami_instance.set_params.
     unsafe {
         door::<S>(instance, call, |state, _| {
-            let mut params = S::Params::default();
+            let (mut params, mut told) = (S::Params::default(), 0);
             for value in table::slice(values, u64::from(n))? {
                 params.set(text(value.id), value_of(value)?)?;
+                told = mix(told, format!("{} {:?}", text(value.id), value_of(value)?).as_bytes());
             }
             *state.params()? = params;
+            state.told(told);
             Ok(code::OK)
         })
     }

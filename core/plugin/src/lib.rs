@@ -70,6 +70,7 @@ mod cx;
 mod error;
 mod info;
 mod manifest;
+mod state;
 mod tracker;
 
 pub mod draft;
@@ -84,6 +85,7 @@ pub use error::{Error, Result};
 pub use honami_abi as abi;
 pub use info::{Info, Library};
 pub use params::{Entry, Param, ParamType, Params, Value};
+pub use state::State;
 pub use tracker::{
     Chroma, Detect, DetectFn, Feature, Field, FieldFn, Frame, Gray, Point, Points, Range, Seed, Status,
     Stream, Tracker,

@@ -1,6 +1,6 @@
 //! Trackers: plugins that follow points through the frames of a clip.
 
-use crate::{Cx, Info, Params, Result};
+use crate::{Cx, Info, Params, Result, State};
 use honami_abi as abi;
 
 /// Follows points through a stream of frames.
@@ -21,6 +21,8 @@ pub trait Tracker: Sized + Send + 'static {
     const DETECT: Option<DetectFn<Self::Params>> = None;
     /// Dense motion between two frames, if the tracker measures that.
     const FIELD: Option<FieldFn<Self::Params>> = None;
+    /// What it carries from frame to frame, if it can save and load that.
+    const STATE: Option<State<Self>> = None;
 
     /// Starts a stream with no points.
     ///

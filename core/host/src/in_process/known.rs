@@ -22,6 +22,7 @@ growing!(
     abi::TrackerV1,
     abi::DetectV1,
     abi::FieldV1,
+    abi::StateV1,
     abi::ClustererV1,
     draft::StructureV1,
     draft::SimulatorV1

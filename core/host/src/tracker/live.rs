@@ -8,7 +8,7 @@ use std::collections::{BTreeSet, VecDeque};
 use std::ops::Range;
 
 /// The points of a stream, and the frames whose rows are still to come.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Live {
     births: Range<u32>,
     born: BTreeSet<u32>,

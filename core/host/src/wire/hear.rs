@@ -41,6 +41,8 @@ pub(crate) fn hear<R>(
         Ask::Retire { ids } => return Ok(act(&Request::Retire(take(ids, inbox, "id", 1)?))),
         Ask::Push { frame } => return Ok(act(&Request::Push(&take_frame(frame, inbox)?))),
         Ask::End => Request::End,
+        Ask::Save => Request::Save,
+        Ask::Load { state } => Request::Load(take(state, inbox, "bytes", 1)?),
         Ask::Detect { frame, max_features, mask, points, max_threads, seed } => {
             let points = take_points(points, inbox)?;
             let wanted = DetectRequest {

@@ -30,6 +30,8 @@ pub(crate) fn ask(request: &Request<'_>, out: &mut Outbox) -> Option<Ask> {
         Request::Retire(ids) => Ask::Retire { ids: put(out, ids.len(), &[("id", bytes_of(ids))])? },
         Request::Push(view) => Ask::Push { frame: put_frame(view, out)? },
         Request::End => Ask::End,
+        Request::Save => Ask::Save,
+        Request::Load(bytes) => Ask::Load { state: put(out, bytes.len(), &[("bytes", bytes)])? },
         Request::Detect(wanted) => Ask::Detect {
             frame: put_frame(&wanted.frame, out)?,
             max_features: wanted.max_features,

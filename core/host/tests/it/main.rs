@@ -6,6 +6,7 @@ mod bad;
 mod fossil;
 mod isolated;
 mod registry;
+mod state;
 mod threads;
 mod tools;
 mod zoo;

@@ -1,4 +1,6 @@
 """A tracker that looks for every point's first picture of it, near where it was last."""
+import pickle
+
 import honami
 import numpy as np
 
@@ -41,6 +43,12 @@ class Template:
         self.gray = frame.gray.copy()
         x, y = zip(*self.at.values()) if self.at else ((), ())
         return honami.Points(list(self.at), x, y, status)
+
+    def save(self):
+        return pickle.dumps((self.at, self.templates, self.gray))
+
+    def load(self, data):
+        self.at, self.templates, self.gray = pickle.loads(data)
 
 
 honami.run()

@@ -15,7 +15,7 @@ pub const fn clusterer<T: Clusterer>() -> Descriptor {
     Descriptor {
         kind: "clusterer",
         info: T::INFO,
-        interfaces: [("honami.clusterer/1", true), ("", false), ("", false)],
+        interfaces: [("honami.clusterer/1", true), ("", false), ("", false), ("", false)],
         params: T::Params::SCHEMA,
         latency: 0,
         create: new_instance::<Stateless<Grouping<T>>>,

@@ -16,7 +16,7 @@ pub const fn structure<T: Structure>() -> Descriptor {
     Descriptor {
         kind: "structure",
         info: T::INFO,
-        interfaces: [("honami.structure/1", true), ("", false), ("", false)],
+        interfaces: [("honami.structure/1", true), ("", false), ("", false), ("", false)],
         params: T::Params::SCHEMA,
         latency: 0,
         create: new_instance::<Stateless<Growing<T>>>,
@@ -29,7 +29,7 @@ pub const fn simulator<T: Simulator>() -> Descriptor {
     Descriptor {
         kind: "simulator",
         info: T::INFO,
-        interfaces: [("honami.simulator/1", true), ("", false), ("", false)],
+        interfaces: [("honami.simulator/1", true), ("", false), ("", false), ("", false)],
         params: T::Params::SCHEMA,
         latency: 0,
         create: new_instance::<SimulatorState<T>>,

@@ -157,6 +157,26 @@ impl<'c> Reserved<'c> {
         }
     }
 
+    /// Fills column `k`, of bytes, from pieces that come one after the other.
+    ///
+    /// # Panics
+    /// When the column is of another type: a fault of the SDK's.
+    pub(crate) fn fill_bytes(&mut self, k: usize, pieces: &[&[u8]]) {
+        let column = &self.columns[k];
+        assert_eq!(column.dtype, dtype::U8, "column {k} of {}", self.schema.to_string_lossy());
+        let n = self.rows * column.ncomp as usize;
+        if n == 0 || column.data.is_null() {
+            return;
+        }
+        // SAFETY: as in `fill`.
+        let mut left = unsafe { std::slice::from_raw_parts_mut(column.data.cast::<u8>(), n) };
+        for piece in pieces {
+            let (place, rest) = left.split_at_mut(piece.len().min(left.len()));
+            place.copy_from_slice(&piece[..place.len()]);
+            left = rest;
+        }
+    }
+
     pub(crate) fn commit(self) -> Result<()> {
         let commit = self.call.known.commit.ok_or_else(|| misuse("the host has no commit"))?;
         // SAFETY: as in `new`.

@@ -2,6 +2,7 @@
 
 use super::table::{Reserved, column, given, slice};
 use super::{Descriptor, HostCall, State, door, new_instance};
+use crate::state::Setting;
 use crate::tracker::{Chroma, Detect, Frame, Gray, Points, Range, Seed, Stream, Tracker};
 use crate::{Cx, Error, Params, Result};
 use honami_abi::{self as abi, Call, Code, Instance, code, dtype, interface, schema};
@@ -17,6 +18,7 @@ pub const fn tracker<T: Tracker>() -> Descriptor {
             ("honami.tracker/1", true),
             ("honami.detect/1", T::DETECT.is_some()),
             ("honami.field/1", T::FIELD.is_some()),
+            ("honami.state/1", T::STATE.is_some()),
         ],
         params: T::Params::SCHEMA,
         latency: T::LATENCY,
@@ -24,9 +26,13 @@ pub const fn tracker<T: Tracker>() -> Descriptor {
     }
 }
 
-struct TrackerState<T: Tracker> {
+pub(super) struct TrackerState<T: Tracker> {
     params: T::Params,
+    /// A number for the parameters that were set.
+    told: u64,
     running: Option<T>,
+    /// The stream that was begun last.
+    setting: Option<Setting>,
     seeds: Vec<Seed>,
     out: Points,
 }
@@ -35,7 +41,18 @@ impl<T: Tracker> State for TrackerState<T> {
     type Params = T::Params;
 
     fn new() -> Self {
-        Self { params: T::Params::default(), running: None, seeds: Vec::new(), out: Points::default() }
+        Self {
+            params: T::Params::default(),
+            told: 0,
+            running: None,
+            setting: None,
+            seeds: Vec::new(),
+            out: Points::default(),
+        }
+    }
+
+    fn told(&mut self, params: u64) {
+        self.told = params;
     }
 
     fn params(&mut self) -> Result<&mut T::Params> {
@@ -52,6 +69,8 @@ impl<T: Tracker> State for TrackerState<T> {
             (&raw const *Self::DETECT).cast()
         } else if id == interface::FIELD && T::FIELD.is_some() {
             (&raw const *Self::FIELD).cast()
+        } else if id == interface::STATE && T::STATE.is_some() {
+            (&raw const *Self::STATE).cast()
         } else {
             std::ptr::null()
         }
@@ -75,6 +94,24 @@ impl<T: Tracker> TrackerState<T> {
     };
     const FIELD: &'static abi::FieldV1 =
         &abi::FieldV1 { struct_size: size_of::<abi::FieldV1>() as u32, reserved: 0, field: Some(field::<T>) };
+
+    const STATE: &'static abi::StateV1 = &super::state::table::<T>();
+
+    /// The tracker in its stream, and under what it works.
+    pub(super) fn at_work(&self) -> Result<(&T, &Setting)> {
+        let both = self.running.as_ref().zip(self.setting.as_ref());
+        both.ok_or_else(|| Error::with_code(code::STATE, "there is no stream: call begin first"))
+    }
+
+    /// What its trackers are made with.
+    pub(super) fn settings(&self) -> &T::Params {
+        &self.params
+    }
+
+    /// Another tracker takes the place of the one in the stream.
+    pub(super) fn go_on_as(&mut self, tracker: T) {
+        self.running = Some(tracker);
+    }
 
     fn running(&mut self) -> Result<&mut T> {
         self.running
@@ -131,6 +168,7 @@ unsafe extern "C" fn begin<T: Tracker>(
                 births: stream.birth_first..stream.birth_first.saturating_add(stream.birth_count),
             };
             state.running = Some(T::begin(&state.params, &stream, &Cx::new(call))?);
+            state.setting = Some(Setting { params: state.told, stream });
             Ok(code::OK)
         })
     }

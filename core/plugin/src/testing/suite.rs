@@ -1,5 +1,6 @@
 //! What every tracker must bear: hard pictures, hard points, and a user who stops it.
 
+mod state;
 #[cfg(test)]
 mod tests;
 
@@ -16,7 +17,7 @@ use crate::{Cx, Error, Listener, Result};
 ///
 /// Pictures of 1x1 and 7x5 pixels, flat, saturated and noisy ones, a size that changes; points on borders, far outside,
 /// in the same place, none at all and 100,000; seeding again, retiring, streams that run backward; one thread and four;
-/// a user who stops it at once. A picture less than 8 pixels wide or high, or of another size than those before, may be
+/// a user who stops it at once; what it saves, loaded whole, cut and damaged. A picture less than 8 pixels wide or high, or of another size than those before, may be
 /// refused with [`Error::data`] and a reason; rows may not be doubled, unknown or not finite, nor missing in the first
 /// frame; and a push of 100,000 points must ask whether to go on, and stop wherever the answer is no. Points that are
 /// not finite never get so far: the host refuses them.
@@ -26,7 +27,7 @@ use crate::{Cx, Error, Listener, Result};
 #[track_caller]
 pub fn suite<T: Tracker>(params: &T::Params) {
     type Case<P> = (&'static str, fn(&P) -> Result<()>);
-    let all: [Case<T::Params>; 8] = [
+    let all: [Case<T::Params>; 9] = [
         ("hard pictures", hard_pictures::<T>),
         ("hard points", hard_points::<T>),
         ("no points", no_points::<T>),
@@ -35,6 +36,7 @@ pub fn suite<T: Tracker>(params: &T::Params) {
         ("one thread and four, twice", same_bits::<T>),
         ("100,000 points, and a user who stops", many_points::<T>),
         ("detection and dense motion", extras::<T>),
+        ("what it saves", state::carried::<T>),
     ];
     for (name, case) in all {
         if let Err(error) = case(params) {
