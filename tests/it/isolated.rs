@@ -22,6 +22,10 @@ pub(crate) fn has_cc() -> bool {
 
 /// The tracker that has a fault by these flags, under this name.
 pub(crate) fn compile(bench: &Bench, name: &str, flags: &[&str]) -> PathBuf {
+    compile_source(bench, "bad.c", name, flags)
+}
+
+fn compile_source(bench: &Bench, source: &str, name: &str, flags: &[&str]) -> PathBuf {
     let library = bench.path(name);
     let output = Command::new("cc")
         .args(["-O1", "-shared", "-fPIC", "-fvisibility=hidden", "-I"])
@@ -29,7 +33,7 @@ pub(crate) fn compile(bench: &Bench, name: &str, flags: &[&str]) -> PathBuf {
         .args(flags)
         .arg("-o")
         .arg(&library)
-        .arg(root().join("core/host/tests/bad/bad.c"))
+        .arg(root().join("core/host/tests/bad").join(source))
         .output()
         .unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -104,4 +108,29 @@ fn what_begins_in_a_lost_frame_is_followed_and_a_death_at_once_leaves_no_run() {
     let ran = bench.line(&format!("{TRACK} --frames 2..6"));
     assert!(ran.code == Some(1) && ran.stderr.contains("died of SIGSEGV"), "{ran:?}");
     assert!(!bench.text("log p.honami").contains("run 2"));
+}
+
+#[test]
+fn a_plugin_that_saves_what_it_carries_goes_on_as_if_it_had_not_died() {
+    if !has_cc() {
+        return;
+    }
+    let bench = Bench::new();
+    bench.synth("clip.y4m", 12, "--leaves 20");
+    fs::write(bench.path("points.csv"), "id,x,y,frame\n1,20.5,30,0\n2,60,40.25,0\n3,9,9,4\n").unwrap();
+    let run = |project: &str, dies_in: i32| {
+        compile_source(&bench, "mortal.c", "mortal.so", &[&format!("-DDIES={dies_in}")]);
+        let _said = bench.text(&format!("new {project}.honami clip.y4m"));
+        let said = bench
+            .text(&format!("track {project}.honami --plugin mortal.so --with mortal --points points.csv"));
+        let _said = bench.text(&format!("export {project}.honami tracks {project}.csv"));
+        (said, fs::read_to_string(bench.path(&format!("{project}.csv"))).unwrap())
+    };
+    let (said, undisturbed) = run("never", -1);
+    assert!(!said.contains("started again"), "{said}");
+    for dies_in in [2, 5, 11] {
+        let (said, table) = run(&format!("in{dies_in}"), dies_in);
+        assert!(said.contains(&format!("started again at frame {dies_in}: it died of SIGSEGV")), "{said}");
+        assert_eq!(table, undisturbed, "dead in frame {dies_in}");
+    }
 }

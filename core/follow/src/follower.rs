@@ -3,13 +3,17 @@
 use std::collections::BTreeMap;
 
 use honami_plugin::{
-    Cx, DetectFn, FieldFn, Frame, Info, Params, Point, Points, Result, Seed, Status, Stream, Tracker,
+    Cx, DetectFn, Error, FieldFn, Frame, Info, Params, Point, Points, Result, Seed, State, Status, Stream,
+    Tracker,
 };
 use honami_vision::field::Drift;
 use honami_vision::ncc::Ncc;
+use honami_vision::saved::SavedPicture;
 use honami_vision::{Gray, Point as Place, work};
 
-use crate::{Detection, Losing, check_size, picture};
+use serde::{Deserialize, Serialize};
+
+use crate::{Detection, Losing, check_size, from_bytes, picture, to_bytes};
 
 /// Says where points of one frame are in the next; the parameters of the plugin are its fields.
 pub trait Method: Params + Clone {
@@ -102,21 +106,54 @@ struct Live {
     status: Status,
 }
 
-impl<M: Method> Tracker for Follower<M> {
-    type Params = M;
-    const INFO: Info = M::INFO;
-    const DETECT: Option<DetectFn<M>> = Some(|method, wanted, _| method.detection().features(wanted));
-    const FIELD: Option<FieldFn<M>> = M::FIELD;
+/// What later frames depend on.
+#[derive(Serialize, Deserialize)]
+struct Carried {
+    last: Option<SavedPicture>,
+    points: Vec<(u32, Place, u8)>,
+}
 
-    fn begin(method: &M, stream: &Stream, _: &Cx<'_>) -> Result<Self> {
-        Ok(Self {
+impl<M: Method> Follower<M> {
+    fn save(&self) -> Result<Vec<u8>> {
+        let last = self.last.as_ref().map(|last| SavedPicture::of(&M::kept(last)));
+        let points = self.points.iter().map(|(&id, point)| (id, point.at, point.status as u8)).collect();
+        to_bytes(&Carried { last, points })
+    }
+
+    fn load(method: &M, stream: &Stream, bytes: &[u8]) -> Result<Self> {
+        let carried: Carried = from_bytes(bytes)?;
+        let mut tracker = Self::new(method, stream);
+        if let Some(last) = carried.last {
+            let picture = last.gray().ok_or_else(|| Error::data("its picture is not whole"))?;
+            tracker.last = Some(method.keep(&picture, None, tracker.n_threads));
+        }
+        for (id, at, status) in carried.points {
+            tracker.points.insert(id, Live { at, status: Status::try_from(status)? });
+        }
+        Ok(tracker)
+    }
+
+    fn new(method: &M, stream: &Stream) -> Self {
+        Self {
             method: method.clone(),
             n_threads: stream.max_threads as usize,
             ncc: Ncc::new(method.trust().radius_px),
             last: None,
             spare: None,
             points: BTreeMap::new(),
-        })
+        }
+    }
+}
+
+impl<M: Method> Tracker for Follower<M> {
+    type Params = M;
+    const INFO: Info = M::INFO;
+    const DETECT: Option<DetectFn<M>> = Some(|method, wanted, _| method.detection().features(wanted));
+    const FIELD: Option<FieldFn<M>> = M::FIELD;
+    const STATE: Option<State<Self>> = Some(State { version: 1, save: Self::save, load: Self::load });
+
+    fn begin(method: &M, stream: &Stream, _: &Cx<'_>) -> Result<Self> {
+        Ok(Self::new(method, stream))
     }
 
     fn seed(&mut self, seeds: &[Seed], _: &Cx<'_>) -> Result<()> {

@@ -10,12 +10,14 @@ mod follower;
 mod losing;
 mod motion;
 mod search;
+mod state;
 
 pub use detection::{Corners, Detection};
 pub use follower::{Follower, Method, Step, Trust};
 pub use losing::Losing;
 pub use motion::Motion;
 pub use search::{Search, field_there_and_back, klt_field, pyramid, there_and_back, windows};
+pub use state::{from_bytes, to_bytes};
 
 use honami_plugin::{Error, Field, Frame, Result};
 use honami_vision::Gray;

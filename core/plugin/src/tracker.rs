@@ -1,6 +1,6 @@
 //! Trackers: plugins that follow points through the frames of a clip.
 
-use crate::{Cx, Info, Params, Result, State};
+use crate::{Cx, Error, Info, Params, Result, State};
 use honami_abi as abi;
 
 /// Follows points through a stream of frames.
@@ -205,6 +205,18 @@ pub enum Status {
     Rejected = abi::status::REJECTED,
     /// Born in this frame by the tracker itself.
     Newborn = abi::status::NEWBORN,
+}
+
+impl TryFrom<u8> for Status {
+    type Error = Error;
+
+    fn try_from(number: u8) -> Result<Self> {
+        use Status::{Lost, Newborn, Occluded, Outside, Rejected, Tracked};
+        [Lost, Tracked, Occluded, Outside, Rejected, Newborn]
+            .into_iter()
+            .find(|status| *status as u8 == number)
+            .ok_or_else(|| Error::data(format!("there is no status {number}")))
+    }
 }
 
 /// A point in a frame, as the tracker reports it. Positions are finite, also of lost points.

@@ -27,13 +27,18 @@ mod kernel;
 mod live;
 mod neighbours;
 mod refine;
+mod saved;
 mod search;
 mod template;
 #[cfg(test)]
 mod tests;
 mod warp;
 
+pub use saved::Saved;
+
 use std::collections::BTreeSet;
+
+use serde::{Deserialize, Serialize};
 
 use crate::pyramid::Pyramid;
 use crate::{Gray, Point, klt, simd};
@@ -130,7 +135,7 @@ impl Params {
 }
 
 /// What is known of a point in a frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum State {
     /// Found.
     Tracked,

@@ -22,6 +22,7 @@ pub mod plane;
 pub mod pyramid;
 pub mod robust;
 pub mod sample;
+pub mod saved;
 pub mod simd;
 pub mod texture;
 pub mod work;

@@ -15,6 +15,8 @@ mod tests;
 
 pub use spots::{Spot, Spots};
 
+use serde::{Deserialize, Serialize};
+
 use crate::klt::{self, State};
 use crate::pyramid::Pyramid;
 use crate::work::in_looks;
@@ -36,7 +38,7 @@ pub struct Params {
 }
 
 /// One that lives.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Particle {
     /// How many were born before it.
     pub number: u64,
@@ -69,6 +71,18 @@ impl Swarm {
             particle.left = 1 + (share * life) as u32;
         }
         swarm
+    }
+
+    /// Those that lived when another swarm was saved, of which this was [`n_born`](Self::n_born).
+    #[must_use]
+    pub fn of(params: &Params, living: Vec<Particle>, n_born: u64) -> Self {
+        Self { params: *params, living, n_born }
+    }
+
+    /// How many have been born so far.
+    #[must_use]
+    pub fn n_born(&self) -> u64 {
+        self.n_born
     }
 
     /// Those that live now, by their numbers.

@@ -20,8 +20,10 @@ use crate::progress::{Flow, Progress};
 use crate::stamp::SEED;
 
 mod board;
+mod resume;
 
 use board::Board;
+use resume::Saved;
 
 /// More features than any tracker finds in a frame; a tracker's own parameter sets the real limit.
 pub(crate) const MAX_FEATURES: u32 = 100_000;
@@ -123,8 +125,9 @@ pub fn check_seeds(seeds: &[Seed], clip: &Clip) -> Result<(), WorkbenchError> {
 
 /// Follows the plan and hands every frame's rows to `sink`.
 ///
-/// When the tracker's process dies another one goes on with the features that were seen in the frame before; a frame
-/// in which that dies, too, is left out, and all are lost there. Where a person stops it, or the tracker fails, the frames before are
+/// When the tracker's process dies another one goes on with what it carried when it was asked last, by the same way to the
+/// same bits; or, where it saves nothing, with the features that were seen in the frame before. A frame in which that dies,
+/// too, is left out, and all are lost there. Where a person stops it, or the tracker fails, the frames before are
 /// with the sink already.
 ///
 /// # Errors
@@ -142,7 +145,15 @@ pub fn drive(
     let (first, total) = (plan.frames.start, u64::from(plan.frames.end - plan.frames.start));
     let ear = Ear::new(tracker.plugin(), progress);
     let board = Board::new(first);
-    let mut ride = Ride { media, tracker, plan: &plan, board, born: BTreeMap::new(), step_secs: Vec::new() };
+    let mut ride = Ride {
+        media,
+        tracker,
+        plan: &plan,
+        board,
+        born: BTreeMap::new(),
+        saved: Saved::default(),
+        step_secs: Vec::new(),
+    };
     let mut stopped = ear.call(0, total, |call| ride.begin(call));
     for frame in plan.frames.clone() {
         let done = u64::from(frame - first);
@@ -152,12 +163,17 @@ pub fn drive(
         if stopped.is_err() {
             break;
         }
-        stopped = ear.call(done, total, |call| ride.step(frame, numbers, call));
+        stopped = ear
+            .call(done, total, |call| ride.keep(frame, call).and_then(|()| ride.step(frame, numbers, call)));
         let (mut death, mut n_deaths) = (Death::First, 0);
         while let (Err(WorkbenchError::Plugin(HostError::Ended { how, .. })), Some(restart)) =
             (&stopped, restart.as_mut())
         {
             let seam = Seam { frame: ride.board.end, why: how.to_string(), build: None };
+            if n_deaths + 1 == MAX_DEATHS {
+                // What it carried may be what it dies of.
+                ride.saved.forget();
+            }
             stopped = restart(&seam, death).and_then(|tracker| {
                 *ride.tracker = tracker;
                 ride.tracker.pardon(true);
@@ -197,6 +213,8 @@ struct Ride<'a> {
     board: Board,
     /// Numbers of the tracks that points of the tracker's own making have become.
     born: BTreeMap<u32, u32>,
+    /// For another tracker, should this one die.
+    saved: Saved,
     step_secs: Vec<f64>,
 }
 
@@ -232,7 +250,7 @@ impl Ride<'_> {
             let answers = self.tracker.push(&view, call)?;
             self.take(answers, numbers)?;
         }
-        let placed = self.board.placed.get(&frame).cloned();
+        let placed = self.board.placed.get(&frame).or(self.saved.given(frame)).cloned();
         let is_again = placed.is_some();
         let mut new: Vec<Point> = placed.unwrap_or_else(|| due(&self.plan.seeds, frame).collect());
         if let Some(detect) = self.plan.detect.as_ref().filter(|_| !is_again) {
@@ -243,6 +261,7 @@ impl Ride<'_> {
                 new.extend(found);
             }
         }
+        self.saved.give(frame, &new);
         if !new.is_empty() {
             self.tracker.seed(&new, call)?;
         }
@@ -252,44 +271,10 @@ impl Ride<'_> {
         } else {
             self.board.place(frame, &new);
         }
-        self.step_secs.push(begun.elapsed().as_secs_f64());
+        let seconds = begun.elapsed().as_secs_f64();
+        self.saved.worked(seconds);
+        self.step_secs.push(seconds);
         Ok(())
-    }
-
-    /// Gives a new tracker what the one before had seen when it died in frame `fatal`, and goes on with that frame or,
-    /// when that is fatal again, after it.
-    fn resume(
-        &mut self,
-        fatal: u32,
-        death: Death,
-        numbers: Numbers<'_>,
-        call: &CallContext<'_>,
-    ) -> Result<(), WorkbenchError> {
-        let (first, seen_in) = self.board.back();
-        // Its own points of before are features like any other now.
-        self.born.clear();
-        self.begin(call)?;
-        if let Some(seen_in) = seen_in {
-            let picture = self.media.frame(seen_in)?;
-            let seen: Vec<Point> = self.board.seen().collect();
-            self.tracker.seed(&seen, call)?;
-            // Where they are there is known already.
-            self.tracker.push(&view(self.media, &picture, seen_in), call)?;
-        }
-        for frame in first..fatal {
-            self.step(frame, numbers, call)?;
-        }
-        if death == Death::Again && fatal > self.plan.frames.start {
-            self.board.lose(fatal);
-            // What begins there begins all the same, a frame early for the tracker.
-            let new: Vec<Point> = due(&self.plan.seeds, fatal).collect();
-            if !new.is_empty() {
-                self.tracker.seed(&new, call)?;
-                self.board.place(fatal, &new);
-            }
-            return Ok(());
-        }
-        self.step(fatal, numbers, call)
     }
 
     /// Keeps answers. Points of the tracker's own making become tracks where features may be found; elsewhere nobody
@@ -303,7 +288,8 @@ impl Ride<'_> {
         };
         for answer in &mut answers {
             let newborn = answer.rows.iter().filter(|row| row.status == Status::Newborn && is_wanted(row));
-            let ids: Vec<u32> = newborn.map(|row| row.id).collect();
+            // Those of frames that are tracked again after a death have theirs.
+            let ids: Vec<u32> = newborn.map(|row| row.id).filter(|id| !self.born.contains_key(id)).collect();
             if !ids.is_empty() {
                 let numbers = numbers(u32::try_from(ids.len()).unwrap_or(u32::MAX))?;
                 self.born.extend(ids.into_iter().zip(numbers));

@@ -4,9 +4,9 @@ mod settings;
 #[cfg(test)]
 mod tests;
 
-use honami_follow::{check_size, klt_field, picture};
+use honami_follow::{check_size, from_bytes, klt_field, picture, to_bytes};
 use honami_plugin::{
-    Cx, DetectFn, FieldFn, Frame, Info, Point, Points, Result, Seed, Status, Stream, Tracker, export,
+    Cx, DetectFn, Error, FieldFn, Frame, Info, Point, Points, Result, Seed, Status, Stream, Tracker, export,
 };
 use honami_vision::anchor::{self, State};
 use settings::Settings;
@@ -35,6 +35,9 @@ impl Tracker for Anchored {
         Some(|settings, wanted, _| settings.detection.features(wanted));
     const FIELD: Option<FieldFn<Settings>> =
         Some(|settings, from, to, max_threads, cx| klt_field(&settings.dense(), from, to, max_threads, cx));
+
+    const STATE: Option<honami_plugin::State<Self>> =
+        Some(honami_plugin::State { version: 1, save: |anchored| to_bytes(&anchored.tracker.save()), load });
 
     fn begin(settings: &Settings, stream: &Stream, _: &Cx<'_>) -> Result<Self> {
         Ok(Self { tracker: anchor::Tracker::new(settings.tracking(), stream.max_threads as usize) })
@@ -65,6 +68,14 @@ impl Tracker for Anchored {
         }
         Ok(())
     }
+}
+
+fn load(settings: &Settings, stream: &Stream, bytes: &[u8]) -> Result<Anchored> {
+    let saved = from_bytes(bytes)?;
+    let tracker = anchor::Tracker::load(settings.tracking(), stream.max_threads as usize, saved);
+    tracker
+        .map(|tracker| Anchored { tracker })
+        .ok_or_else(|| Error::data("its points are none of this tracker's"))
 }
 
 export! {

@@ -5,8 +5,10 @@ use std::ops::Range;
 
 use honami_plugin::{Cx, Point, Points, Status};
 use honami_vision::particles::Particle;
+use serde::{Deserialize, Serialize};
 
 /// The ids that the host has set aside. A particle has the one at its number; none is used twice.
+#[derive(Clone, Serialize, Deserialize)]
 pub(crate) struct Births {
     ids: Range<u32>,
     /// Particles that were reported as born: all before this number.

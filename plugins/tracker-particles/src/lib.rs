@@ -1,6 +1,7 @@
 //! Particles of limited life as a honami plugin; the algorithm is `honami_vision::particles`.
 
 mod births;
+mod carried;
 mod dense;
 mod settings;
 #[cfg(test)]
@@ -11,7 +12,8 @@ use std::collections::BTreeMap;
 use births::Births;
 use honami_follow::{check_size, picture};
 use honami_plugin::{
-    Cx, DetectFn, Error, FieldFn, Frame, Info, Point, Points, Result, Seed, Status, Stream, Tracker, export,
+    Cx, DetectFn, Error, FieldFn, Frame, Info, Point, Points, Result, Seed, State, Status, Stream, Tracker,
+    export,
 };
 use honami_vision::Gray;
 use honami_vision::ncc::Ncc;
@@ -62,18 +64,10 @@ impl Tracker for Particles {
     const DETECT: Option<DetectFn<Settings>> =
         Some(|settings, wanted, _| settings.detection.features(wanted));
     const FIELD: Option<FieldFn<Settings>> = Some(dense::field);
+    const STATE: Option<State<Self>> = Some(State { version: 1, save: Self::save, load: Self::load });
 
     fn begin(settings: &Settings, stream: &Stream, _: &Cx<'_>) -> Result<Self> {
-        let params = settings.swarm();
-        let births = if settings.emit { stream.births.clone() } else { 0..0 };
-        Ok(Self {
-            params,
-            n_threads: stream.max_threads as usize,
-            seen: None,
-            points: BTreeMap::new(),
-            births: Births::new(births),
-            ncc: Ncc::new(params.klt.radius_px),
-        })
+        Ok(Self::new(settings, stream))
     }
 
     fn seed(&mut self, seeds: &[Seed], _: &Cx<'_>) -> Result<()> {
@@ -123,6 +117,21 @@ impl Tracker for Particles {
         }
         self.births.report(seen.swarm.living(), out, cx);
         Ok(())
+    }
+}
+
+impl Particles {
+    fn new(settings: &Settings, stream: &Stream) -> Self {
+        let params = settings.swarm();
+        let births = if settings.emit { stream.births.clone() } else { 0..0 };
+        Self {
+            params,
+            n_threads: stream.max_threads as usize,
+            seen: None,
+            points: BTreeMap::new(),
+            births: Births::new(births),
+            ncc: Ncc::new(params.klt.radius_px),
+        }
     }
 }
 

@@ -1,5 +1,7 @@
 //! One point: what it looks like, where it is, and what is made of that frame by frame.
 
+use serde::{Deserialize, Serialize};
+
 use super::neighbours::{self, Neighbour, Seen, Word};
 use super::search::Ring;
 use super::template::{Desk, Fit, Template};
@@ -16,7 +18,7 @@ const FLUTTER_PX: f32 = 3.0;
 const MEMORY_FRAMES: f32 = 20.0;
 
 /// A point that has not been retired.
-#[derive(Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Live {
     /// The seed's, or [`OWN`] and more for a companion.
     pub(super) id: u64,
@@ -49,9 +51,12 @@ pub(super) struct Live {
     pub(super) base: Point,
     pub(super) near: Vec<Neighbour>,
     /// Where Lucas-Kanade leads in this frame.
+    #[serde(skip)]
     pub(super) flow: Option<klt::Flow>,
     /// The best fit in this frame.
+    #[serde(skip)]
     fit: Option<Fit>,
+    #[serde(skip)]
     fb: Option<f32>,
 }
 
@@ -129,6 +134,15 @@ impl Live {
     /// Whether the tracker follows it for itself.
     pub(super) fn is_companion(&self) -> bool {
         self.id >= OWN
+    }
+
+    /// Whether it can be worked with: what another tracker says that it was.
+    pub(super) fn is_sound(&self, params: &Params, n_slots: usize) -> bool {
+        let places = [self.at, self.before, self.base, self.speed, self.aside];
+        (self.current < self.templates.len() || self.templates.is_empty())
+            && self.templates.iter().all(|template| template.is_of(params))
+            && self.near.iter().all(|other| (other.slot as usize) < n_slots)
+            && places.iter().chain(self.warp.as_chunks::<2>().0).flatten().all(|c| c.is_finite())
     }
 
     /// Whether a companion is of no use any more.

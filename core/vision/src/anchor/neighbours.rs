@@ -6,16 +6,18 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
+
 use super::{Live, POINTS_A_LOOK, Params};
 use crate::Point;
 
 /// A point that was near when the two were related.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Neighbour {
     id: u64,
     /// Which seeding of it; another is another point.
     stamp: u32,
-    slot: u32,
+    pub(super) slot: u32,
     /// Where it was when the two were related.
     base: Point,
     /// Mean square of how far their distance has been off since, pixels².

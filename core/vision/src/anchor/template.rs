@@ -1,5 +1,7 @@
 //! A template, and the desk on which one is laid to be compared with pictures.
 
+use serde::{Deserialize, Serialize};
+
 use super::Params;
 use super::kernel::{Cell, Kernel, LANES, Lanes, MID_GRAY, Moments, Place, Tap};
 use super::live::holds;
@@ -8,7 +10,7 @@ use super::warp::{STILL, Warp, apply};
 use crate::{Gray, Point, sample, simd};
 
 /// What a point looked like in a key-frame.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Template {
     /// Brightness around the point and one pixel more: `(side + 2, side + 2)`, row-major.
     patch: Vec<f32>,
@@ -63,6 +65,12 @@ impl Template {
         sample::patch(gray, at, params.radius_px + 1, &mut patch);
         let side = 2 * params.radius_px as usize + 1;
         Self { patch, doubt: vec![0.0; side * side], shift: [0.0; 2], alike: None }
+    }
+
+    /// Whether it has as many pixels as these parameters want.
+    pub(super) fn is_of(&self, params: &Params) -> bool {
+        let side = 2 * params.radius_px as usize + 1;
+        self.patch.len() == (side + 2) * (side + 2) && self.doubt.len() == side * side
     }
 }
 

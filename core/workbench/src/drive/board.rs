@@ -74,8 +74,13 @@ impl Board {
         self.answered.insert(frame, rows.collect());
     }
 
+    pub(super) fn is_lost(&self, frame: u32) -> bool {
+        self.lost.contains(&frame)
+    }
+
+    /// Lays down the seeds of a frame that was not handed over yet.
     pub(super) fn place(&mut self, frame: u32, points: &[Point]) {
-        if !points.is_empty() {
+        if !points.is_empty() && frame >= self.end {
             self.last.extend(points.iter().map(|point| (point.id, *point)));
             self.placed.insert(frame, points.to_vec());
         }
