@@ -107,3 +107,29 @@ fn what_python_raises_is_told_in_its_words() {
         assert!(ran.code == Some(1) && (held || all.contains(wanted)), "{push}: {ran:?}");
     }
 }
+
+/// Lets the example end its process in frame 5, once: what is loaded has no such wish.
+fn mortal(text: String) -> String {
+    let death = "        if frame.index == 5 and self.dies:\n            __import__('os')._exit(3)\n";
+    let more = [
+        ("def begin(self, stream):\n", "        self.dies = True\n"),
+        ("def push(self, frame):\n", death),
+        ("def load(self, data):\n", "        self.dies = False\n"),
+    ];
+    more.into_iter().fold(text, |text, (line, more)| text.replace(line, &format!("{line}{more}")))
+}
+
+#[test]
+fn a_tracker_in_python_that_dies_goes_on_from_what_it_saved() {
+    let tables = [false, true].map(|is_mortal| {
+        let bench = with_example(|text| if is_mortal { mortal(text) } else { text })?;
+        fs::write(bench.path("points.csv"), "id,x,y\n1,60,60\n2,90,70\n").unwrap();
+        let _said = bench.text("new p.honami clip.y4m");
+        let said = bench.text("track p.honami --plugin template.py --with template --points points.csv");
+        let has_died = said.contains("started again at frame 5: it ended its process with status 3");
+        assert_eq!(has_died, is_mortal, "{said}");
+        let _said = bench.text("export p.honami tracks out.csv");
+        Some(fs::read_to_string(bench.path("out.csv")).unwrap())
+    });
+    assert_eq!(tables[0], tables[1]);
+}

@@ -1,5 +1,4 @@
 //! What was saved is loaded as it was saved, or not at all.
-#![expect(clippy::unwrap_used, reason = "helpers of tests fail the test")]
 
 use super::{Setting, State, head, load, mix};
 use crate::testing::stream;
