@@ -1,6 +1,7 @@
 //! The command line: one file a command, each giving an answer for people and for machines.
 
 mod args;
+mod begin;
 mod compare;
 mod edit;
 mod exchange;

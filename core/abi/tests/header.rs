@@ -25,9 +25,14 @@ fn read(path: &str) -> String {
 
 /// Compiles a text as C99 and as C++11; says so where there is no compiler.
 fn check(name: &str, source: &str) {
+    check_as(&[("cc", "c", "-std=c99"), ("c++", "c++", "-std=c++11")], name, source);
+}
+
+/// Compiles without a warning, by each compiler in its language and standard.
+fn check_as(compilers: &[(&str, &str, &str)], name: &str, source: &str) {
     let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     std::fs::write(&file, source).unwrap();
-    for (compiler, language, standard) in [("cc", "c", "-std=c99"), ("c++", "c++", "-std=c++11")] {
+    for &(compiler, language, standard) in compilers {
         let output = Command::new(compiler)
             .args([
                 "-x",
@@ -163,6 +168,9 @@ fn the_headers_and_the_examples_compile_by_themselves() {
     check("alone_draft.c", "#include \"honami_draft.h\"\n");
     check("null_tracker.c", &read("examples/null_tracker.c"));
     check("tint_tracker.c", &read("examples/tint_tracker.c"));
+    check_as(&[("cc", "c", "-std=c99")], "template_tracker.c", &read("examples/template_tracker.c"));
+    let cpp = [("c++", "c++", "-std=c++17"), ("c++", "c++", "-std=c++20")];
+    check_as(&cpp, "template_tracker.cpp", &read("examples/template_tracker.cpp"));
 }
 
 #[test]

@@ -1,35 +1,138 @@
-//! What the author of a plugin begins with: a working tracker under a name of their own, and what it is built on.
+//! What the author of a plugin begins with: a folder with one that works, under a name of their own, and the command
+//! that makes it ready.
 
-/// A file by name, and what is in it.
+mod rust;
+#[cfg(test)]
+mod tests;
+
+use crate::manifest::Kind;
+
+/// A file by its place in the folder, and what is in it.
 pub type File = (String, String);
 
-/// Languages that a plugin can be begun in, beside Rust (`honami-plugin`).
+/// Languages that a plugin can be begun in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Language {
     /// One file, the standard library and numpy.
     Python,
+    /// A package with the SDK beside it; it needs nothing from elsewhere.
+    Rust,
     /// The header alone.
     C,
+    /// The header and a class over it.
+    Cpp,
+}
+
+/// A plugin that was just begun.
+#[derive(Clone, Debug)]
+pub struct Begun {
+    /// What lies in its folder, the file to change first.
+    pub files: Vec<File>,
+    /// The command that makes it ready, in the folder that holds its own.
+    pub build: String,
+    /// What is then to be named to honami, from there.
+    pub plugin: String,
 }
 
 /// What plugins in Python import.
 pub(crate) const HONAMI_PY: &str = include_str!("../../plugin/python/honami.py");
 
-/// The files of a new tracker, the one to change first.
-#[must_use]
-pub fn new_tracker(name: &str, language: Language) -> Vec<File> {
-    let id = format!("org.me.{name}");
-    match language {
-        Language::Python => {
-            let text = include_str!("../../plugin/python/examples/template.py");
-            let text = text.replace("org.honami.template", &id);
-            vec![(format!("{name}.py"), text), ("honami.py".to_owned(), HONAMI_PY.to_owned())]
+/// The ids in the templates.
+const ID: [&str; 2] = ["org.honami.template", "org.honami.linkage"];
+
+/// What a file of that name would stand in the way of, because the SDK for Python imports it.
+const PYTHON_MODULES: [&str; 24] = [
+    "ast",
+    "base64",
+    "code",
+    "collections",
+    "enum",
+    "functools",
+    "io",
+    "json",
+    "mmap",
+    "numpy",
+    "operator",
+    "os",
+    "pathlib",
+    "random",
+    "re",
+    "select",
+    "socket",
+    "string",
+    "struct",
+    "sys",
+    "threading",
+    "time",
+    "traceback",
+    "types",
+];
+
+/// The files of a new plugin, and how it is built.
+///
+/// # Errors
+/// When the name will not do, or this kind cannot be begun in this language; a sentence.
+pub fn begin(name: &str, kind: Kind, language: Language) -> Result<Begun, String> {
+    let is_word = name.chars().all(|c| c.is_ascii_alphanumeric() || "-_".contains(c));
+    if !is_word || !name.starts_with(|c: char| c.is_ascii_alphabetic()) {
+        return Err(format!(
+            "wanted a name of letters, digits, - and _ that begins with a letter, got {name:?}"
+        ));
+    }
+    if name == "honami" || (language == Language::Python && PYTHON_MODULES.contains(&name)) {
+        return Err(format!("{name:?} is the name of what the plugin needs: choose another"));
+    }
+    let own =
+        |text: &str| ID.iter().fold(text.to_owned(), |text, id| text.replace(id, &format!("org.me.{name}")));
+    let header = ("honami.h".to_owned(), include_str!("../../abi/include/honami.h").to_owned());
+    match (language, kind) {
+        (Language::Python, Kind::Tracker | Kind::Clusterer) => {
+            let text = match kind {
+                Kind::Tracker => include_str!("../../plugin/python/examples/template.py"),
+                _ => include_str!("../../plugin/python/examples/linkage.py"),
+            };
+            let sdk = ("honami.py".to_owned(), HONAMI_PY.to_owned());
+            Ok(Begun {
+                files: vec![(format!("{name}.py"), own(text)), sdk],
+                build: format!("python3 {name}/{name}.py --honami-manifest"),
+                plugin: format!("{name}/{name}.py"),
+            })
         }
-        Language::C => {
-            let text = include_str!("../../abi/examples/null_tracker.c");
-            let text = text.replace("org.honami.null", &id).replace("org.honami.examples", &id);
-            let header = include_str!("../../abi/include/honami.h");
-            vec![(format!("{name}.c"), text), ("honami.h".to_owned(), header.to_owned())]
+        (Language::Rust, Kind::Tracker | Kind::Clusterer) => {
+            let text = match kind {
+                Kind::Tracker => include_str!("../../plugin/examples/template.rs"),
+                _ => include_str!("../../plugin/examples/linkage.rs"),
+            };
+            Ok(rust::begin(name, own(text)))
+        }
+        (Language::C, Kind::Tracker) => {
+            let text = include_str!("../../abi/examples/template_tracker.c");
+            Ok(Begun {
+                files: vec![(format!("{name}.c"), own(text)), header],
+                build: format!(
+                    "cc -std=c99 -O2 -shared -fPIC -fvisibility=hidden {name}/{name}.c -lm -o {name}/{name}.so"
+                ),
+                plugin: format!("{name}/{name}.so"),
+            })
+        }
+        (Language::Cpp, Kind::Tracker) => {
+            let text = include_str!("../../abi/examples/template_tracker.cpp");
+            let class = ("honami.hpp".to_owned(), include_str!("../../abi/include/honami.hpp").to_owned());
+            Ok(Begun {
+                files: vec![(format!("{name}.cpp"), own(text)), class, header],
+                build: format!(
+                    "c++ -std=c++17 -O2 -shared -fPIC -fvisibility=hidden -fvisibility-inlines-hidden \
+                     {name}/{name}.cpp -o {name}/{name}.so"
+                ),
+                plugin: format!("{name}/{name}.so"),
+            })
+        }
+        (Language::C | Language::Cpp, Kind::Clusterer) => Err(
+            "a clusterer can be begun in Python and in Rust; in C, core/abi/include/honami.h says what it is"
+                .into(),
+        ),
+        (_, Kind::Structure | Kind::Simulator) => {
+            Err(format!("a {kind} is a draft still, and cannot be begun"))
         }
     }
 }

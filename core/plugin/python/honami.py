@@ -18,7 +18,13 @@
 `detect(frame, max_features, mask, points)`, which returns `honami.Features(x, y, score)`, and `field(a, b)`, which
 returns `honami.Field(gx, gy, step, u, v, known)`. One with `save()`, which returns bytes with all that later frames depend
 on, and `load(bytes)`, which comes after `begin` in their place, goes on with the same numbers when its process has died; it
-only gets what it saved under the same parameters and the same `state_version`, a number of its class. Arrays that it is given are gone after the call: copy what you keep.
+only gets what it saved under the same parameters and the same `state_version`, a number of its class. Arrays that it is
+given are gone after the call: copy what you keep.
+
+    @honami.clusterer("org.me.groups", "My groups", params=Settings)
+    class Groups:
+        def cluster(self, tracks): ...       # tracks.id; .x, .y: tracks x frames, NaN where not seen; .frame, .time_s
+            return honami.Tree(merges)       # rows a, b, height, as of scipy.cluster.hierarchy.linkage
 
 `python3 mine.py --honami-manifest` writes `mine.honami.json`, from which honami lists the plugin and draws its form
 without running it. Write it anew when parameters change. What is printed is a line of the plugin's log.
@@ -115,6 +121,31 @@ def Field(gx, gy, step, u, v, known=None):
     return {"honami.vectors/1": vectors, "honami.grid/1": one}
 
 
+def Tree(merges, outlier=None, distance=None, frame=None):
+    """Merges, a row each: what is merged and how far it is apart. Leaf k is track k, row r makes cluster n + r.
+
+    `outlier` and `distance`, if frames are judged: a number each of `frame`, those of the tracks.
+    """
+    merges = np.array([row[:3] for row in merges], "f8").reshape(-1, 3)
+    sizes = [1] * (len(merges) + 1)
+    for a, b, _ in merges:
+        sizes.append(sizes[int(a)] + sizes[int(b)])
+    a, b, height = merges.T
+    tree = {"a": (a, "u4"), "b": (b, "u4"), "height": (height, "f8"), "size": (sizes[len(merges) + 1:], "u4")}
+    if outlier is None:
+        return {"honami.dendrogram/1": tree}
+    judged = {"frame": (frame, "i8"), "outlier": (outlier, "u1"), "distance": (distance, "f8")}
+    return {"honami.dendrogram/1": tree, "honami.frames/1": judged}
+
+
+def window(gray, x, y, r):
+    """The window of radius r around the pixel nearest to (x, y), copied; None where it leaves the picture."""
+    left, top = np.floor(x + 0.5) - r, np.floor(y + 0.5) - r
+    if not (left >= 0 and top >= 0 and left + 2 * r < gray.shape[1] and top + 2 * r < gray.shape[0]):
+        return None
+    return gray[int(top):int(top) + 2 * r + 1, int(left):int(left) + 2 * r + 1].copy()
+
+
 def _optional(**columns):
     return {name: (values, "f4") for name, values in columns.items() if values is not None}
 
@@ -126,16 +157,24 @@ def tracker(id, name, *, params=Params, doc="", cite=(), deterministic=True):
     """Makes a class a tracker."""
 
     def keep(cls):
-        cls.Params = params
         interfaces = ["honami.tracker/1"] + [f"honami.{f}/1" for f in ("detect", "field") if hasattr(cls, f)]
         interfaces += ["honami.state/1"] if hasattr(cls, "save") and hasattr(cls, "load") else []
-        caps = {"latency": 0, "deterministic": deterministic, "parallel_instances": True, "pixels": ["gray8"]}
-        _plugins[id] = cls
-        cls._manifest = {"id": id, "kind": "tracker", "name": name, "doc": doc, "cite": list(cite),
-                         "interfaces": interfaces, "caps": caps, "params": params._schema()}
-        return cls
+        return _keep(cls, id, name, "tracker", interfaces, params, doc, cite, deterministic)
 
     return keep
+
+
+def clusterer(id, name, *, params=Params, doc="", cite=(), deterministic=True):
+    """Makes a class a clusterer."""
+    return lambda cls: _keep(cls, id, name, "clusterer", ["honami.clusterer/1"], params, doc, cite, deterministic)
+
+
+def _keep(cls, id, name, kind, interfaces, params, doc, cite, deterministic):
+    caps = {"latency": 0, "deterministic": deterministic, "parallel_instances": True, "pixels": ["gray8"]}
+    cls.Params, _plugins[id] = params, cls
+    cls._manifest = {"id": id, "kind": kind, "name": name, "doc": doc, "cite": list(cite),
+                     "interfaces": interfaces, "caps": caps, "params": params._schema()}
+    return cls
 
 
 def progress(fraction, text=""):
@@ -310,6 +349,9 @@ class _Host:
     def on_field(self, ask):
         return self.instance.field(self.frame(ask["from"]), self.frame(ask["to"]))
 
+    def on_cluster(self, ask):
+        return self.instance.cluster(self.tracks(ask))
+
     def call(self, name, *args):
         return getattr(self.instance, name)(*args) if hasattr(self.instance, name) else None
 
@@ -318,6 +360,22 @@ class _Host:
 
     def points(self, table):
         return SimpleNamespace(**{n: self.column(table, n, k) for n, k in [("id", "u4"), ("x", "f4"), ("y", "f4")]})
+
+    def tracks(self, ask):
+        """Positions as tracks x frames, NaN where a track was not seen."""
+        table, times = ask["tracks"], ask["times"]
+        samples = {"rows": ask["n_samples"], "at": table["at"]}
+        x, y, status = [self.column(samples, n, k) for n, k in [("x", "f4"), ("y", "f4"), ("status", "u1")]]
+        first, length, offset = [self.column(table, n, k) for n, k in [("frame0", "i8"), ("len", "u4"), ("offset", "u8")]]
+        frame = self.column(times, "frame", "i8")
+        seen = np.isin(status, (TRACKED, NEWBORN))
+        whole = np.full((2, len(first), len(frame)), np.nan)
+        for k, (start, n, at) in enumerate(zip(first.tolist(), length.tolist(), offset.tolist())):
+            to = start - int(frame[0])
+            whole[:, k, to:to + n] = np.where(seen[at:at + n], (x[at:at + n], y[at:at + n]), np.nan)
+        return SimpleNamespace(id=self.column(table, "id", "u4"), x=whole[0], y=whole[1], frame=frame,
+                               time_s=self.column(times, "time_s", "f8"), width=ask["width"], height=ask["height"],
+                               max_threads=ask["max_threads"], seed=ask["seed"])
 
     def plane(self, plane):
         height, width = plane["height"], plane["width"]

@@ -117,6 +117,20 @@ impl<'a> Gray<'a> {
         let start = y as usize * self.stride;
         &self.data[start..start + self.width as usize]
     }
+
+    /// Pixels of the window of radius `r` (side 2r + 1) around the pixel nearest to (x, y), row by row; `None` where it
+    /// leaves the picture.
+    #[must_use]
+    pub fn window(&self, x: f32, y: f32, r: u32) -> Option<Vec<u8>> {
+        let [left, top] = [x, y].map(|v| (f64::from(v) + 0.5).floor() - f64::from(r));
+        let fits = |start: f64, n: u32| start >= 0.0 && start + f64::from(2 * r) < f64::from(n);
+        if !fits(left, self.width) || !fits(top, self.height) {
+            return None;
+        }
+        let (left, top) = (left as usize, top as u32);
+        let rows = (top..=top + 2 * r).map(|y| &self.row(y)[left..=left + 2 * r as usize]);
+        Some(rows.collect::<Vec<_>>().concat())
+    }
 }
 
 /// The colour of a picture: chroma planes as the clip has them, nothing converted.

@@ -368,10 +368,13 @@ pub(super) enum Plugin {
         /// Short name or full id.
         name: String,
     },
-    /// Begin a tracker of your own: a folder with a working one to change.
+    /// Begin a plugin of your own: a folder with one that works, to be changed.
     New {
-        /// Its name: letters, digits, `-` and `_`.
+        /// Its name: a letter, then letters, digits, `-` and `_`.
         name: String,
+        /// What it does.
+        #[arg(long, value_enum, default_value_t = Kind::Tracker)]
+        kind: Kind,
         /// What it is written in.
         #[arg(long, value_enum, default_value_t = Lang::Python)]
         lang: Lang,
@@ -397,7 +400,16 @@ pub(super) enum Plugin {
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 pub(super) enum Lang {
     Python,
+    Rust,
     C,
+    Cpp,
+}
+
+/// Kinds of plugins that can be begun.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub(super) enum Kind {
+    Tracker,
+    Clusterer,
 }
 
 /// A frame rate.

@@ -7,12 +7,11 @@ use std::path::{Path, PathBuf};
 use anyhow::Context as _;
 use clap::CommandFactory as _;
 use honami_workbench::doctor;
-use honami_workbench::plugins::sdk::{self, Language};
 use honami_workbench::plugins::{Host, Param, PluginInfo, Registry, SearchPath, Trust, TrustBook};
 use serde_json::json;
 
-use super::args::{Cli, Common, Lang, Plugin};
-use super::{Answer, report};
+use super::args::{Cli, Common, Plugin};
+use super::{Answer, begin, report};
 use crate::app::config::Config;
 
 /// The shell script that completes honami's words.
@@ -60,7 +59,7 @@ pub(super) fn plugin(command: &Plugin, common: &Common) -> anyhow::Result<Answer
     match command {
         Plugin::List => Ok(list(&registry)),
         Plugin::Info { name } => info(named(&registry, name)?),
-        Plugin::New { name, lang } => begun(name, *lang),
+        Plugin::New { name, kind, lang } => begin::plugin(name, *kind, *lang),
         Plugin::Allow { plugin } => allow(&file(&registry, plugin)?),
         Plugin::Deny { plugin } => {
             let library = file(&registry, plugin)?;
@@ -79,39 +78,6 @@ pub(super) fn plugin(command: &Plugin, common: &Common) -> anyhow::Result<Answer
             Ok(Answer { json, text: format!("{} {words}", plugin.short_name), done: true })
         }
     }
-}
-
-/// Writes the files of a new plugin into a folder of its name.
-fn begun(name: &str, lang: Lang) -> anyhow::Result<Answer> {
-    let is_name = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || "-_".contains(c));
-    anyhow::ensure!(is_name, "wanted a name of letters, digits, - and _, got {name:?}");
-    fs::create_dir(name).with_context(|| format!("cannot make the folder {name}"))?;
-    let (language, next) = match lang {
-        Lang::Python => (
-            Language::Python,
-            format!(
-                "python3 {name}/{name}.py --honami-manifest\n  honami plugin info {name} --plugin {name}/{name}.py"
-            ),
-        ),
-        Lang::C => (
-            Language::C,
-            format!(
-                "cc -std=c99 -shared -fPIC -fvisibility=hidden {name}/{name}.c -o {name}/{name}.so\n  \
-                 honami plugin info {name} --plugin {name}/{name}.so"
-            ),
-        ),
-    };
-    let files = sdk::new_tracker(name, language);
-    for (file, text) in &files {
-        let path = Path::new(name).join(file);
-        fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))?;
-    }
-    let files: Vec<&str> = files.iter().map(|(file, _)| file.as_str()).collect();
-    let text = format!(
-        "{name}: {}, a tracker that works; change it. Before it is there, and when its parameters change:\n  {next}",
-        files.join(", ")
-    );
-    Ok(Answer { json: json!({ "folder": name, "files": files }), text, done: true })
 }
 
 /// The file of a plugin: a path, or a name of one that there is.

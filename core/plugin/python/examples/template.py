@@ -13,42 +13,47 @@ class Settings(honami.Params):
 @honami.tracker("org.honami.template", "Templates of the first frame", params=Settings)
 class Template:
     def begin(self, stream):
-        self.at, self.templates, self.gray = {}, {}, None
+        self.at, self.first, self.last = {}, {}, None
 
     def seed(self, points):
-        self.at.update({int(i): (int(round(x)), int(round(y))) for i, x, y in zip(points.id, points.x, points.y)})
-        self.templates.update({int(i): None for i in points.id})
-        if self.gray is not None:
-            self.templates.update({int(i): self.cut(self.gray, *self.at[int(i)]) for i in points.id})
+        for i, x, y in zip(points.id.tolist(), points.x.tolist(), points.y.tolist()):
+            self.at[i] = (x, y)
+            self.first[i] = None if self.last is None else honami.window(self.last, x, y, self.params.radius)
 
-    def cut(self, gray, x, y, more=0):
-        r = self.params.radius + more
-        whole = x >= r and y >= r and x + r < gray.shape[1] and y + r < gray.shape[0]
-        return gray[y - r:y + r + 1, x - r:x + r + 1].astype("f4") if whole else None
-
-    def look(self, gray, i):
-        (x, y), s, n = self.at[i], self.params.search, 2 * self.params.radius + 1
-        if self.templates[i] is None:  # seeded before the first frame
-            self.templates[i] = self.cut(gray, x, y)
-        near = self.cut(gray, x, y, s)
-        if near is None or self.templates[i] is None:
-            return honami.LOST
-        windows = np.lib.stride_tricks.sliding_window_view(near, (n, n))
-        j, k = np.unravel_index(((windows - self.templates[i]) ** 2).sum((2, 3)).argmin(), windows.shape[:2])
-        self.at[i] = (x + k - s, y + j - s)
-        return honami.TRACKED
+    def retire(self, ids):
+        for i in set(ids.tolist()) & set(self.at):
+            del self.at[i], self.first[i]
 
     def push(self, frame):
-        status = [self.look(frame.gray, i) for i in self.at]
-        self.gray = frame.gray.copy()
+        status, edge = [], self.params.radius + self.params.search
+        wide = np.pad(frame.gray.astype("i4"), edge, constant_values=-30000)  # nothing looks like what is outside
+        for n, i in enumerate(self.at):
+            honami.progress(n / len(self.at), "looking for templates")
+            if self.last is None:
+                self.first[i] = honami.window(frame.gray, *self.at[i], self.params.radius)
+            status.append(self.look(wide, i, edge))
+        self.last = frame.gray.copy()
         x, y = zip(*self.at.values()) if self.at else ((), ())
         return honami.Points(list(self.at), x, y, status)
 
+    def look(self, wide, i, edge):
+        """Moves a point to where its template fits best; it stays where all look alike."""
+        (x, y), s = self.at[i], self.params.search
+        near = honami.window(wide, x + edge, y + edge, edge)
+        if self.first[i] is None or near is None:
+            return honami.LOST
+        windows = np.lib.stride_tricks.sliding_window_view(near, self.first[i].shape)
+        miss = ((windows - self.first[i].astype("i4")) ** 2).sum((2, 3))
+        miss[s, s] -= 1
+        j, k = np.unravel_index(miss.argmin(), miss.shape)
+        self.at[i] = (x + int(k) - s, y + int(j) - s)
+        return honami.TRACKED
+
     def save(self):
-        return pickle.dumps((self.at, self.templates, self.gray))
+        return pickle.dumps((self.at, self.first, self.last))
 
     def load(self, data):
-        self.at, self.templates, self.gray = pickle.loads(data)
+        self.at, self.first, self.last = pickle.loads(data)
 
 
 honami.run()

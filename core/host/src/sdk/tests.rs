@@ -1,0 +1,67 @@
+//! What a plugin is begun with is whole, and carries the name that was asked for.
+#![expect(clippy::unwrap_used, reason = "a failed step of a test is a failed test")]
+
+use super::rust::SDK;
+use super::{Language, begin};
+use crate::manifest::Kind;
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+#[test]
+fn every_source_of_the_sdk_for_rust_is_handed_on() {
+    for package in &SDK {
+        let folder = package.name.strip_prefix("honami-").unwrap();
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(folder).join("src");
+        let mut there = BTreeSet::new();
+        let mut folders = vec![root.clone()];
+        while let Some(folder) = folders.pop() {
+            for entry in fs::read_dir(folder).unwrap() {
+                let path = entry.unwrap().path();
+                if path.is_dir() {
+                    folders.push(path);
+                } else {
+                    there.insert(path.strip_prefix(&root).unwrap().to_string_lossy().into_owned());
+                }
+            }
+        }
+        let listed: BTreeSet<String> = package.sources.iter().map(|(file, _)| (*file).to_owned()).collect();
+        assert_eq!(listed, there, "list them in sdk/rust.rs");
+    }
+}
+
+#[test]
+fn a_plugin_that_was_just_begun_has_its_own_id_and_nothing_of_the_template() {
+    for (language, kind) in [
+        (Language::Python, Kind::Tracker),
+        (Language::Python, Kind::Clusterer),
+        (Language::Rust, Kind::Tracker),
+        (Language::Rust, Kind::Clusterer),
+        (Language::C, Kind::Tracker),
+        (Language::Cpp, Kind::Tracker),
+    ] {
+        let begun = begin("my-own", kind, language).unwrap();
+        let (file, text) = &begun.files[0];
+        assert!(text.contains("org.me.my-own") && !text.contains("org.honami."), "{file}: {text}");
+        assert!(begun.build.contains("my-own"), "{}", begun.build);
+    }
+}
+
+#[test]
+fn names_that_would_not_work_are_refused() {
+    for (name, language) in [
+        ("", Language::C),
+        ("a b", Language::C),
+        ("../up", Language::C),
+        ("1st", Language::Rust),
+        ("-x", Language::Python),
+        ("honami", Language::Rust),
+        ("json", Language::Python),
+    ] {
+        let said = begin(name, Kind::Tracker, language).unwrap_err();
+        assert!(said.contains(&format!("{name:?}")), "{said}");
+    }
+    assert!(begin("json", Kind::Tracker, Language::Rust).is_ok());
+    assert!(begin("a", Kind::Clusterer, Language::C).unwrap_err().contains("in Python and in Rust"));
+    assert!(begin("a", Kind::Simulator, Language::Rust).unwrap_err().contains("draft"));
+}

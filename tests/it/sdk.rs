@@ -1,0 +1,73 @@
+//! What the author of a plugin begins with: a fresh folder, built by the line that honami prints, which then works.
+
+use std::fs;
+use std::process::{Command, Output};
+
+use honami_tests::{Bench, skipped};
+
+/// What `honami plugin new` begins: its words, and what must be there to build it.
+const TRACKERS: [(&str, &str, &[&str]); 4] = [
+    ("in-python", "python", &["python3", "-c", "import numpy"]),
+    ("in-rust", "rust", &["cargo", "--version"]),
+    ("in-c", "c", &["cc", "--version"]),
+    ("in-cpp", "cpp", &["c++", "--version"]),
+];
+
+fn runs(bench: &Bench, words: &[&str]) -> Option<Output> {
+    // As an author has it: cargo builds into the plugin's own folder.
+    let mut command = Command::new(words[0]);
+    command.args(&words[1..]).current_dir(bench.path("")).env_remove("CARGO_TARGET_DIR");
+    command.output().ok()
+}
+
+/// Begins a plugin and builds it; its file, or `None` where this machine cannot.
+fn begun(bench: &Bench, line: &str, needed: &[&str]) -> Option<String> {
+    if !runs(bench, needed).is_some_and(|output| output.status.success()) {
+        skipped(&needed.join(" "));
+        return None;
+    }
+    let said = bench.json(&format!("plugin new {line}"));
+    let build: Vec<&str> = said["next"]["build"].as_str().unwrap().split_whitespace().collect();
+    let built = runs(bench, &build).unwrap();
+    assert!(built.status.success(), "{build:?}: {}", String::from_utf8_lossy(&built.stderr));
+    Some(said["plugin"].as_str().unwrap().to_owned())
+}
+
+#[test]
+fn a_tracker_that_was_just_begun_follows_the_texture_and_is_the_same_in_every_language() {
+    let bench = Bench::new();
+    bench.synth("clip.y4m", 12, "--leaves 40 --wind calm");
+    fs::write(bench.path("points.csv"), "id,x,y\n1,60,60\n2,80.3,50.7\n3,100,70\n4,75,90.5\n5,3,3\n")
+        .unwrap();
+    let mut samples = Vec::new();
+    for (name, lang, needed) in TRACKERS {
+        let Some(plugin) = begun(&bench, &format!("{name} --lang {lang}"), needed) else { continue };
+        let told = bench.text(&format!("plugin info {name} --plugin {plugin}"));
+        assert!(told.contains("radius") && told.contains("Half the side of the template."), "{told}");
+        let with = format!("--with {name} --plugin {plugin}");
+        let said = bench.json(&format!("compare clip.y4m --truth clip.truth.csv {with} --quick"));
+        let share = |row: usize| said["trackers"][row]["delta_avg"].as_f64().unwrap();
+        assert!(share(0) > share(1) + 0.1, "{name}: {}, {} of what stands still", share(0), share(1));
+        assert!(said["trackers"][0]["median_px"].as_f64().unwrap() < 1.0, "{name}: {said}");
+        bench.json(&format!("new {name}.honami clip.y4m"));
+        bench.json(&format!("track {name}.honami {with} --points points.csv"));
+        samples.push(bench.samples(&format!("{name}.honami")));
+    }
+    assert!(samples.windows(2).all(|pair| pair[0] == pair[1]), "{samples:?}");
+    assert_eq!(bench.line("plugin new in-c").code, Some(1), "it is there already");
+}
+
+#[test]
+fn a_clusterer_that_was_just_begun_groups_tracks_alike_in_every_language() {
+    let bench = Bench::tracked();
+    let mut groups = Vec::new();
+    for (name, lang, needed) in &TRACKERS[..2] {
+        let Some(plugin) = begun(&bench, &format!("{name} --kind clusterer --lang {lang}"), needed) else {
+            continue;
+        };
+        let said = bench.json(&format!("cluster p.honami --with {name} --plugin {plugin}"));
+        assert!(said["groups"].as_array().unwrap().len() > 1, "{said}");
+        groups.push(said["groups"].clone());
+    }
+    assert!(groups.windows(2).all(|pair| pair[0] == pair[1]), "{groups:?}");
+}
