@@ -17,6 +17,7 @@ mod python;
 mod real_clips;
 mod replay;
 mod retrack;
+mod schema;
 mod sdk;
 mod simulated;
 mod stopped;

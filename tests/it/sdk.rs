@@ -5,6 +5,8 @@ use std::process::{Command, Output};
 
 use honami_tests::{Bench, skipped};
 
+use crate::schema::assert_satisfied;
+
 /// What `honami plugin new` begins: its words, and what must be there to build it.
 const TRACKERS: [(&str, &str, &[&str]); 4] = [
     ("in-python", "python", &["python3", "-c", "import numpy"]),
@@ -30,7 +32,9 @@ fn begun(bench: &Bench, line: &str, needed: &[&str]) -> Option<String> {
     let build: Vec<&str> = said["next"]["build"].as_str().unwrap().split_whitespace().collect();
     let built = runs(bench, &build).unwrap();
     assert!(built.status.success(), "{build:?}: {}", String::from_utf8_lossy(&built.stderr));
-    Some(said["plugin"].as_str().unwrap().to_owned())
+    let plugin = said["plugin"].as_str().unwrap().to_owned();
+    assert_satisfied(&bench.path(&plugin));
+    Some(plugin)
 }
 
 #[test]

@@ -31,15 +31,11 @@ impl Clusterer for Linkage {
         let mut merges = Vec::new();
         while left.len() > 1 {
             cx.progress(1.0 - 0.5 * left.len() as f64 / all.len() as f64, "merging")?;
-            let (mut best, mut height) = ((0, 1), f64::INFINITY);
-            for i in 0..left.len() {
-                for j in i + 1..left.len() {
-                    if apart[i][j] < height {
-                        (best, height) = ((i, j), apart[i][j]);
-                    }
-                }
-            }
-            let (i, j) = best;
+            let n_left = left.len();
+            let pairs = (0..n_left).flat_map(|i| (i + 1..n_left).map(move |j| (i, j)));
+            let closest = pairs.min_by(|&(i, j), &(k, l)| apart[i][j].total_cmp(&apart[k][l]));
+            let Some((i, j)) = closest else { break };
+            let height = apart[i][j];
             let (b, leaves) = left.remove(j);
             let (n, m) = (left[i].1.len() as f64, leaves.len() as f64);
             let gone = apart.remove(j);
@@ -48,9 +44,7 @@ impl Clusterer for Linkage {
                 let other = if k < j { gone[k] } else { gone[k + 1] };
                 row[i] = (n * row[i] + m * other) / (n + m);
             }
-            for k in 0..apart.len() {
-                apart[i][k] = apart[k][i];
-            }
+            apart[i] = apart.iter().map(|row| row[i]).collect();
             left[i].1.extend(leaves);
             let size = left[i].1.len() as u32;
             merges.push(Merge { a: left[i].0, b, height, size });

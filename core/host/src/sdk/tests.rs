@@ -1,5 +1,4 @@
 //! What a plugin is begun with is whole, and carries the name that was asked for.
-#![expect(clippy::unwrap_used, reason = "a failed step of a test is a failed test")]
 
 use super::rust::SDK;
 use super::{Language, begin};
