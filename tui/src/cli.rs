@@ -2,6 +2,7 @@
 
 mod args;
 mod begin;
+mod check;
 mod compare;
 mod edit;
 mod exchange;
@@ -167,7 +168,7 @@ fn run(command: Command, common: &Common) -> anyhow::Result<Outcome> {
         Command::Synth(args) => synth::synth(&args)?,
         Command::Demo(args) => return synth::demo(&args, common),
         Command::Tutorial => return show(Some(synth::lesson(common)), common).map(Outcome::Exit),
-        Command::Plugin(args) => help::plugin(&args, common)?,
+        Command::Plugin(args) => return help::plugin(&args, common),
         Command::Review(args) => review::review(&args, common)?,
         Command::Log(args) => log::log(&args)?,
         Command::Replay(args) => replay::replay(&args, common)?,

@@ -4,22 +4,32 @@
 //! 10 stress. [`checks`] is the table of all; a [`Subject`] is the plugin under test. A check runs where it is called:
 //! who calls many gives each a process of its own, because a plugin may take its process with it.
 
+mod abi;
 mod clip;
 mod clusterer;
 mod course;
+mod crew;
 mod file;
 mod frames;
 mod guarded;
+mod ledger;
+mod loading;
 mod params;
+mod raw;
+mod report;
 mod running;
 mod stress;
 mod subject;
 mod truth;
 mod work;
 
+pub use crew::{Asker, Outcome, Plan, examine};
+pub use ledger::Ledger;
+pub use report::{Report, Status, junit};
 pub use subject::Subject;
 
 use honami_host::HostError;
+use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
 /// One thing that a plugin must do, or must not.
@@ -59,11 +69,56 @@ impl From<HostError> for Fault {
     }
 }
 
+/// What has come of a check.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Finding {
+    /// See [`Verdict`].
+    Holds(String),
+    /// See [`Verdict`].
+    Doubtful(String),
+    /// See [`Verdict`].
+    Beside(String),
+    /// What was wanted, and what came.
+    Fails(String),
+}
+
+impl From<Verdict> for Finding {
+    fn from(verdict: Verdict) -> Self {
+        match verdict {
+            Verdict::Holds(text) => Self::Holds(text),
+            Verdict::Doubtful(text) => Self::Doubtful(text),
+            Verdict::Beside(text) => Self::Beside(text),
+        }
+    }
+}
+
+impl Finding {
+    /// For reports: `passed`, `doubtful`, `beside` or `failed`.
+    #[must_use]
+    pub fn word(&self) -> &'static str {
+        match self {
+            Self::Holds(_) => "passed",
+            Self::Doubtful(_) => "doubtful",
+            Self::Beside(_) => "beside",
+            Self::Fails(_) => "failed",
+        }
+    }
+
+    /// What is said of it; nothing, when there is nothing to say.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        let (Self::Holds(text) | Self::Doubtful(text) | Self::Beside(text) | Self::Fails(text)) = self;
+        text
+    }
+}
+
 /// All checks, level by level.
 #[must_use]
 pub fn checks() -> Vec<Check> {
-    [
+    let mut checks = [
         file::CHECKS,
+        loading::CHECKS,
+        abi::CHECKS,
         params::CHECKS,
         frames::CHECKS,
         &truth::checks(),
@@ -71,5 +126,7 @@ pub fn checks() -> Vec<Check> {
         &running::checks(),
         stress::CHECKS,
     ]
-    .concat()
+    .concat();
+    checks.sort_by_key(|check| check.level);
+    checks
 }

@@ -1,6 +1,9 @@
 //! The plugin under test, and handles to it.
 
-use honami_host::{CallContext, Clusterer, Host, HostError, Hosting, PluginInfo, Tracker, Values};
+use crate::Fault;
+use honami_host::{
+    CallContext, Clusterer, Host, HostError, Hosting, Kind, Origin, PluginInfo, Tracker, Values,
+};
 use rand_pcg::Pcg64;
 
 /// A plugin under test.
@@ -18,6 +21,21 @@ impl Subject {
     #[must_use]
     pub fn new(info: PluginInfo, host: Host, seed: u64) -> Self {
         Self { info, seed, host }
+    }
+
+    /// Where it comes to work when it is started there, whatever its kind.
+    ///
+    /// # Errors
+    /// What keeps it from starting.
+    pub fn origin(&self, hosting: Hosting) -> Result<Origin, Fault> {
+        let (host, cx, values) =
+            (self.host.clone().hosting(hosting), CallContext::silent(), Values::default());
+        Ok(match self.info.kind {
+            Kind::Tracker => host.tracker(&self.info, &values, &cx)?.1,
+            Kind::Clusterer => host.clusterer(&self.info, &values, &cx)?.1,
+            Kind::Structure => host.structure(&self.info, &values, &cx)?.1,
+            Kind::Simulator => host.simulator(&self.info, &values, &cx)?.1,
+        })
     }
 
     /// A tracker at work with these values, where the others have their defaults.

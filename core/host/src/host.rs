@@ -146,6 +146,12 @@ impl Host {
         Ok((Simulator { handle, reply: Reply::default(), n_rows: None }, origin))
     }
 
+    /// A folder of this name beside the store, for what is known of contents; it may not be there yet.
+    #[must_use]
+    pub fn beside(&self, name: &str) -> PathBuf {
+        self.store.with_file_name(name)
+    }
+
     /// Lets a plugin start again that has failed too often; whether it was held.
     ///
     /// # Errors

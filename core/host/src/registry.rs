@@ -116,6 +116,28 @@ impl PluginInfo {
         !self.exec.is_empty()
     }
 
+    /// The manifest that all of this was read from, JSON.
+    #[must_use]
+    pub fn manifest(&self) -> &[u8] {
+        &self.manifest
+    }
+
+    /// How its program is started, its own files by name; empty for a library.
+    #[must_use]
+    pub fn exec(&self) -> &[String] {
+        &self.exec
+    }
+
+    /// What tells its file from one that was touched since: two that are alike have the same content.
+    ///
+    /// # Errors
+    /// When the file cannot be examined.
+    pub fn stamp(&self) -> std::io::Result<String> {
+        let (dev, ino, len, times) = store::identity(&self.library)?;
+        let numbers = [dev, ino, len].map(|n| n.to_string()).into_iter().chain(times.map(|n| n.to_string()));
+        Ok(numbers.collect::<Vec<_>>().join("-"))
+    }
+
     /// Hash of its library's file as it is now, lower-case hexadecimal.
     ///
     /// # Errors

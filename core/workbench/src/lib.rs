@@ -29,6 +29,8 @@ pub mod track;
 pub mod versus;
 
 pub use error::WorkbenchError;
+/// What plugins must bear.
+pub use honami_check as check;
 /// Tracks of other programs.
 pub use honami_exchange::foreign;
 /// Where files count pixels from.

@@ -389,11 +389,49 @@ pub(super) enum Plugin {
         /// Its file, or the name of one that `honami plugin list` shows.
         plugin: String,
     },
+    /// Hold a plugin against what honami asks of all, before anybody relies on it.
+    ///
+    /// Levels: 1 the file, 2 loading, 3 the ABI, 4 parameters, 5 state, 6 frames, 7 a tracker's truth, 8 a clusterer's,
+    /// 9 running (repeatable, any number of threads, stopped at once), 10 stress. Each check has a process of its own;
+    /// the level that was reached is kept for this content of the file, and `honami plugin list` shows it.
+    ///
+    /// Exit status: 0 passed, 1 a check has failed, 2 wrong usage, 3 passed with doubts.
+    Check(Check),
     /// Let a plugin start again that has failed three times within ten minutes.
     Retry {
         /// Short name or full id.
         name: String,
     },
+}
+
+#[derive(Args, Debug)]
+pub(super) struct Check {
+    /// Its file (a shared library, a Python plugin or its manifest), or the name of one that `honami plugin list` shows.
+    pub(super) plugin: String,
+    /// How far to go.
+    #[arg(long, value_name = "1..10", default_value_t = 9, value_parser = clap::value_parser!(u8).range(1..=10))]
+    pub(super) level: u8,
+    /// Only checks with this in their id.
+    #[arg(long, value_name = "TEXT")]
+    pub(super) only: Option<String>,
+    /// No checks with this in their id.
+    #[arg(long, value_name = "TEXT")]
+    pub(super) skip: Option<String>,
+    /// Seed of every random choice.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(super) seed: u64,
+    /// Only this plugin of a library that has several.
+    #[arg(long, value_name = "ID")]
+    pub(super) plugin_id: Option<String>,
+    /// Do one check in this very process, for a debugger.
+    #[arg(long, value_name = "CHECK:SEED")]
+    pub(super) reproduce: Option<String>,
+    /// Write the report as JUnit's XML, too.
+    #[arg(long, value_name = "FILE")]
+    pub(super) junit: Option<PathBuf>,
+    /// Answer at standard input: how honami starts its own processes.
+    #[arg(long, hide = true, requires = "reproduce")]
+    pub(super) answer: bool,
 }
 
 /// Languages that a plugin can be begun in.

@@ -6,12 +6,13 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 use clap::CommandFactory as _;
+use honami_workbench::check::Ledger;
 use honami_workbench::doctor;
 use honami_workbench::plugins::{Host, Param, PluginInfo, Registry, SearchPath, Trust, TrustBook};
 use serde_json::json;
 
 use super::args::{Cli, Common, Plugin};
-use super::{Answer, begin, report};
+use super::{Answer, Outcome, begin, check, report};
 use crate::app::config::Config;
 
 /// The shell script that completes honami's words.
@@ -54,9 +55,10 @@ pub(super) fn doctor(common: &Common) -> Answer {
 }
 
 /// Lists plugins, or describes one.
-pub(super) fn plugin(command: &Plugin, common: &Common) -> anyhow::Result<Answer> {
+pub(super) fn plugin(command: &Plugin, common: &Common) -> anyhow::Result<Outcome> {
     let registry = Registry::scan(&common.plugins);
-    match command {
+    let answer = match command {
+        Plugin::Check(args) => return check::check(args, common).map(Outcome::Exit),
         Plugin::List => Ok(list(&registry)),
         Plugin::Info { name } => info(named(&registry, name)?),
         Plugin::New { name, kind, lang } => begin::plugin(name, *kind, *lang),
@@ -77,7 +79,8 @@ pub(super) fn plugin(command: &Plugin, common: &Common) -> anyhow::Result<Answer
             let json = json!({ "plugin": plugin.id, "was_held": was_held });
             Ok(Answer { json, text: format!("{} {words}", plugin.short_name), done: true })
         }
-    }
+    };
+    answer.map(Outcome::Answer)
 }
 
 /// The file of a plugin: a path, or a name of one that there is.
@@ -115,7 +118,7 @@ fn allow(library: &Path) -> anyhow::Result<Answer> {
 }
 
 /// The plugin of that name, whatever its kind.
-fn named<'r>(registry: &'r Registry, name: &str) -> anyhow::Result<&'r PluginInfo> {
+pub(super) fn named<'r>(registry: &'r Registry, name: &str) -> anyhow::Result<&'r PluginInfo> {
     let is_it = |plugin: &&PluginInfo| plugin.id == name || plugin.short_name == name;
     let known =
         || registry.plugins().iter().map(|plugin| plugin.short_name.as_str()).collect::<Vec<_>>().join(", ");
@@ -140,14 +143,15 @@ pub(super) fn machine() -> String {
 }
 
 fn list(registry: &Registry) -> Answer {
-    let head = ["name", "kind", "version", "", "what it is"].map(str::to_owned).to_vec();
-    let row = |plugin: &PluginInfo| {
-        let cells =
-            [&plugin.short_name, &plugin.kind.to_string(), &plugin.version, trust(plugin), &plugin.name];
+    let head = ["name", "kind", "version", "", "", "what it is"].map(str::to_owned).to_vec();
+    let levels = Ledger::beside(&Host::new()).levels(registry.plugins());
+    let row = |(plugin, level): (&PluginInfo, &Option<u8>)| {
+        let (kind, checked) = (plugin.kind.to_string(), checked(*level));
+        let cells = [&plugin.short_name, &kind, &plugin.version, trust(plugin), &checked, &plugin.name];
         cells.map(ToString::to_string).to_vec()
     };
-    let mut text =
-        report::table(&std::iter::once(head).chain(registry.plugins().iter().map(row)).collect::<Vec<_>>());
+    let rows = registry.plugins().iter().zip(&levels).map(row);
+    let mut text = report::table(&std::iter::once(head).chain(rows).collect::<Vec<_>>());
     if registry.plugins().is_empty() {
         text =
             "no plugins found: `cargo build --release` builds the shipped ones beside the program".to_owned();
@@ -161,7 +165,7 @@ fn list(registry: &Registry) -> Answer {
         text += &format!("\n{problem}");
     }
     let json = json!({
-        "plugins": registry.plugins().iter().map(describe).collect::<Vec<_>>(),
+        "plugins": registry.plugins().iter().zip(levels).map(described).collect::<Vec<_>>(),
         "problems": registry.problems().iter().map(ToString::to_string).collect::<Vec<_>>(),
     });
     Answer { json, text, done: registry.problems().is_empty() }
@@ -175,6 +179,17 @@ fn trust(plugin: &PluginInfo) -> &'static str {
         Trust::Lab => "allowed by your lab",
         Trust::No(_) => "not trusted",
     }
+}
+
+/// The level of `honami plugin check` that was reached, for people.
+fn checked(level: Option<u8>) -> String {
+    level.map_or_else(String::new, |level| format!("checked {level}"))
+}
+
+fn described((plugin, level): (&PluginInfo, Option<u8>)) -> serde_json::Value {
+    let mut json = describe(plugin);
+    json["checked"] = level.into();
+    json
 }
 
 fn describe(plugin: &PluginInfo) -> serde_json::Value {
@@ -201,7 +216,9 @@ fn info(plugin: &PluginInfo) -> anyhow::Result<Answer> {
         "{}\nid {} · ABI {}.{} · {}\n",
         plugin.doc, plugin.id, plugin.abi.0, plugin.abi.1, plugin.license
     );
-    text += &format!("{} sha256 {}\n", plugin.library.display(), &sha256[..16]);
+    let level = Ledger::beside(&Host::new()).level(plugin);
+    let kept = level.map_or_else(String::new, |level| format!(" · {}", checked(Some(level))));
+    text += &format!("{} sha256 {}{kept}\n", plugin.library.display(), &sha256[..16]);
     for source in &plugin.cite {
         text += &format!("from {source}\n");
     }
@@ -211,7 +228,7 @@ fn info(plugin: &PluginInfo) -> anyhow::Result<Answer> {
         vec![param.id.clone(), param.default().to_string(), param.wanted(), first_line(&param.doc)]
     };
     text += &report::table(&std::iter::once(head).chain(plugin.params.iter().map(row)).collect::<Vec<_>>());
-    let mut json = describe(plugin);
+    let mut json = described((plugin, level));
     json["sha256"] = sha256.into();
     json["doc"] = plugin.doc.clone().into();
     Ok(Answer { json, text, done: true })

@@ -45,7 +45,9 @@ pub enum Ended {
 }
 
 impl Ended {
-    fn of(status: ExitStatus) -> Self {
+    /// How a process ended by itself.
+    #[must_use]
+    pub fn of(status: ExitStatus) -> Self {
         status.signal().map_or_else(|| Self::Exit(status.code().unwrap_or(-1)), Self::Signal)
     }
 }

@@ -1,0 +1,165 @@
+//! One fault each: the check that is there for it fails, and nothing of a lower level does.
+
+use crate::tools::{check, compile, failed, has_cc};
+use honami_check::{Finding, Outcome, checks};
+
+/// A plugin with one fault.
+struct Bad {
+    /// Chosen by `-DFAULT=`.
+    fault: &'static str,
+    /// In which file.
+    source: &'static str,
+    /// For the compiler and the linker.
+    flags: &'static [&'static str],
+    /// The check that must fail,
+    check: &'static str,
+    /// and what it says, in part.
+    says: &'static str,
+}
+
+const LOADED: &str = "tests/bad/loaded.c";
+
+/// Levels 1 to 3.
+const LOW: &[Bad] = &[
+    Bad {
+        fault: "NONE",
+        source: LOADED,
+        flags: &["-Wl,-z,execstack"],
+        check: "file.stack",
+        says: "noexecstack",
+    },
+    Bad {
+        fault: "NONE",
+        source: LOADED,
+        flags: &["-fvisibility=default"],
+        check: "file.exports",
+        says: "helper",
+    },
+    Bad { fault: "NONE", source: LOADED, flags: &["-Wl,-rpath,lib"], check: "file.runpath", says: "\"lib\"" },
+    Bad {
+        fault: "NONE",
+        source: LOADED,
+        flags: &["-Wl,-rpath,/tmp"],
+        check: "file.runpath",
+        says: "everybody may write",
+    },
+    Bad {
+        fault: "NONE",
+        source: LOADED,
+        flags: &["-DTEXTREL", "-Wl,-z,notext"],
+        check: "file.relocations",
+        says: "-fPIC",
+    },
+    Bad { fault: "PRINTS", source: LOADED, flags: &[], check: "loading.prints", says: "hello" },
+    Bad {
+        fault: "THREAD",
+        source: LOADED,
+        flags: &["-pthread"],
+        check: "loading.threads",
+        says: "1; after: 2",
+    },
+    Bad { fault: "OPENS", source: LOADED, flags: &[], check: "loading.files", says: "/dev/null" },
+    Bad { fault: "LOCALE", source: LOADED, flags: &[], check: "loading.locale", says: "C.UTF-8" },
+    Bad { fault: "FLOATS", source: LOADED, flags: &["-lm"], check: "loading.floats", says: "0x" },
+    Bad { fault: "CHDIR", source: LOADED, flags: &[], check: "loading.folder", says: "after: /usr" },
+    Bad { fault: "SETENV", source: LOADED, flags: &[], check: "loading.environment", says: "HONAMI_BAD=1" },
+    Bad { fault: "SIGNAL", source: LOADED, flags: &[], check: "loading.signals", says: "SigCgt" },
+    Bad { fault: "DIES", source: LOADED, flags: &[], check: "loading.starts", says: "SIGABRT" },
+    Bad {
+        fault: "HANGS",
+        source: LOADED,
+        flags: &[],
+        check: "loading.starts",
+        says: "did not end within 5 s",
+    },
+    Bad { fault: "OTHER_RECORD", source: LOADED, flags: &[], check: "loading.twice", says: "another record" },
+    Bad {
+        fault: "ANY_ID",
+        source: LOADED,
+        flags: &[],
+        check: "loading.unknown",
+        says: "made an instance of",
+    },
+    Bad {
+        fault: "ANY_INTERFACE",
+        source: LOADED,
+        flags: &[],
+        check: "loading.unknown",
+        says: "gave an interface",
+    },
+    Bad {
+        fault: "LEAKS_FILES",
+        source: LOADED,
+        flags: &[],
+        check: "loading.instances",
+        says: "open files became",
+    },
+    Bad {
+        fault: "NONE",
+        source: LOADED,
+        flags: &["-DID_TEXT=\"bad\""],
+        check: "loading.ids",
+        says: "got bad",
+    },
+    Bad { fault: "READS_PAST", source: LOADED, flags: &[], check: "abi.older-host", says: "SIGSEGV" },
+    Bad { fault: "WRITES_TAIL", source: LOADED, flags: &[], check: "abi.newer-host", says: "SIGSEGV" },
+    Bad {
+        fault: "EXACT_SIZE",
+        source: LOADED,
+        flags: &[],
+        check: "abi.newer-host",
+        says: "of another honami",
+    },
+    Bad { fault: "RESERVED", source: LOADED, flags: &[], check: "abi.reserved", says: "not zero" },
+    Bad { fault: "NEEDS_COLOUR", source: LOADED, flags: &[], check: "abi.optional", says: "SIGSEGV" },
+    Bad { fault: "NEEDS_SERVICE", source: LOADED, flags: &[], check: "abi.optional", says: "SIGSEGV" },
+    Bad { fault: "NEEDS_PARAMS", source: LOADED, flags: &[], check: "abi.optional", says: "SIGSEGV" },
+    Bad { fault: "TRUSTS_RESERVE", source: LOADED, flags: &[], check: "abi.no-memory", says: "SIGSEGV" },
+    Bad { fault: "HIDES_REFUSAL", source: LOADED, flags: &[], check: "abi.no-memory", says: "returned 0" },
+    Bad { fault: "OTHER_TABLE", source: LOADED, flags: &[], check: "abi.tables", says: "another table" },
+];
+
+fn finds(table: &[Bad]) {
+    if !has_cc() {
+        return;
+    }
+    let all = checks();
+    let mut complaints = Vec::new();
+    for Bad { fault, source, flags, check: wanted, says } in table {
+        let level = all.iter().find(|known| known.id == *wanted).map_or(0, |known| known.level);
+        let name = format!("{fault}{}", flags.join("").replace(|c: char| !c.is_alphanumeric(), ""));
+        let define = format!("-DFAULT={fault}");
+        let library = compile(source, &name, &[&[define.as_str()], *flags].concat());
+        let outcomes = check(&library, |known| known.level < level || known.id == *wanted);
+        let is_found = |outcome: &Outcome| {
+            outcome.check.id == *wanted
+                && matches!(&outcome.finding, Finding::Fails(why) if why.contains(says))
+        };
+        if !outcomes.iter().any(is_found) {
+            let got = failed(&outcomes);
+            complaints.push(format!("{name}: wanted {wanted} to fail with {says:?}, got {got:?}"));
+        }
+        let below: Vec<_> = outcomes.into_iter().filter(|outcome| outcome.check.level < level).collect();
+        complaints
+            .extend(failed(&below).iter().map(|failed| format!("{name}: a lower level fails: {failed}")));
+    }
+    assert!(complaints.is_empty(), "\n{}\n", complaints.join("\n"));
+}
+
+#[test]
+fn a_fault_of_the_file_of_loading_or_of_the_abi_is_found_at_its_level() {
+    finds(LOW);
+}
+
+#[test]
+fn a_library_that_is_not_there_is_named() {
+    if !has_cc() {
+        return;
+    }
+    let name = "-Wl,-soname,libnobody-has-this.so.1";
+    let other = compile(LOADED, "other", &["-DFAULT=NONE", name]);
+    let flags = ["-DFAULT=NONE", "-Wl,--no-as-needed", other.to_str().unwrap()];
+    let library = compile(LOADED, "needs", &flags);
+    let got = failed(&check(&library, |known| known.level == 1));
+    assert!(got.len() == 1 && got[0].starts_with("file.needed: it needs libnobody-has-this.so.1"), "{got:?}");
+}

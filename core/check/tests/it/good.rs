@@ -1,0 +1,18 @@
+//! Plugins with nothing wrong pass.
+
+use crate::tools::{check, compile, failed, has_cc};
+
+#[test]
+fn the_example_in_c_and_the_frame_of_the_bad_ones_pass_the_first_levels() {
+    if !has_cc() {
+        return;
+    }
+    for (source, name, flags) in [
+        ("../abi/examples/null_tracker.c", "null", &[][..]),
+        ("tests/bad/loaded.c", "none", &["-DFAULT=NONE"]),
+    ] {
+        let library = compile(source, name, flags);
+        let failed = failed(&check(&library, |check| check.level <= 3));
+        assert!(failed.is_empty(), "{name}: {failed:?}");
+    }
+}

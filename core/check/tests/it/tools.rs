@@ -1,0 +1,84 @@
+//! What the tests share: libraries that cc builds, and the checks up to a level, each in its own process.
+
+use honami_check::{Check, Finding, Outcome, Plan, checks};
+use honami_host::{Registry, SearchPath};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::OnceLock;
+use std::time::Duration;
+
+/// A folder for this run.
+pub(crate) fn scratch() -> &'static Path {
+    static FOLDER: OnceLock<tempfile::TempDir> = OnceLock::new();
+    FOLDER.get_or_init(|| tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).unwrap()).path()
+}
+
+/// Whether there is a C compiler; says so if not.
+pub(crate) fn has_cc() -> bool {
+    let there = Command::new("cc").arg("--version").output().is_ok_and(|output| output.status.success());
+    if !there {
+        eprintln!("skipped: needs a C compiler (cc)");
+    }
+    there
+}
+
+/// Compiles a C plugin of this package's tests, or of another's.
+pub(crate) fn compile(source: &str, name: &str, flags: &[&str]) -> PathBuf {
+    let library = scratch().join(format!("{name}.so"));
+    let output = Command::new("cc")
+        .args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-O1", "-shared", "-fPIC", "-fvisibility=hidden"])
+        .args(["-I", "../abi/include", source, "-o"])
+        .arg(&library)
+        .args(flags)
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+    library
+}
+
+/// The programs that checks need, built by cargo, which is asked where the one to start lies.
+fn program() -> &'static Path {
+    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+    PROGRAM.get_or_init(|| {
+        let built = |args: &[&str]| {
+            let output = Command::new(env!("CARGO"))
+                .args(["build", "--quiet", "--message-format=json"])
+                .args(args)
+                .current_dir(env!("CARGO_MANIFEST_DIR"))
+                .output()
+                .unwrap();
+            assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+            let text = String::from_utf8(output.stdout).unwrap();
+            let messages =
+                text.lines().filter_map(|line| serde_json::from_str::<serde_json::Value>(line).ok());
+            let mut files =
+                messages.filter_map(|message| Some(PathBuf::from(message["executable"].as_str()?)));
+            files.next_back().unwrap()
+        };
+        built(&["--package", "honami-plughost"]);
+        built(&["--package", "honami-check", "--example", "one-check"])
+    })
+}
+
+/// The checks that are wanted, on the only plugin of a library.
+pub(crate) fn check(library: &Path, is_wanted: impl Fn(&Check) -> bool) -> Vec<Outcome> {
+    let named = SearchPath { named: vec![library.to_owned()], ..SearchPath::default() };
+    let registry = Registry::scan_path(&named);
+    assert!(registry.problems().is_empty(), "{:?}", registry.problems());
+    let plugin = registry.plugins()[0].id.clone();
+    let mut checks: Vec<_> = checks().into_iter().filter(is_wanted).collect();
+    // One that hangs does so for ever: who waits for it needs not wait as long as a user would.
+    if library.file_stem().is_some_and(|name| name == "HANGS") {
+        checks.iter_mut().for_each(|check| check.deadline = check.deadline.min(Duration::from_secs(5)));
+    }
+    let (program, file) = (program().to_owned(), library.to_owned());
+    let plan = Plan { program, file, plugin, checks, seed: 1 };
+    plan.run(&mut |_| {})
+}
+
+/// What has failed, in words for a test that fails.
+pub(crate) fn failed(outcomes: &[Outcome]) -> Vec<String> {
+    let failed = outcomes.iter().filter(|outcome| matches!(outcome.finding, Finding::Fails(_)));
+    failed.map(|outcome| format!("{}: {}", outcome.check.id, outcome.finding.text())).collect()
+}

@@ -1,0 +1,105 @@
+//! `honami plugin check`: every shipped plugin passes it, and what it says of one that does not.
+
+use std::fs;
+use std::path::PathBuf;
+use std::process::Command;
+
+use honami_tests::{Bench, root, skipped};
+use serde_json::Value;
+
+/// How far shipped plugins and examples are held.
+const LEVEL: &str = "9";
+
+/// What a report says of a plugin that has not passed; nothing of one that has.
+fn complaints(report: &Value) -> Vec<String> {
+    let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
+    let of = |plugin: &Value| -> Vec<String> {
+        let checks = plugin["checks"].as_array().unwrap().iter().filter(|check| check["found"] == "failed");
+        checks
+            .map(|check| {
+                format!("{} {}: {}", text(&plugin["plugin"]), text(&check["id"]), text(&check["text"]))
+            })
+            .collect()
+    };
+    report["plugins"].as_array().unwrap().iter().flat_map(of).collect()
+}
+
+/// Checks a plugin; its report.
+fn check(bench: &Bench, plugin: &str) -> Value {
+    let ran = bench.run(["plugin", "check", plugin, "--level", LEVEL, "--json"]);
+    serde_json::from_str(&ran.stdout).unwrap_or_else(|error| panic!("{error}: {ran:?}"))
+}
+
+#[test]
+fn every_shipped_plugin_passes_and_is_listed_as_checked() {
+    let bench = Bench::new();
+    let names = |listed: &Value, checked: bool| -> Vec<String> {
+        let plugins =
+            listed["plugins"].as_array().unwrap().iter().filter(|plugin| plugin["trust"] == "shipped");
+        let plugins = plugins.filter(|plugin| !checked || plugin["checked"] == 9);
+        plugins.map(|plugin| plugin["short_name"].as_str().unwrap().to_owned()).collect()
+    };
+    let all = names(&bench.json("plugin list"), false);
+    let complaints: Vec<String> = all.iter().flat_map(|name| complaints(&check(&bench, name))).collect();
+    assert!(complaints.is_empty(), "\n{}\n", complaints.join("\n"));
+    assert_eq!(names(&bench.json("plugin list"), true), all);
+    assert!(all.len() > 8 && bench.text("plugin info klt").contains("checked 9"), "{all:?}");
+}
+
+/// The example in C as a library; `None` without a C compiler.
+fn example_in_c(bench: &Bench, flags: &[&str]) -> Option<PathBuf> {
+    if !Command::new("cc").arg("--version").output().is_ok_and(|output| output.status.success()) {
+        skipped("a C compiler (cc)");
+        return None;
+    }
+    let library = bench.path("null.so");
+    let mut cc = Command::new("cc");
+    cc.args(["-std=c99", "-O1", "-shared", "-fPIC", "-I"]).arg(root().join("core/abi/include")).arg("-o");
+    let built = cc.arg(&library).args(flags).arg(root().join("core/abi/examples/null_tracker.c")).status();
+    assert!(built.unwrap().success());
+    Some(library)
+}
+
+#[test]
+fn a_template_passes_and_what_is_no_plugin_does_not() {
+    let bench = Bench::new();
+    let numpy = Command::new("python3").args(["-c", "import numpy"]).output();
+    if numpy.is_ok_and(|output| output.status.success()) {
+        let _said = bench.text("plugin new mine --lang python");
+        let mut python = Command::new("python3");
+        let written = python.args(["mine/mine.py", "--honami-manifest"]).current_dir(bench.path("")).status();
+        assert!(written.unwrap().success());
+        let complaints = complaints(&check(&bench, "mine/mine.py"));
+        assert!(complaints.is_empty(), "\n{}\n", complaints.join("\n"));
+        assert!(bench.text("plugin list --plugin mine/mine.py").contains("checked 9"));
+    } else {
+        skipped("python3 with numpy");
+    }
+    fs::write(bench.path("text.so"), "no library").unwrap();
+    let ran = bench.line("plugin check text.so");
+    assert!(ran.code == Some(1) && ran.stdout.contains("file.readable"), "{ran:?}");
+}
+
+#[test]
+fn a_fault_is_told_with_what_repeats_it_and_the_verdict_is_for_that_content() {
+    let bench = Bench::new();
+    let Some(library) = example_in_c(&bench, &["-fvisibility=hidden"]) else { return };
+    let ran = bench.line("plugin check null.so --level 6");
+    assert!(ran.code == Some(0) && ran.stdout.contains("null: level 6, "), "{ran:?}");
+    assert!(bench.text("plugin list --plugin null.so").contains("checked 6"));
+    // Its helper functions are static; a flag of the linker is a fault of another build.
+    let _other = example_in_c(&bench, &["-fvisibility=hidden", "-Wl,-z,execstack"]);
+    assert!(!bench.text("plugin list --plugin null.so").contains("checked"));
+    let ran = bench.line("plugin check null.so --level 1 --junit report.xml");
+    let repeat = format!(
+        "honami plugin check {} --plugin-id org.honami.null --reproduce file.stack:1",
+        library.display()
+    );
+    assert!(ran.code == Some(1) && ran.stdout.contains(&repeat), "{ran:?}");
+    assert!(ran.stdout.contains("null: level 0, "), "{ran:?}");
+    let xml = fs::read_to_string(bench.path("report.xml")).unwrap();
+    assert!(xml.contains("<failure message=") && xml.contains("name=\"file.stack\""), "{xml}");
+    let words: Vec<&str> = repeat.split(' ').skip(1).collect();
+    let again = bench.run(words);
+    assert!(again.code == Some(1) && again.stdout.contains("file.stack failed: its stack"), "{again:?}");
+}
