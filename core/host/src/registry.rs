@@ -3,7 +3,7 @@
 use crate::error::HostError;
 use crate::manifest::{Caps, Kind, Manifest, Param};
 use crate::trust::TrustBook;
-use crate::{note, script, store};
+use crate::{note, script, store, trust};
 use std::collections::BTreeMap;
 use std::fs;
 use std::os::unix::fs::MetadataExt;
@@ -165,7 +165,7 @@ impl Registry {
     /// Looks along a search path.
     #[must_use]
     pub fn scan_path(path: &SearchPath) -> Self {
-        let mut registry = Self::default();
+        let mut registry = Self { problems: path.book.problem().into_iter().collect(), ..Self::default() };
         let of_named = |file: &Path| path.book.of_named(&script::manifest_of(file));
         for named in &path.named {
             if named.is_dir() {
@@ -310,18 +310,8 @@ fn shipped(executable: &Path, folder: &Path, file: &Path) -> Trust {
     let Ok(owner) = fs::metadata(executable).map(|meta| meta.uid()) else {
         return Trust::No("the owner of the executable cannot be told".into());
     };
-    for path in [folder, file] {
-        match fs::metadata(path) {
-            Err(error) => return Trust::No(format!("{}: {error}", path.display())),
-            Ok(meta) if meta.uid() != owner => {
-                return Trust::No(format!("{} has another owner than the executable", path.display()));
-            }
-            // Where every user has a group of their own (number as the user's), its members are that user.
-            Ok(meta) if meta.mode() & 0o002 != 0 || (meta.mode() & 0o020 != 0 && meta.gid() != owner) => {
-                return Trust::No(format!("others may write it: chmod go-w {}", path.display()));
-            }
-            Ok(_) => {}
-        }
+    match [folder, file].iter().try_for_each(|place| trust::only_writes(place, &[owner])) {
+        Ok(()) => Trust::Shipped,
+        Err(why) => Trust::No(why),
     }
-    Trust::Shipped
 }

@@ -91,6 +91,7 @@ pub(crate) fn keep(info: &PluginInfo, store: &Path) -> Result<Stored, HostError>
         return Err(HostError::NotTrusted { path: info.library.clone(), why });
     }
     let folder = store.join(format!("{sha256}.program"));
+    store::make_room(store, &folder);
     let copied = || -> io::Result<()> {
         let named = parts
             .iter()
@@ -100,6 +101,7 @@ pub(crate) fn keep(info: &PluginInfo, store: &Path) -> Result<Stored, HostError>
         for (name, bytes) in named.chain([(Path::new(FOR_PYTHON.0), FOR_PYTHON.1.as_bytes())]) {
             store::keep_bytes(&folder, &folder.join(name), bytes)?;
         }
+        store::still_used(&folder);
         Ok(())
     };
     copied().map_err(|e| file_error(format!("cannot be copied to {}: {e}", folder.display())))?;

@@ -13,9 +13,9 @@ use std::io::{self, Read, Write};
 use std::os::unix::fs::{DirBuilderExt, MetadataExt, OpenOptionsExt, PermissionsExt};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, SystemTime};
 
-/// Copies that nobody has made anew for so long are removed when another comes.
+/// Copies that nobody has loaded for so long are removed when another comes.
 const AGE_MAX: Duration = Duration::from_secs(30 * 24 * 3600);
 
 /// A copy in the store.
@@ -106,6 +106,7 @@ fn keep_now(path: &Path, folder: &Path) -> Result<Stored, HostError> {
     let sha256 = hex(&bytes);
     let keep_in = |folder: &Path| {
         let copy = folder.join(format!("{sha256}.so"));
+        make_room(folder, &copy);
         keep_bytes(folder, &copy, &bytes).map(|()| copy)
     };
     let kept = keep_in(folder).or_else(|first| keep_in(&temporary_folder()).map_err(|_second| first));
@@ -154,9 +155,9 @@ pub(crate) fn keep_bytes(folder: &Path, copy: &Path, bytes: &[u8]) -> io::Result
         fs::set_permissions(folder, Permissions::from_mode(0o700))?;
     }
     if fs::read(copy).is_ok_and(|kept| kept == bytes) {
+        still_used(copy);
         return Ok(());
     }
-    forget_old(folder);
     // A name of our own until it is whole: two programs may come to keep the same library.
     let half = folder.join(format!("half-{}-{}", std::process::id(), thread_number()));
     let mut file = OpenOptions::new().write(true).create(true).truncate(true).mode(0o600).open(&half)?;
@@ -178,12 +179,27 @@ fn thread_number() -> u64 {
     hasher.finish()
 }
 
-/// Best effort: a copy that cannot be removed is only in the way. Copies in use stay mapped.
-fn forget_old(folder: &Path) {
-    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-        let age = entry.metadata().and_then(|meta| meta.modified()).ok().and_then(|time| time.elapsed().ok());
+/// Removes what is old from the store before a copy comes into it that is not there: libraries, folders of programs, and
+/// what was never whole. Best effort: what cannot be removed is only in the way. Libraries in use stay mapped.
+pub(crate) fn make_room(store: &Path, copy: &Path) {
+    if copy.exists() {
+        return;
+    }
+    for entry in fs::read_dir(store).into_iter().flatten().flatten() {
+        let Ok(meta) = entry.metadata() else { continue };
+        let age = meta.modified().ok().and_then(|time| time.elapsed().ok());
         if age.is_some_and(|age| age > AGE_MAX) {
-            drop(fs::remove_file(entry.path()));
+            let path = entry.path();
+            let is_program = path.extension().is_some_and(|extension| extension == "program");
+            drop(if meta.is_dir() && is_program { fs::remove_dir_all(path) } else { fs::remove_file(path) });
         }
     }
 }
+
+/// Notes that a copy was loaded now. Best effort: one that is forgotten too early is made again.
+pub(crate) fn still_used(copy: &Path) {
+    drop(File::open(copy).and_then(|file| file.set_modified(SystemTime::now())));
+}
+
+#[cfg(test)]
+mod tests;

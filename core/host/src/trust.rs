@@ -25,11 +25,13 @@ pub struct TrustBook {
     /// A file a library.
     folder: Option<PathBuf>,
     lab: Lab,
+    /// Why what the lab says does not count.
+    broken: Option<String>,
 }
 
 /// The lab's file: contents, and folders whose libraries are trusted while root alone may write them.
 #[derive(Clone, Debug, Default, Deserialize)]
-#[serde(default)]
+#[serde(default, deny_unknown_fields)]
 struct Lab {
     sha256: Vec<String>,
     folders: Vec<PathBuf>,
@@ -47,6 +49,18 @@ struct Entry {
     said: u64,
 }
 
+impl Lab {
+    /// What the file says; nothing where there is none.
+    fn read(file: &Path) -> Result<Self, String> {
+        let text = match fs::read_to_string(file) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Self::default()),
+            text => text.map_err(|error| format!("cannot be read: {error}"))?,
+        };
+        only_root_writes(file)?;
+        toml::from_str(&text).map_err(|error| format!("is broken: {}", error.to_string().trim_end()))
+    }
+}
+
 impl TrustBook {
     /// That of this user, `$XDG_DATA_HOME/honami/trust`, and of this machine's lab.
     #[must_use]
@@ -54,16 +68,25 @@ impl TrustBook {
         let absolute = |name| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
         let data =
             absolute("XDG_DATA_HOME").or_else(|| absolute("HOME").map(|home| home.join(".local/share")));
-        let lab =
-            fs::read_to_string(OF_THE_LAB).ok().filter(|_| only_root_writes(Path::new(OF_THE_LAB)).is_ok());
-        let lab = lab.and_then(|text| toml::from_str(&text).ok()).unwrap_or_default();
-        Self { folder: data.map(|data| data.join("honami/trust")), lab }
+        let folder = data.map(|data| data.join("honami/trust"));
+        let (lab, broken) = match Lab::read(Path::new(OF_THE_LAB)) {
+            Ok(lab) => (lab, None),
+            Err(why) => (Lab::default(), Some(why)),
+        };
+        Self { folder, lab, broken }
+    }
+
+    /// That what the lab says cannot be read, if it says something: none of it counts then.
+    pub(crate) fn problem(&self) -> Option<HostError> {
+        let why = self.broken.as_ref()?;
+        let why = format!("{why}; until that is mended nothing is trusted for the lab's sake");
+        Some(HostError::File { path: OF_THE_LAB.into(), why })
     }
 
     /// With a folder of the caller's.
     #[must_use]
     pub fn in_folder(folder: PathBuf) -> Self {
-        Self { folder: Some(folder), lab: Lab::default() }
+        Self { folder: Some(folder), ..Self::default() }
     }
 
     /// Whether a library that a third party has installed may be loaded.
@@ -193,20 +216,28 @@ fn only_owner_writes(path: &Path, user: u32) -> Result<(), String> {
         ));
     }
     let path = path.canonicalize().map_err(told)?;
-    for place in path.ancestors() {
-        let meta = fs::metadata(place).map_err(told)?;
-        if meta.uid() != 0 && meta.uid() != user {
-            return Err(format!(
-                "{} belongs to another user: chown it, or copy the plugin elsewhere",
-                place.display()
-            ));
-        }
-        // In a folder with the sticky bit nobody can take away what is another's.
-        let is_shared = meta.is_dir() && meta.mode() & 0o1000 != 0;
-        let by_group = meta.mode() & 0o020 != 0 && meta.gid() != user;
-        if (meta.mode() & 0o002 != 0 || by_group) && !is_shared {
-            return Err(format!("others may write it: chmod go-w {}", place.display()));
-        }
+    path.ancestors().try_for_each(|place| only_writes(place, &[0, user]))
+}
+
+/// Whether a file or folder belongs to one of these users, and they alone may write it; else what to do about it. The
+/// last of them may have a group of their own.
+pub(crate) fn only_writes(place: &Path, users: &[u32]) -> Result<(), String> {
+    let meta = fs::metadata(place).map_err(|error| format!("{}: {error}", place.display()))?;
+    if !users.contains(&meta.uid()) {
+        return Err(format!(
+            "{} belongs to another user: chown it, or copy the plugin elsewhere",
+            place.display()
+        ));
+    }
+    // In a folder with the sticky bit nobody can take away what is another's.
+    let is_shared = meta.is_dir() && meta.mode() & 0o1000 != 0;
+    // Where every user has a group of their own (number as the user's), its members are that user.
+    let by_group = meta.mode() & 0o020 != 0 && users.last() != Some(&meta.gid());
+    if (meta.mode() & 0o002 != 0 || by_group) && !is_shared {
+        return Err(format!("others may write it: chmod go-w {}", place.display()));
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests;

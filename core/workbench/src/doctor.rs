@@ -21,7 +21,7 @@ pub struct Finding {
 /// Looks at everything honami can make use of.
 #[must_use]
 pub fn examine(registry: &Registry) -> Vec<Finding> {
-    vec![trackers(registry), processes(), opencv(registry), ffmpeg(), cache(), threads()]
+    vec![trackers(registry), files(registry), processes(), opencv(registry), ffmpeg(), cache(), threads()]
 }
 
 /// Plugins that did not come with honami need a program to work in.
@@ -44,6 +44,18 @@ fn trackers(registry: &Registry) -> Finding {
         found: if names.is_empty() { "none found".to_owned() } else { names.join(", ") },
         adds: "trackers and clusterers",
         advice: Some("cargo build --release builds the shipped ones beside the program".to_owned()),
+    }
+}
+
+/// Files that look like plugins, and what the lab trusts: what of them cannot be used.
+fn files(registry: &Registry) -> Finding {
+    let problems: Vec<String> = registry.problems().iter().map(ToString::to_string).collect();
+    Finding {
+        what: "plugin files",
+        there: problems.is_empty(),
+        found: if problems.is_empty() { "all can be read".to_owned() } else { problems.join("; ") },
+        adds: "the plugins in them",
+        advice: Some("mend what is named, or take it away".to_owned()),
     }
 }
 
