@@ -4,7 +4,8 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
 
-use honami_tests::{Bench, root, skipped};
+use honami_tests::{Bench, program, root, skipped};
+use honami_workbench::plugins::{CallContext, Host, Hosting, Kind, Registry, Values};
 
 /// A tracker `bad.so` that leaves its points where they are, with one fault; `None` without a C compiler.
 fn bad(bench: &Bench, fault: &str) -> Option<PathBuf> {
@@ -18,6 +19,19 @@ pub(crate) fn has_cc() -> bool {
         skipped("a C compiler (cc)");
     }
     there
+}
+
+/// Whether this kernel keeps files away from a process that has given them up; says so if not.
+pub(crate) fn is_shut_in() -> bool {
+    let bench = Bench::new();
+    let registry = Registry::scan(&[program().parent().unwrap().to_owned()]);
+    let klt = registry.find(Kind::Tracker, "klt").unwrap();
+    let host = Host::with_store(bench.path("store")).hosting(Hosting::Isolated);
+    let (_, origin) = host.tracker(klt, &Values::default(), &CallContext::silent()).unwrap();
+    if origin.sandbox != "full" {
+        skipped("landlock in the kernel");
+    }
+    origin.sandbox == "full"
 }
 
 /// The tracker that has a fault by these flags, under this name.

@@ -59,6 +59,7 @@ const CASES: &[Case] = &[
     ("cluster p.honami --groups 0", FAILED, &["groups, not 0"]),
     ("cluster p.honami --groups 9999", FAILED, &["groups, not 9999"]),
     ("cluster bare.honami", FAILED, &["no tracks yet", "track features first"]),
+    ("export p.honami tracks -", USAGE, &["standard output", "name one"]),
     ("export p.honami tracks out.avi", USAGE, &["out.avi", "--format", "csv, parquet, cvat"]),
     ("export p.honami tracks out.xml", USAGE, &["out.xml", "--format", "cvat", "trackmate"]),
     ("export p.honami groups out.txt", USAGE, &[".csv", "out.txt"]),

@@ -35,7 +35,11 @@ const BENCHES: [Bench; 13] = [
     ),
     ("correct", "what a correction on a track of 300 frames takes, a row a model", correct),
     ("robust", "mean, median and mode of displacements of which a part moves another way", robust),
-    ("plugins", "what a plugin costs: a call in this process and in its own, its start, the list", plugins),
+    (
+        "plugins",
+        "what a plugin costs: a call in this process and in its own, its start, its death, the list",
+        plugins,
+    ),
 ];
 
 pub(crate) fn run(args: &[&str]) -> anyhow::Result<()> {

@@ -24,7 +24,7 @@ pub(crate) use start::create;
 use std::io;
 use std::sync::atomic::Ordering::Relaxed;
 use std::time::Duration;
-use watch::Watch;
+use watch::{ABORT, Watch};
 
 /// How often the host looks whether the user wants to stop,
 const TICK: Duration = Duration::from_millis(20);
@@ -50,8 +50,9 @@ pub struct Limits {
 
 impl Default for Limits {
     fn default() -> Self {
-        let [tell, end, start, stop] = [2, 10, 60, 3].map(Duration::from_secs);
-        Self { tell, end, start, stop, memory_bytes: None }
+        let [end, start, stop] = [10, 60, 3].map(Duration::from_secs);
+        // Within two seconds it is on the screen.
+        Self { tell: Duration::from_millis(1_800), end, start, stop, memory_bytes: None }
     }
 }
 
@@ -65,8 +66,8 @@ pub(crate) struct Isolated {
     at: String,
     /// The last line that it printed.
     last_words: String,
-    /// How far it has shut itself in.
-    sandbox: String,
+    /// How far it has shut itself in, once it has said so.
+    sandbox: Option<String>,
     /// Whether the user wants the call to stop that is going on.
     is_asked_to_stop: bool,
 }
@@ -98,7 +99,8 @@ impl Isolated {
     ) {
         reply.clear();
         self.output.cancel().store(0, Relaxed);
-        let ended = self.say(ask).and_then(|()| self.listen(cx, self.limits.end));
+        let ended = self.catch_up(cx).and_then(|()| self.say(ask));
+        let ended = ended.and_then(|()| self.listen(cx, self.limits.end));
         match ended {
             Ok(Heard::Answer(answer)) => {
                 reply.stopped = self.is_asked_to_stop;
@@ -133,6 +135,31 @@ impl Isolated {
         }
     }
 
+    /// Hears what it has said since its last answer: another answer would be taken for that to the next request.
+    fn catch_up(&mut self, cx: &CallContext<'_>) -> io::Result<()> {
+        for _ in 0..LINES_A_LOOK {
+            let Some(line) = self.process.line()? else { break };
+            if self.hear(&line, cx)?.is_some() {
+                return Err(io::Error::other("answers what nobody has asked"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes a line apart; an answer is for who has asked.
+    fn hear(&mut self, line: &[u8], cx: &CallContext<'_>) -> io::Result<Option<Heard>> {
+        let said = serde_json::from_slice(line);
+        match said.map_err(|error| io::Error::other(format!("said what nobody understands: {error}")))? {
+            Tell::Done(answer) => return Ok(Some(Heard::Answer(answer))),
+            Tell::Refused(refusal) => return Ok(Some(Heard::Refusal(refusal))),
+            Tell::Log { level, text } => (cx.log)(Level::of(level), &plain(&text)),
+            Tell::At { text } => self.at = plain(&text),
+            // The first comes before anything of the plugin runs; it could say what it likes afterwards.
+            Tell::ShutIn { level } => drop(self.sandbox.get_or_insert(level)),
+        }
+        Ok(None)
+    }
+
     /// Hears what the process says until it answers or ends.
     fn listen(&mut self, cx: &CallContext<'_>, at_most: Duration) -> io::Result<Heard> {
         let mut watch = Watch::new(&self.output, at_most);
@@ -145,18 +172,9 @@ impl Isolated {
                     is_quiet = true;
                     break;
                 };
-                match serde_json::from_slice(&line) {
-                    Ok(Tell::Done(answer)) => {
-                        self.overhear(cx);
-                        return Ok(Heard::Answer(answer));
-                    }
-                    Ok(Tell::Refused(refusal)) => return Ok(Heard::Refusal(refusal)),
-                    Ok(Tell::Log { level, text }) => (cx.log)(Level::of(level), &plain(&text)),
-                    Ok(Tell::At { text }) => self.at = plain(&text),
-                    Ok(Tell::ShutIn { level }) => self.sandbox = plain(&level),
-                    Err(error) => {
-                        return Err(io::Error::other(format!("said what nobody understands: {error}")));
-                    }
+                if let Some(heard) = self.hear(&line, cx)? {
+                    self.overhear(cx);
+                    return Ok(heard);
                 }
             }
             if has_ended && is_quiet {
@@ -168,6 +186,12 @@ impl Isolated {
                 return self.process.end().map(Heard::End);
             }
             has_ended = self.process.wait(TICK)?;
+            if self.process.has_hung_up() && !has_ended {
+                has_ended = self.process.ends_within(ABORT);
+                if !has_ended {
+                    return Err(io::Error::other("hung up"));
+                }
+            }
             self.overhear(cx);
             if let Some(how) = self.watch(&mut watch, cx) {
                 return Ok(Heard::End(how));

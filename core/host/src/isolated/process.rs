@@ -1,5 +1,6 @@
 //! A plugin's own process: how it begins, what it says, and that it ends.
 
+use super::TICK;
 use crate::plain::plain;
 use crate::plughost::ROOM;
 use crate::wire::memory::{Outbox, Output};
@@ -19,7 +20,7 @@ use std::os::unix::net::UnixStream;
 use std::os::unix::process::{CommandExt as _, ExitStatusExt as _};
 use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 /// A process says no longer line than this.
@@ -90,6 +91,8 @@ pub(crate) struct Process {
     socket: UnixStream,
     /// What has come of the line that is not whole.
     heard: Vec<u8>,
+    /// Whether it says nothing more.
+    has_hung_up: bool,
     /// Bytes of `heard` that no newline is in.
     searched: usize,
     prints: OwnedFd,
@@ -133,6 +136,7 @@ impl Process {
             pidfd,
             socket: UnixStream::from(ours),
             heard,
+            has_hung_up: false,
             searched: 0,
             prints,
             printed,
@@ -176,15 +180,32 @@ impl Process {
     pub(crate) fn wait(&mut self, at_most: Duration) -> io::Result<bool> {
         let timeout =
             Timespec { tv_sec: at_most.as_secs() as i64, tv_nsec: i64::from(at_most.subsec_nanos()) };
-        // A pipe that is closed would wake the host for ever.
+        // What is closed would wake the host for ever.
         let prints: &dyn AsFd = if self.can_print { &self.prints } else { &self.pidfd };
-        let mut wanted = [&self.socket as &dyn AsFd, prints, &self.pidfd]
-            .map(|file| PollFd::from_borrowed_fd(file.as_fd(), PollFlags::IN));
+        let socket: &dyn AsFd = if self.has_hung_up { &self.pidfd } else { &self.socket };
+        let mut wanted =
+            [socket, prints, &self.pidfd].map(|file| PollFd::from_borrowed_fd(file.as_fd(), PollFlags::IN));
         match poll(&mut wanted, Some(&timeout)) {
             Ok(_) => Ok(!wanted[2].revents().is_empty()),
             Err(Errno::INTR) => Ok(false),
             Err(error) => Err(error.into()),
         }
+    }
+
+    /// Whether it ends within so much time.
+    pub(crate) fn ends_within(&mut self, at_most: Duration) -> bool {
+        let begun = Instant::now();
+        while begun.elapsed() < at_most {
+            if self.wait(TICK).unwrap_or(true) {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Whether it has closed its end: it says nothing more, and hears nothing.
+    pub(crate) fn has_hung_up(&self) -> bool {
+        self.has_hung_up
     }
 
     /// How it has ended.
@@ -215,7 +236,11 @@ impl Process {
             }
             let mut piece = [0; 1 << 14];
             match read(&self.socket, &mut piece) {
-                Ok(0) | Err(Errno::AGAIN | Errno::CONNRESET) => return Ok(None),
+                Err(Errno::AGAIN) => return Ok(None),
+                Ok(0) | Err(Errno::CONNRESET) => {
+                    self.has_hung_up = true;
+                    return Ok(None);
+                }
                 Ok(n) => self.heard.extend_from_slice(&piece[..n]),
                 Err(Errno::INTR) => {}
                 Err(error) => return Err(error.into()),

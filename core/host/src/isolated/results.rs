@@ -43,15 +43,19 @@ impl Isolated {
         if rows.checked_mul(bytes_a_row).is_none_or(|bytes| bytes > ANSWER_BYTES_MAX) {
             return Err(format!("answered with {rows} rows of {id}, more than 1 GiB"));
         }
+        // Before room is made for what is not there.
+        for (column, at) in &known {
+            let n_bytes = rows * row_bytes(column);
+            if !self.output.holds(*at, n_bytes) {
+                return Err(format!("answered with column {:?} of {id} outside its memory", column.0));
+            }
+        }
         let types = known.iter().map(|(column, _)| (Some(*column), row_bytes(column)));
         let table = reply.slot(schema);
         let starts =
             table.reserve(rows, types).ok_or_else(|| format!("answered with {rows} rows of {id}"))?;
         for ((column, at), start) in known.iter().zip(starts) {
-            let n_bytes = rows * row_bytes(column);
-            self.output
-                .copy(*at, start.cast(), n_bytes)
-                .ok_or_else(|| format!("answered with column {:?} of {id} outside its memory", column.0))?;
+            self.output.copy(*at, start.cast(), rows * row_bytes(column));
         }
         table.commit(columns.rows)
     }

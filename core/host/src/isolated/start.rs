@@ -38,7 +38,7 @@ pub(crate) fn create(
         limits,
         at: String::new(),
         last_words: String::new(),
-        sandbox: "none".to_owned(),
+        sandbox: None,
         is_asked_to_stop: false,
     };
     let hello = Ask::Hello { honami: wire::VERSION, plugin: info.id.clone() };
@@ -48,7 +48,7 @@ pub(crate) fn create(
         .map_err(|error| failed("does not answer", error))?
     {
         Heard::Answer(_) => {
-            let sandbox = made.sandbox.clone();
+            let sandbox = made.sandbox.take().map_or_else(|| "none".to_owned(), |level| plain(&level));
             Ok((Box::new(made), sandbox))
         }
         Heard::Refusal(refusal) => Err(refused(info, refusal)),

@@ -1,7 +1,7 @@
 //! The watch-dog: how far a plugin is, whether it lives, and that it stops.
 
+use super::Isolated;
 use super::process::Ended;
-use super::{Isolated, TICK};
 use crate::context::{CallContext, Flow};
 use crate::wire::memory::Output;
 use rustix::process::Signal;
@@ -9,7 +9,7 @@ use std::sync::atomic::Ordering::Relaxed;
 use std::time::{Duration, Instant};
 
 /// After an abort, which leaves a trace for the plugin's author, it is killed.
-const ABORT: Duration = Duration::from_secs(1);
+pub(super) const ABORT: Duration = Duration::from_secs(1);
 
 /// When the plugin last gave a sign of life.
 pub(super) struct Watch {
@@ -47,10 +47,11 @@ impl Isolated {
     pub(super) fn watch(&mut self, watch: &mut Watch, cx: &CallContext<'_>) -> Option<Ended> {
         let silent = watch.silence(&self.output);
         let fraction = if watch.is_alive { self.output.fraction() } else { -1.0 };
+        let fraction = if fraction.is_finite() { fraction } else { -1.0 };
         let words = if silent < self.limits.tell {
             self.at.clone()
         } else {
-            format!("{} (no sign of life for {} s)", self.at, silent.as_secs()).trim_start().to_owned()
+            format!("{} (no sign of life for {:.0} s)", self.at, silent.as_secs_f64()).trim_start().to_owned()
         };
         if (cx.progress)(fraction, &words) == Flow::Stop && watch.asked.is_none() {
             self.output.cancel().store(1, Relaxed);
@@ -62,12 +63,7 @@ impl Isolated {
             return None;
         }
         self.process.signal(Signal::ABORT);
-        let begun = Instant::now();
-        while begun.elapsed() < ABORT {
-            if self.process.wait(TICK).unwrap_or(true) {
-                break;
-            }
-        }
+        self.process.ends_within(ABORT);
         self.process.kill();
         Some(if watch.asked.is_some() { Ended::Stopped } else { Ended::Silent(silent.as_secs()) })
     }

@@ -230,16 +230,27 @@ impl Output {
         Ok(at as u64)
     }
 
-    /// The host's side: copies bytes out of it. What the process writes meanwhile may be in the copy; the copy is what is
-    /// checked. `None` when they do not lie within it.
-    pub(crate) fn copy(&mut self, at: u64, to: *mut u8, n: usize) -> Option<()> {
-        let at = usize::try_from(at).ok()?;
-        let end = at.checked_add(n).filter(|end| *end <= OUTPUT_BYTES_MAX)?;
-        if end > self.map.len() {
-            self.map = MmapOptions::new().map_raw(&self.file).ok()?;
+    /// The host's side: whether so many bytes lie there, after the words.
+    pub(crate) fn holds(&mut self, at: u64, n: usize) -> bool {
+        let within = |len: usize| {
+            let at = usize::try_from(at).ok().filter(|at| *at >= PAGE_BYTES);
+            at.and_then(|at| at.checked_add(n)).is_some_and(|end| end <= len)
+        };
+        // The process may have made it larger.
+        if !within(self.map.len())
+            && within(OUTPUT_BYTES_MAX)
+            && let Ok(map) = MmapOptions::new().map_raw(&self.file)
+        {
+            self.map = map;
         }
+        within(self.map.len())
+    }
+
+    /// Copies bytes out that it holds, to where there is room for them. What the process writes meanwhile may be in the
+    /// copy; the copy is what is checked.
+    pub(crate) fn copy(&mut self, at: u64, to: *mut u8, n: usize) {
+        assert!(self.holds(at, n), "{n} bytes from {at}");
         // SAFETY: within the mapping, which nobody can make smaller; `to` has room for `n` bytes by the caller's promise.
-        (end <= self.map.len())
-            .then(|| unsafe { std::ptr::copy_nonoverlapping(self.map.as_ptr().add(at), to, n) })
+        unsafe { std::ptr::copy_nonoverlapping(self.map.as_ptr().add(at as usize), to, n) }
     }
 }

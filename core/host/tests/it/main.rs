@@ -4,6 +4,7 @@
 
 mod bad;
 mod fossil;
+mod hostile;
 mod isolated;
 mod registry;
 mod state;
