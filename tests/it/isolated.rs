@@ -124,6 +124,18 @@ fn what_begins_in_a_lost_frame_is_followed_and_a_death_at_once_leaves_no_run() {
     assert!(!bench.text("log p.honami").contains("run 2"));
 }
 
+/// Three points through twelve frames by the mortal tracker, built with these flags: what is said, and the table.
+fn mortal(bench: &Bench, flags: &[&str]) -> (String, String) {
+    compile_source(bench, "mortal.c", "mortal.so", flags);
+    let name = flags.concat().replace(|c: char| !c.is_alphanumeric(), "");
+    fs::write(bench.path("points.csv"), "id,x,y,frame\n1,20.5,30,0\n2,60,40.25,0\n3,9,9,4\n").unwrap();
+    let _said = bench.text(&format!("new {name}.honami clip.y4m"));
+    let said =
+        bench.text(&format!("track {name}.honami --plugin mortal.so --with mortal --points points.csv"));
+    let _said = bench.text(&format!("export {name}.honami tracks {name}.csv"));
+    (said, fs::read_to_string(bench.path(&format!("{name}.csv"))).unwrap())
+}
+
 #[test]
 fn a_plugin_that_saves_what_it_carries_goes_on_as_if_it_had_not_died() {
     if !has_cc() {
@@ -131,20 +143,33 @@ fn a_plugin_that_saves_what_it_carries_goes_on_as_if_it_had_not_died() {
     }
     let bench = Bench::new();
     bench.synth("clip.y4m", 12, "--leaves 20");
-    fs::write(bench.path("points.csv"), "id,x,y,frame\n1,20.5,30,0\n2,60,40.25,0\n3,9,9,4\n").unwrap();
-    let run = |project: &str, dies_in: i32| {
-        compile_source(&bench, "mortal.c", "mortal.so", &[&format!("-DDIES={dies_in}")]);
-        let _said = bench.text(&format!("new {project}.honami clip.y4m"));
-        let said = bench
-            .text(&format!("track {project}.honami --plugin mortal.so --with mortal --points points.csv"));
-        let _said = bench.text(&format!("export {project}.honami tracks {project}.csv"));
-        (said, fs::read_to_string(bench.path(&format!("{project}.csv"))).unwrap())
-    };
-    let (said, undisturbed) = run("never", -1);
+    let (said, undisturbed) = mortal(&bench, &["-DDIES=-1"]);
     assert!(!said.contains("started again"), "{said}");
     for dies_in in [2, 5, 11] {
-        let (said, table) = run(&format!("in{dies_in}"), dies_in);
+        let (said, table) = mortal(&bench, &[&format!("-DDIES={dies_in}")]);
         assert!(said.contains(&format!("started again at frame {dies_in}: it died of SIGSEGV")), "{said}");
         assert_eq!(table, undisturbed, "dead in frame {dies_in}");
+    }
+}
+
+#[test]
+fn a_plugin_that_is_bad_at_saving_what_it_carries_goes_on_from_where_points_were_seen() {
+    if !has_cc() {
+        return;
+    }
+    let bench = Bench::new();
+    bench.synth("clip.y4m", 12, "--leaves 20");
+    // It dies in frame 5 every time but after load, which never comes: the frame is lost.
+    for (flags, frame, n_lost) in [
+        (["-DDIES=5", "-DSAVING=REFUSES_TO_SAVE"], 5, 3),
+        (["-DDIES=5", "-DSAVING=REFUSES_TO_LOAD"], 5, 3),
+        (["-DDIES=-1", "-DSAVING=DIES_OF_SAVING"], 1, 0),
+    ] {
+        let (said, table) = mortal(&bench, &flags);
+        assert_eq!(said.matches(&format!("started again at frame {frame}: it")).count(), 1, "{said}");
+        assert_eq!(said.matches("started again").count(), 1, "{said}");
+        let statuses: Vec<&str> = table.lines().skip(1).filter_map(|line| line.split(',').nth(5)).collect();
+        // Twelve samples of two points, eight of the one that begins in frame 4.
+        assert_eq!((statuses.len(), statuses.iter().filter(|s| **s == "0").count()), (32, n_lost), "{table}");
     }
 }

@@ -1,3 +1,5 @@
+//! Clips with a truth: they are what they say.
+
 use super::{Clip, Discs, Moved, Texture, centre, grid};
 use rand_pcg::Pcg64;
 

@@ -1,3 +1,5 @@
+//! Memory with guards: bytes lie at the edge that was asked for, and nothing may touch what is behind it.
+
 use super::{Edge, Guarded};
 
 #[test]

@@ -1,5 +1,5 @@
 /* mortal.c - a tracker whose points gather speed, which positions alone do not tell: it saves and loads what it carries.
- * It dies in frame DIES once: not after load. */
+ * It dies in frame DIES once: not after load. By -DSAVING=... it is bad at that. */
 #include "honami.h"
 #include <stdlib.h>
 #include <string.h>
@@ -11,6 +11,10 @@
 #define VERSION 1
 #endif
 enum { MAX = 64 };
+enum saving { WELL, REFUSES_TO_SAVE, DIES_OF_SAVING, REFUSES_TO_LOAD };
+#ifndef SAVING
+#define SAVING WELL
+#endif
 
 #define MANIFEST                                                                                                     \
   "{\"honami\":1,\"abi\":[1,1],\"library\":{\"id\":\"org.honami.mortal\",\"version\":\"0\"},\"plugins\":[{"             \
@@ -114,7 +118,10 @@ static honami_code end(honami_instance *instance, const honami_call *call) {
 static honami_code save(honami_instance *instance, const honami_call *call) {
   carried *now = &((mortal *)instance)->now;
   honami_column c = {"bytes", HONAMI_U8, 1, NULL, 0};
-  honami_code code = call->reserve(call, HONAMI_STATE, sizeof *now, 1, &c);
+  honami_code code;
+  if (SAVING == REFUSES_TO_SAVE) return call->fail(call, HONAMI_E_FAILED, "it does not save");
+  if (SAVING == DIES_OF_SAVING) *(volatile int *)NULL = 1;
+  code = call->reserve(call, HONAMI_STATE, sizeof *now, 1, &c);
   if (code < 0) return call->fail(call, code, "the host gives nothing");
   now->version = VERSION;
   now->sum = sum_of(now);
@@ -125,6 +132,7 @@ static honami_code save(honami_instance *instance, const honami_call *call) {
 static honami_code load(honami_instance *instance, const honami_call *call, const uint8_t *bytes, uint64_t n) {
   mortal *self = (mortal *)instance;
   carried saved;
+  if (SAVING == REFUSES_TO_LOAD) return call->fail(call, HONAMI_E_DATA, "it does not load");
   if (n != sizeof saved) return call->fail(call, HONAMI_E_DATA, "what was saved is cut");
   memcpy(&saved, bytes, sizeof saved);
   if (saved.version != VERSION) return call->fail(call, HONAMI_E_DATA, "what was saved is of another version");
