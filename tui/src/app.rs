@@ -38,6 +38,7 @@ pub mod prints;
 pub mod queue;
 pub mod ranging;
 pub mod recent;
+pub mod recovery;
 mod replay;
 mod reviewing;
 mod run;

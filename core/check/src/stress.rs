@@ -77,7 +77,7 @@ fn any_call(
 ) -> (&'static str, Result<(), HostError>) {
     let stops = chance.random_bool(0.05);
     let listen = move |_: f64, _: &str| if stops { Flow::Stop } else { Flow::Continue };
-    let cx = CallContext { progress: &listen, log: &|_, _| {} };
+    let cx = CallContext { progress: &listen, ..CallContext::silent() };
     let clip = &clips[usize::from(chance.random_bool(0.1))];
     let view = clip.view(chance.random_range(0..clip.pictures.len()));
     match chance.random_range(0..20) {
@@ -132,7 +132,7 @@ fn killed(subject: &Subject) -> Result<Verdict, Fault> {
         Flow::Continue
     };
     let ended = loop {
-        match work.step(&CallContext { progress: &kill, log: &|_, _| {} }) {
+        match work.step(&CallContext { progress: &kill, ..CallContext::silent() }) {
             Ok(false) => {}
             Ok(true) => return Ok(Verdict::Beside("no call said how far it was".into())),
             Err(HostError::Ended { how, .. }) => break how,

@@ -36,7 +36,7 @@ pub mod draft;
 pub mod sdk;
 
 pub use clusterer::Clusterer;
-pub use context::{CallContext, Flow, Level};
+pub use context::{CallContext, Flow, Level, Patience, Silence};
 pub use error::{Code, HostError};
 pub use host::{Host, Hosting, Origin};
 pub use isolated::{Ended, Limits, program};

@@ -139,7 +139,7 @@ fn with_listener(ear: &Ear, output: &Output, call: impl FnOnce(&CallContext<'_>)
         output.beat(output.fraction());
         drop(ear.tell(&Tell::Log { level: level as i32, text: text.to_owned() }));
     };
-    call(&CallContext { progress: &progress, log: &log });
+    call(&CallContext { progress: &progress, log: &log, ..CallContext::silent() });
 }
 
 /// Lays the committed tables down where the host sees them.

@@ -198,6 +198,15 @@ impl RunWriter {
         Ok(())
     }
 
+    /// Keeps what the run was asked for, in words of the caller's: see [`Project::request_of`].
+    ///
+    /// # Errors
+    /// What SQLite met.
+    pub fn keep_request(&mut self, request: &str) -> Result<(), StoreError> {
+        self.conn.execute("UPDATE run SET request = ?2 WHERE id = ?1", params![self.run.0, request])?;
+        Ok(())
+    }
+
     /// Ends the run as complete: its chunks become one row a track, in one transaction.
     ///
     /// # Errors

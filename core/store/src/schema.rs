@@ -14,7 +14,7 @@ const APPLICATION_ID: u32 = 0x484F_4E41;
 pub(crate) const BUSY_TIMEOUT: Duration = Duration::from_secs(20);
 
 /// Step n brings schema n to n + 1; a step is never changed once it was released.
-const MIGRATIONS: [&str; 4] = [
+const MIGRATIONS: [&str; 5] = [
     "
     CREATE TABLE state (            -- one row: what changes with every edit
         id          INTEGER PRIMARY KEY CHECK (id = 1),
@@ -93,6 +93,9 @@ const MIGRATIONS: [&str; 4] = [
     "
     ALTER TABLE seam ADD COLUMN plugin_version TEXT; -- of another build that goes on there; none: the same
     ALTER TABLE seam ADD COLUMN plugin_sha256 TEXT;  -- hash of its library
+",
+    "
+    ALTER TABLE run ADD COLUMN request TEXT; -- JSON of the program's that ran it: what going on with it takes
 ",
 ];
 

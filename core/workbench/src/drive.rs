@@ -55,6 +55,8 @@ pub struct Detect {
     pub every: Option<u32>,
     /// A byte a pixel of the clip, non-zero where features may be; `None`: everywhere.
     pub mask: Option<Vec<u8>>,
+    /// The first frame in which features are looked for, and from which others are counted.
+    pub since: u32,
     /// Tracks that are there already: new features keep their distance from these, too.
     pub present: Vec<(TrackId, Arc<Span>)>,
 }
@@ -254,9 +256,9 @@ impl Ride<'_> {
         let is_again = placed.is_some();
         let mut new: Vec<Point> = placed.unwrap_or_else(|| due(&self.plan.seeds, frame).collect());
         if let Some(detect) = self.plan.detect.as_ref().filter(|_| !is_again) {
-            let again =
-                detect.every.is_some_and(|n| n > 0 && (frame - self.plan.frames.start).is_multiple_of(n));
-            if first || again {
+            // What was found where a resumed run begins is known.
+            let again = |n: u32| n > 0 && !first && (frame - detect.since).is_multiple_of(n);
+            if frame == detect.since || detect.every.is_some_and(again) {
                 let found = self.find(detect, &view, &new, numbers, call)?;
                 new.extend(found);
             }

@@ -4,7 +4,7 @@ use std::sync::{Mutex, PoisonError};
 
 use honami_host::{CallContext, Level};
 
-use crate::progress::Progress;
+use crate::progress::{Flow, Progress};
 
 /// More different warnings than a person reads.
 const MAX_WARNINGS: usize = 20;
@@ -26,15 +26,32 @@ impl<'a> Ear<'a> {
 
     /// Makes one call while `done` of `total` steps are done.
     pub(crate) fn call<R>(&self, done: u64, total: u64, work: impl FnOnce(&CallContext<'_>) -> R) -> R {
-        let watch = |_: f64, _: &str| self.progress.report(done, total, "frame");
-        work(&CallContext { progress: &watch, log: &|level, text| self.hear(level, text) })
+        self.listen(|_| self.progress.report(done, total, "frame"), work)
     }
 
     /// Makes the only call of a job; its progress is the plugin's own.
     pub(crate) fn whole<R>(&self, what: &str, work: impl FnOnce(&CallContext<'_>) -> R) -> R {
-        let watch =
-            |share: f64, _: &str| self.progress.report((share.clamp(0.0, 1.0) * 1000.0) as u64, 1000, what);
-        work(&CallContext { progress: &watch, log: &|level, text| self.hear(level, text) })
+        self.listen(|share| self.progress.report((share.clamp(0.0, 1.0) * 1000.0) as u64, 1000, what), work)
+    }
+
+    fn listen<R>(&self, report: impl Fn(f64) -> Flow + Sync, work: impl FnOnce(&CallContext<'_>) -> R) -> R {
+        let at = Mutex::new(String::new());
+        let progress = |share: f64, words: &str| {
+            words.clone_into(&mut at.lock().unwrap_or_else(PoisonError::into_inner));
+            report(share)
+        };
+        let silent = |silence| {
+            let at = at.lock().unwrap_or_else(PoisonError::into_inner);
+            self.progress.silent(&self.plugin, &at, silence)
+        };
+        let done = work(&CallContext {
+            progress: &progress,
+            log: &|level, text| self.hear(level, text),
+            silent: &silent,
+        });
+        // It has answered.
+        silent(None);
+        done
     }
 
     fn hear(&self, level: Level, text: &str) {

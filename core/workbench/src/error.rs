@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use honami_model::document::RunId;
 use honami_model::track::TrackId;
 
 /// Why a use-case failed: what was wanted, what came, what to do, in one line.
@@ -270,6 +271,15 @@ pub enum WorkbenchError {
     Changed {
         /// The track.
         track: TrackId,
+    },
+    /// There is no run to go on with.
+    #[error(
+        "{}: only a run of a tracker that was stopped or that failed can be gone on with",
+        run.map_or_else(|| "no run has ended early".to_owned(), |run| format!("run {run} has not ended early"))
+    )]
+    NothingToResume {
+        /// The run that was asked for.
+        run: Option<RunId>,
     },
     /// No plugin tracks.
     #[error("there is no tracker to track with; see honami plugin list")]

@@ -1,7 +1,7 @@
 //! How a job says how far it is, and how it is told to stop.
 
 /// Whether a job goes on, or stops soon and keeps what can be kept.
-pub use honami_host::{Flow, Level};
+pub use honami_host::{Flow, Level, Patience, Silence};
 
 /// Whoever watches a job; called from the job's thread.
 pub trait Progress: Sync {
@@ -13,6 +13,12 @@ pub trait Progress: Sync {
 
     /// A plugin, by its short name, has logged or printed a line; called from any thread.
     fn hear(&self, _plugin: &str, _level: Level, _line: &str) {}
+
+    /// Whether a plugin, which last said that it was at something, is waited for while it gives no sign of life; asked
+    /// all the while, with `None` once it lives.
+    fn silent(&self, _plugin: &str, _at: &str, _silence: Option<Silence>) -> Patience {
+        Patience::Usual
+    }
 }
 
 /// Somebody who watches, told of all steps under one name.
@@ -30,6 +36,10 @@ impl Progress for Named<'_> {
 
     fn hear(&self, plugin: &str, level: Level, line: &str) {
         self.progress.hear(plugin, level, line);
+    }
+
+    fn silent(&self, plugin: &str, at: &str, silence: Option<Silence>) -> Patience {
+        self.progress.silent(plugin, at, silence)
     }
 }
 

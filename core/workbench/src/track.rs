@@ -10,9 +10,9 @@ use honami_host::{CallContext, Host, Kind, Origin, PluginInfo, Tracker, Values};
 use honami_media::{Media, OpenOptions};
 use honami_model::clip::Clip;
 use honami_model::document::{RunId, ShownRun};
-use honami_model::edit::Transaction;
 use honami_model::track::{TrackId, TrackSet};
 use honami_store::{Project, RunHead, RunWriter, Seam};
+use serde::{Deserialize, Serialize};
 
 use crate::drive::{self, Death, Detect, Driven, Plan, Rows, Seed};
 use crate::error::WorkbenchError;
@@ -21,8 +21,11 @@ use crate::session::Session;
 use crate::stamp::stamp;
 
 mod ends;
+mod resume;
 
 pub use ends::Ends;
+use resume::Asked;
+pub use resume::{resume, unfinished};
 
 /// Frames that are written at a time.
 const CHUNK: usize = 64;
@@ -44,7 +47,7 @@ pub enum PointSource {
 }
 
 /// Where features may be found.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum Area {
     /// Everywhere.
     #[default]
@@ -79,6 +82,8 @@ pub struct TrackJob {
     plan: Plan,
     writer: RunWriter,
     maker: Box<Maker>,
+    /// The run that it goes on with.
+    resumes: Option<RunId>,
 }
 
 /// What a tracker is made from, and again when its process has died.
@@ -97,6 +102,7 @@ pub struct TrackDone {
     run: RunId,
     plugin: String,
     frames: Range<u32>,
+    resumes: Option<RunId>,
     driven: Driven,
     seconds: f64,
     error: Option<WorkbenchError>,
@@ -116,6 +122,8 @@ pub struct TrackOutcome {
     pub ends: Ends,
     /// Frames tracked.
     pub frames: Range<u32>,
+    /// The frame after the last in which a feature was seen: [`resume`] begins there.
+    pub unseen_from: u32,
     /// Whether it ended before the frames that were asked for.
     pub stopped: bool,
     /// Time it took, decoding included.
@@ -152,7 +160,7 @@ pub fn prepare(session: &mut Session, request: &TrackRequest) -> Result<TrackJob
         PointSource::Given(seeds) => (given(session, seeds)?, None),
         PointSource::Detect if plugin.offers("honami.detect/1") => {
             let present = session.project.shown_all()?;
-            (Vec::new(), Some(Detect { every: request.every, mask, present }))
+            (Vec::new(), Some(Detect { every: request.every, mask, present, since: start }))
         }
         PointSource::Detect => {
             return Err(WorkbenchError::CannotDetect { plugin: plugin.short_name.clone() });
@@ -161,7 +169,8 @@ pub fn prepare(session: &mut Session, request: &TrackRequest) -> Result<TrackJob
     if detect.is_none() {
         drive::check_seeds(&seeds, session.media.clip())?;
     }
-    begin(session, plugin, request, seeds, detect)
+    let asked = Asked::of(request, &seeds, detect.as_ref());
+    begin(session, plugin, request, seeds, detect, &asked)
 }
 
 fn begin(
@@ -170,6 +179,7 @@ fn begin(
     request: &TrackRequest,
     seeds: Vec<Seed>,
     detect: Option<Detect>,
+    asked: &Asked,
 ) -> Result<TrackJob, WorkbenchError> {
     let (host, params) = (Host::new(), request.params.clone());
     let (tracker, origin) = make(&host, plugin, &params)?;
@@ -179,7 +189,8 @@ fn begin(
         tracks: seeds.iter().map(|seed| seed.track).collect(),
         frames: request.frames.clone(),
     };
-    let writer = session.project.begin_run(&head)?;
+    let mut writer = session.project.begin_run(&head)?;
+    writer.keep_request(&asked.text())?;
     let max_threads = threads();
     Ok(TrackJob {
         media: Arc::clone(&session.media),
@@ -187,10 +198,17 @@ fn begin(
         plan: Plan { frames: request.frames.clone(), seeds, detect, max_threads },
         writer,
         maker: Box::new(maker),
+        resumes: None,
     })
 }
 
 impl TrackJob {
+    /// Short name of the tracker.
+    #[must_use]
+    pub fn plugin(&self) -> &str {
+        &self.maker.plugin.short_name
+    }
+
     /// Tracks to the end, or until a person stops it. What was tracked is kept in any case, also when the
     /// tracker fails: [`TrackDone`] then holds its error.
     ///
@@ -206,7 +224,8 @@ impl TrackJob {
         let reached = kept.first_frame;
         let (driven, error) = match driven {
             Ok(driven) => (driven, None),
-            Err(error) if reached == frames.start => {
+            // A run that goes on with another has that one's last frame first.
+            Err(error) if reached <= frames.start + u32::from(self.resumes.is_some()) => {
                 kept.writer.discard()?;
                 return Err(error);
             }
@@ -218,7 +237,8 @@ impl TrackJob {
             None => kept.writer.finish().map(drop)?,
         }
         let seconds = begun.elapsed().as_secs_f64();
-        Ok(TrackDone { run, plugin: self.maker.plugin.short_name, frames, driven, seconds, error })
+        let (plugin, resumes) = (self.maker.plugin.short_name, self.resumes);
+        Ok(TrackDone { run, plugin, frames, resumes, driven, seconds, error })
     }
 }
 
@@ -272,22 +292,27 @@ impl Kept {
 /// # Errors
 /// What the project met.
 pub fn finish(session: &mut Session, done: TrackDone) -> Result<TrackOutcome, WorkbenchError> {
-    let TrackDone { run, plugin, frames, driven, seconds, error } = done;
+    let TrackDone { run, plugin, frames, resumes, driven, seconds, error } = done;
     let info = session.project.run(run)?;
     let found = info.tracks;
     let n_tracks = found.len();
     let reached = frames.start..driven.end;
     let last = reached.end.saturating_sub(1);
-    let ends = Ends::of(&session.project.run_tracks(run)?, last);
+    let spans = session.project.run_tracks(run)?;
+    let ends = Ends::of(&spans, last);
+    let seen = spans.iter().flat_map(|(_, span)| span.frames().zip(&span.samples));
+    let seen = seen.filter(|(_, sample)| sample.status.is_seen()).map(|(frame, _)| frame + 1);
+    let unseen_from = seen.max().unwrap_or(reached.start);
     let stopped = driven.end < frames.end;
     // Half a run laid over tracks that reach further would leave a seam in each: it is kept, and not shown.
     let shown = n_tracks > 0 && !(stopped && any_reaches(&session.project, &found, driven.end)?);
     let tracks = found.to_string();
     let of_same = |before: &&ShownRun| before.tracks.iter().any(|track| found.contains(track));
     let instead_of = session.project.document().runs().iter().rev().find(of_same).map(|before| before.run);
-    let instead_of = instead_of.filter(|_| shown);
+    let instead_of = instead_of.filter(|_| shown && resumes.is_none());
     if shown {
-        session.project.commit(Transaction::show_run(run, found))?;
+        let shown = resume::shown(&session.project, run, found, resumes)?;
+        session.project.commit(shown)?;
     }
     let mut line = format!("{plugin}: {tracks}, frames {}-{last}, {ends}, {seconds:.1} s", reached.start);
     let kept = match (shown, n_tracks) {
@@ -312,6 +337,7 @@ pub fn finish(session: &mut Session, done: TrackDone) -> Result<TrackOutcome, Wo
         instead_of,
         ends,
         frames,
+        unseen_from,
         stopped,
         seconds,
         tracker_secs,

@@ -188,6 +188,10 @@ table! {
     RetrackForward "retrack-forward" ["t f"] [Review ""] "track again from the key-frame here or before, up to the next"
     RetrackBackward "retrack-backward" ["t b"] [Review ""] "track again from the key-frame here or after, down to the one before"
     RunTracker "track" ["t r"] [Review "track"] "follow features with a tracker"
+    GoOn "go-on" ["!"] [Review "go on"]
+        "go on with a run that has ended early, with its tracker as it is now; let one start again that has failed too often"
+    WaitOn "wait-on" ["W"] [Review ""] "wait for a plugin that gives no sign of life"
+    EndPlugin "end-plugin" ["I"] [Review ""] "end the process of a plugin that gives no sign of life; another goes on where it was"
     RunClusterer "cluster" ["c"] [Review "cluster"] "group the tracks by their movement"
     MoreGroups "more-groups" ["+" "="] [Review "" Dial "gain" Sketch "step"] "one group more; at the dial, more gain; while drawing, a step twice as large"
     FewerGroups "fewer-groups" ["-"] [Review "" Dial "gain" Sketch "step"] "one group fewer; at the dial, less gain; while drawing, a step half as large"

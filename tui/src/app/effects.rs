@@ -15,7 +15,7 @@ use honami_model::track::TrackId;
 use honami_workbench::WorkbenchError;
 use honami_workbench::cluster::{self, ClusterRequest};
 use honami_workbench::offer::{Granted, Wish};
-use honami_workbench::plugins::{Kind, PluginInfo};
+use honami_workbench::plugins::{Host, Kind, PluginInfo};
 use honami_workbench::retrack::{self, Way};
 use honami_workbench::session::Session;
 use honami_workbench::store::{Project, StoreError};
@@ -28,6 +28,7 @@ use super::dense::Measuring;
 use super::form::{Plugin, Task};
 use super::jobs::{Done, Running, Work};
 use super::offering::Offering;
+use super::recovery::Recovery;
 use super::reviewing::Reviewing;
 use super::seat::Seat;
 use super::state::{Job, Notice, State};
@@ -40,6 +41,8 @@ pub(super) struct World {
     session: Session,
     waker: Waker,
     running: Option<(Running, Job)>,
+    /// What the running job was asked by.
+    asked: Option<Effect>,
     /// Measures suspicion; `None` where there is no thread for it.
     reviewing: Option<Reviewing>,
     /// Measures dense motion, once that was asked for.
@@ -71,6 +74,7 @@ impl World {
             session,
             waker,
             running,
+            asked: None,
             reviewing,
             measuring,
             rows,
@@ -160,6 +164,12 @@ impl World {
 
     /// Does what the state wants; what fails becomes a line.
     pub(super) fn carry_out(&mut self, effect: Effect, now: Duration) -> Vec<Fact> {
+        let asked = match &effect {
+            Effect::Track(_) | Effect::Retrack { .. } | Effect::Cluster(_) | Effect::Resume(_) => {
+                Some(effect.clone())
+            }
+            _ => None,
+        };
         let done = match effect {
             Effect::Commit(transaction, hint) => self.commit(transaction, hint),
             Effect::Judge(found) => self.judge(found),
@@ -183,6 +193,12 @@ impl World {
                 entrants.map(|entrants| vec![Fact::Entrants(first, entrants)])
             }
             Effect::Cluster(request) => self.cluster(&request, now),
+            Effect::Resume(run) => self.resume(run, now),
+            Effect::Release(plugin) => self.release(&plugin),
+            Effect::Silent(patience) => {
+                self.running.iter().for_each(|(running, _)| running.answer(patience));
+                Ok(Vec::new())
+            }
             Effect::StopJob => {
                 self.running.iter().for_each(|(running, _)| running.stop());
                 Ok(Vec::new())
@@ -196,7 +212,17 @@ impl World {
             | Effect::Suspend
             | Effect::Leave => Ok(Vec::new()),
         };
-        done.unwrap_or_else(|error| vec![failed(&error), Fact::Refused])
+        match (done, asked) {
+            (Ok(facts), None) => facts,
+            (Ok(facts), asked) => {
+                self.asked = asked;
+                facts
+            }
+            (Err(error), asked) => {
+                let recovery = asked.map(|asked| Fact::Recovery(Recovery::of_failure(&asked, &error)));
+                [failed(&error), Fact::Refused].into_iter().chain(recovery).collect()
+            }
+        }
     }
 
     fn commit(&mut self, transaction: Transaction, hint: Hint) -> Facts {
@@ -356,6 +382,26 @@ impl World {
         self.start(work, &request.plugin, true, now)
     }
 
+    /// Goes on with a run that has ended early, or with the newest.
+    fn resume(&mut self, run: Option<RunId>, now: Duration) -> Facts {
+        let run = match run {
+            Some(run) => run,
+            None => track::unfinished(&self.session.project)?
+                .ok_or(WorkbenchError::NothingToResume { run: None })?,
+        };
+        let job = track::resume(&mut self.session, run)?;
+        let plugin = job.plugin().to_owned();
+        self.start(Work::Track(job), &plugin, true, now)
+    }
+
+    /// Lets a plugin start again that has failed too often.
+    fn release(&mut self, id: &str) -> Facts {
+        if let Some(plugin) = self.session.registry.plugins().iter().find(|plugin| plugin.id == id) {
+            Host::new().retry(plugin)?;
+        }
+        Ok(Vec::new())
+    }
+
     fn retrack(
         &mut self,
         (track, way, frame): (TrackId, Way, u32),
@@ -404,7 +450,7 @@ impl World {
 
     fn start(&mut self, work: Work, plugin: &str, keeps_frames: bool, since: Duration) -> Facts {
         let (plugin, what) = (plugin.to_owned(), "starting".to_owned());
-        let job = Job { plugin, what, done: (0, 0), since, keeps_frames, is_stopping: false };
+        let job = Job { plugin, what, done: (0, 0), since, keeps_frames, is_stopping: false, quiet: None };
         match Running::start(work, self.waker.clone()) {
             Ok(running) => {
                 self.running = Some((running, job.clone()));
@@ -434,16 +480,19 @@ impl World {
             (!prints.is_empty()).then_some(Fact::Printed(prints)).into_iter().collect();
         if !is_finished {
             let step = running.step();
-            let done = (step.done, step.total);
-            if done != job.done || step.what != job.what {
-                job.done = done;
-                job.what = step.what;
+            let (done, quiet) = ((step.done, step.total), running.quiet());
+            if done != job.done || step.what != job.what || quiet != job.quiet {
+                (job.done, job.what, job.quiet) = (done, step.what, quiet);
                 facts.push(Fact::Job(Some(job.clone())));
             }
             return facts;
         }
         facts.push(Fact::Job(None));
-        facts.extend(self.finish().unwrap_or_else(|error| vec![failed(&error)]));
+        let asked = self.asked.take();
+        facts.extend(self.finish().unwrap_or_else(|error| {
+            let recovery = asked.map(|asked| Fact::Recovery(Recovery::of_failure(&asked, &error)));
+            [failed(&error)].into_iter().chain(recovery).collect()
+        }));
         facts
     }
 
@@ -451,9 +500,11 @@ impl World {
     fn finish(&mut self) -> Facts {
         let Some((running, job)) = self.running.take() else { return Ok(Vec::new()) };
         let before = self.session.project.revision();
+        let mut recovery = None;
         let (mut text, is_error) = match running.join() {
             Some(Done::Track(done)) => {
                 let outcome = track::finish(&mut self.session, (*done)?)?;
+                recovery = Recovery::of_run(&outcome);
                 (outcome.line, outcome.error.is_some())
             }
             Some(Done::Retrack(done)) => match *done {
@@ -477,7 +528,9 @@ impl World {
             text.push_str(" (u undoes)");
         }
         let notice = Notice { text, is_error };
-        self.shown_and(Fact::Said(notice))
+        let mut facts = self.shown_and(Fact::Said(notice))?;
+        facts.push(Fact::Recovery(recovery));
+        Ok(facts)
     }
 
     /// Stops what runs and keeps what it has found, and where the user is; says so on standard error, for it may

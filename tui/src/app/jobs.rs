@@ -9,11 +9,12 @@ use std::time::{Duration, Instant};
 
 use honami_workbench::WorkbenchError;
 use honami_workbench::cluster::{ClusterDone, ClusterJob};
-use honami_workbench::progress::{Flow, Level, Progress};
+use honami_workbench::progress::{Flow, Level, Patience, Progress, Silence};
 use honami_workbench::retrack::{RetrackJob, Retracked};
 use honami_workbench::track::{TrackDone, TrackJob};
 
 use super::prints::{N_KEPT, Print};
+use super::state::Quiet;
 use crate::term::signals::Waker;
 
 /// Progress wakes the screen this often at most.
@@ -54,6 +55,7 @@ struct Shared {
     step: Mutex<(Step, Option<Instant>)>,
     /// What plugins have printed and nobody has asked for yet.
     prints: Mutex<VecDeque<Print>>,
+    watch: Mutex<Watch>,
     stop: AtomicBool,
     ended: Arc<AtomicBool>,
     waker: Waker,
@@ -70,6 +72,10 @@ impl Progress for Shared {
         if self.stop.load(Ordering::Relaxed) { Flow::Stop } else { Flow::Continue }
     }
 
+    fn silent(&self, plugin: &str, at: &str, silence: Option<Silence>) -> Patience {
+        self.watch.lock().unwrap_or_else(PoisonError::into_inner).look(plugin, at, silence)
+    }
+
     fn hear(&self, plugin: &str, level: Level, line: &str) {
         let t_s = self.began.elapsed().as_secs_f64();
         let print = Print { t_s, plugin: plugin.to_owned(), level, text: line.to_owned() };
@@ -77,6 +83,38 @@ impl Progress for Shared {
         prints.push_back(print);
         if prints.len() > N_KEPT {
             prints.pop_front();
+        }
+    }
+}
+
+/// A silent plugin, and what its user has answered.
+#[derive(Default)]
+struct Watch {
+    quiet: Option<Quiet>,
+    /// It is not asked again before so long a silence.
+    waits: Duration,
+    is_to_end: bool,
+}
+
+impl Watch {
+    /// Somebody is there to be asked: nothing is ended unless they say so.
+    fn look(&mut self, plugin: &str, at: &str, silence: Option<Silence>) -> Patience {
+        let Some(Silence { since, is_too_long }) = silence else {
+            *self = Self::default();
+            return Patience::Usual;
+        };
+        let is_asked = is_too_long && since >= self.waits;
+        let (plugin, at) = (plugin.to_owned(), at.to_owned());
+        self.quiet = Some(Quiet { plugin, seconds: since.as_secs(), at, is_asked });
+        if std::mem::take(&mut self.is_to_end) { Patience::End } else { Patience::Wait }
+    }
+
+    fn answer(&mut self, patience: Patience) {
+        let Some(quiet) = &self.quiet else { return };
+        match patience {
+            Patience::End => self.is_to_end = true,
+            // Twice as long, and then the question comes again.
+            _ => self.waits = 2 * Duration::from_secs(quiet.seconds.max(1)),
         }
     }
 }
@@ -98,6 +136,7 @@ impl Running {
             began: Instant::now(),
             step: Mutex::default(),
             prints: Mutex::default(),
+            watch: Mutex::default(),
             stop: AtomicBool::new(false),
             ended: Arc::default(),
             waker,
@@ -118,6 +157,16 @@ impl Running {
 
     pub(super) fn step(&self) -> Step {
         self.shared.step.lock().unwrap_or_else(PoisonError::into_inner).0.clone()
+    }
+
+    /// The plugin of it that gives no sign of life.
+    pub(super) fn quiet(&self) -> Option<Quiet> {
+        self.shared.watch.lock().unwrap_or_else(PoisonError::into_inner).quiet.clone()
+    }
+
+    /// What its user says of that one.
+    pub(super) fn answer(&self, patience: Patience) {
+        self.shared.watch.lock().unwrap_or_else(PoisonError::into_inner).answer(patience);
     }
 
     /// What plugins have printed since it was asked last.

@@ -24,6 +24,7 @@ use super::plotted::Plotted;
 use super::prints::Prints;
 use super::queue::{Looked, Opened};
 use super::ranging::Ranging;
+use super::recovery::Recovery;
 use super::sketching::Sketching;
 use super::tracks::{Groups, TrackRow};
 use super::versus::Versus;
@@ -116,6 +117,8 @@ pub struct State {
     pub notice: Option<Notice>,
     /// The job that is running.
     pub job: Option<Job>,
+    /// What can be done about work that has ended early.
+    pub recovery: Option<Recovery>,
     /// Who holds the project, where it can only be read.
     pub read_only: Option<String>,
     /// What is known of the link to the terminal.
@@ -231,6 +234,21 @@ pub struct Job {
     pub keeps_frames: bool,
     /// Whether it has been told to stop.
     pub is_stopping: bool,
+    /// A plugin of it that gives no sign of life.
+    pub quiet: Option<Quiet>,
+}
+
+/// A plugin that gives no sign of life.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Quiet {
+    /// Its short name.
+    pub plugin: String,
+    /// For how long, seconds.
+    pub seconds: u64,
+    /// What it last said that it was at.
+    pub at: String,
+    /// Whether it is asked what is to become of it.
+    pub is_asked: bool,
 }
 
 /// What is known of the terminal.
@@ -308,6 +326,7 @@ impl State {
             size,
             notice: None,
             job: None,
+            recovery: None,
             read_only: None,
             link: Link::default(),
             now: Duration::ZERO,

@@ -13,6 +13,7 @@ mod offers;
 mod pick;
 mod queue;
 mod ranges;
+mod recovery;
 mod sketch;
 mod time;
 mod tracks;
@@ -28,6 +29,7 @@ use honami_model::track::TrackId;
 use honami_workbench::cluster::ClusterRequest;
 use honami_workbench::correct::Step;
 use honami_workbench::offer::Wish;
+use honami_workbench::progress::Patience;
 use honami_workbench::retrack;
 use honami_workbench::track::TrackRequest;
 
@@ -118,6 +120,12 @@ pub enum Effect {
     Entrants(Option<RunId>),
     /// Run a clusterer.
     Cluster(ClusterRequest),
+    /// Go on with this run, or with the newest that has ended early.
+    Resume(Option<RunId>),
+    /// Let the plugin of this id start again.
+    Release(String),
+    /// Wait for the silent plugin of the running job, or end its process.
+    Silent(Patience),
     /// Stop the running job; it keeps what it has.
     StopJob,
     /// Follow a lead among files: to another project or clip, or to what there is in a folder.

@@ -2,11 +2,13 @@
 
 use std::path::Path;
 
+use honami_model::document::RunId;
+use honami_workbench::WorkbenchError;
 use honami_workbench::compare::read_points;
 use honami_workbench::plugins::{Kind, Registry, Values};
 use honami_workbench::progress::Progress;
 use honami_workbench::session::Session;
-use honami_workbench::track::{self, Area, PointSource, TrackOutcome, TrackRequest};
+use honami_workbench::track::{self, Area, PointSource, TrackJob, TrackOutcome, TrackRequest};
 use serde_json::json;
 
 use super::args::{Common, Region, Track};
@@ -18,6 +20,13 @@ pub(super) const DEFAULT: &str = "anchored";
 /// Tracks, and shows what was found.
 pub(super) fn track(args: &Track, common: &Common) -> anyhow::Result<Answer> {
     let mut session = session(&args.project, common)?;
+    if let Some(run) = args.resume {
+        let run = run.map(RunId).map_or_else(|| track::unfinished(&session.project), |run| Ok(Some(run)))?;
+        let run = run.ok_or(WorkbenchError::NothingToResume { run })?;
+        let bar = report::Bar::with(common);
+        let job = track::resume(&mut session, run)?;
+        return Ok(describe(&end(&mut session, job, &bar)?, &args.project));
+    }
     let detect = args.detect.as_deref().filter(|name| !name.is_empty());
     // `--detect NAME` alone means that this tracker tracks, too.
     let plugin = args.plugin.with.as_deref().or(detect).unwrap_or(DEFAULT).to_owned();
@@ -64,10 +73,19 @@ pub(super) fn run(
     progress: &dyn Progress,
 ) -> anyhow::Result<TrackOutcome> {
     let job = track::prepare(session, request)?;
+    end(session, job, progress)
+}
+
+/// Runs and finishes.
+fn end(session: &mut Session, job: TrackJob, progress: &dyn Progress) -> anyhow::Result<TrackOutcome> {
     let done = job.run(progress)?;
     let outcome = track::finish(session, done)?;
     match outcome.error {
-        Some(_) => anyhow::bail!("{}", outcome.line),
+        Some(_) => anyhow::bail!(
+            "{}; `honami track {} --resume` goes on from there",
+            outcome.line,
+            session.project.path().display()
+        ),
         None => Ok(outcome),
     }
 }

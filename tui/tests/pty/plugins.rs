@@ -6,6 +6,7 @@ use std::process::Command;
 
 use portable_pty::CommandBuilder;
 
+use super::work::said;
 use super::{Terminal, folder, write_clip};
 
 /// A tracker that leaves its points where they are, with one fault, and the program that plugins run in; `None` without
@@ -61,4 +62,49 @@ fn what_a_plugin_prints_is_in_its_panel_wherever_it_works() {
         assert!(terminal.wait_for_end());
         terminal.assert_restored();
     }
+}
+
+#[test]
+fn a_run_whose_plugin_dies_again_and_again_goes_on_with_the_rebuilt_one_at_a_key() {
+    let folder = folder();
+    let Some(library) = bad(folder.path(), "WITHERS") else { return };
+    let mut terminal = open(folder.path(), &library, "isolated");
+    terminal.press("\r");
+    // Which plugin, where, on which signal; and what can be done.
+    terminal.wait_for("what has become of it", |s| {
+        let screen = s.contents().split_whitespace().collect::<Vec<_>>().join(" ");
+        screen.contains("bad failed at frame 4, track 0 up to there kept")
+            && screen.contains("died of SIGSEGV")
+    });
+    terminal.wait_for_text("! lets bad start again and goes on from frame 2");
+    bad(folder.path(), "NONE");
+    terminal.press("!");
+    terminal.wait_for_text("bad: track 0, frames 1-11");
+    // One track through all frames.
+    terminal.wait_for("the whole track", |s| {
+        let time = s.contents().lines().find(|line| line.starts_with("0◆")).map(str::to_owned);
+        time.is_some_and(|time| !time.contains('░') && !time.contains('╌'))
+    });
+    terminal.press("!");
+    terminal.wait_for_text("no run has ended early");
+    terminal.press("q");
+    assert!(terminal.wait_for_end());
+    let log = said(folder.path(), "log sway.honami");
+    assert!(log.contains("started again at frame 2: it ended in run 1"), "{log}");
+}
+
+#[test]
+fn a_plugin_that_hangs_is_named_and_a_stopped_run_goes_on() {
+    let folder = folder();
+    let Some(library) = bad(folder.path(), "SLEEPS") else { return };
+    let mut terminal = open(folder.path(), &library, "isolated");
+    terminal.press("\r");
+    terminal.wait_for_text("bad, frame 2/12: no sign of life for");
+    terminal.press("\x1b");
+    terminal.wait_for_text("! goes on from frame 2");
+    bad(folder.path(), "NONE");
+    terminal.press("!");
+    terminal.wait_for_text("bad: track 0, frames 1-11");
+    terminal.press("q");
+    assert!(terminal.wait_for_end());
 }

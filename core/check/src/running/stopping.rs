@@ -118,7 +118,7 @@ fn progress(subject: &Subject, task: &Task) -> Result<Verdict, Fault> {
             heard.lock().unwrap_or_else(PoisonError::into_inner).hear(done);
             Flow::Continue
         };
-        let is_last = work.step(&CallContext { progress: &listen, log: &|_, _| {} })?;
+        let is_last = work.step(&CallContext { progress: &listen, ..CallContext::silent() })?;
         let mut heard = heard.into_inner().unwrap_or_else(PoisonError::into_inner);
         heard.end();
         if let Some((from, to)) = heard.fell {
@@ -169,7 +169,7 @@ fn told_to_stop(work: &mut Work<'_>) -> Result<(bool, Took), Fault> {
             Flow::Stop
         };
         let begun = Since::now();
-        let done = work.step(&CallContext { progress: &listen, log: &|_, _| {} });
+        let done = work.step(&CallContext { progress: &listen, ..CallContext::silent() });
         match (told.into_inner().unwrap_or_else(PoisonError::into_inner), done) {
             (Some(told), Err(HostError::Cancelled { .. })) => return Ok((true, told.took())),
             (Some(_), Ok(_)) => return Err(Fault("it was told to stop, and gave a result".into())),

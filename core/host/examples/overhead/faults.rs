@@ -2,7 +2,8 @@
 
 use crate::{Outcome, begun_with, spread};
 use honami_host::{
-    CallContext, Flow, FrameView, Host, HostError, Hosting, Kind, PluginInfo, Registry, SearchPath, shut_in,
+    CallContext, Flow, FrameView, Host, HostError, Hosting, Kind, Patience, PluginInfo, Registry, SearchPath,
+    Silence, shut_in,
 };
 use honami_model::picture::Gray;
 use serde_json::{Value, json};
@@ -43,7 +44,7 @@ fn bad(folder: &Path, fault: &str) -> Outcome<PluginInfo> {
     Ok(Registry::scan_path(&path).find(Kind::Tracker, "bad")?.clone())
 }
 
-/// Milliseconds from handing over frame 2 to hearing these words, as an error or meanwhile.
+/// Milliseconds from handing over frame 2 to hearing these words as an error, or that there is no sign of life.
 fn until_told(info: &PluginInfo, words: &str) -> Outcome<f64> {
     let host = Host::new().hosting(Hosting::Isolated).without_quarantine();
     let mut tracker = begun_with(&host, info, &[], [64, 48])?;
@@ -51,14 +52,13 @@ fn until_told(info: &PluginInfo, words: &str) -> Outcome<f64> {
     let gray = Gray { data: &pixels, width: 64, height: 48, stride: 64 };
     let frame = FrameView { gray, chroma: None, range: None, index: 2, time_s: 2.0 };
     let (start, heard) = (Instant::now(), OnceLock::new());
-    let hear = |_: f64, said: &str| match said.contains(words) {
-        true => {
-            heard.get_or_init(|| start.elapsed());
-            Flow::Stop
-        }
-        false => Flow::Continue,
+    let silent = |silence: Option<Silence>| {
+        silence.inspect(|_| drop(heard.get_or_init(|| start.elapsed())));
+        Patience::Usual
     };
-    let told = tracker.push(&frame, &CallContext { progress: &hear, ..CallContext::silent() });
+    let stop = |_: f64, _: &str| if heard.get().is_some() { Flow::Stop } else { Flow::Continue };
+    let cx = CallContext { progress: &stop, silent: &silent, ..CallContext::silent() };
+    let told = tracker.push(&frame, &cx);
     let took = start.elapsed();
     match (heard.get(), told) {
         (Some(took), Err(HostError::Cancelled { .. })) => Ok(took.as_secs_f64() * 1e3),

@@ -2,7 +2,7 @@
 
 use super::Isolated;
 use super::process::Ended;
-use crate::context::{CallContext, Flow};
+use crate::context::{CallContext, Flow, Patience, Silence};
 use crate::wire::memory::Output;
 use rustix::process::Signal;
 use std::sync::atomic::Ordering::Relaxed;
@@ -48,17 +48,19 @@ impl Isolated {
         let silent = watch.silence(&self.output);
         let fraction = if watch.is_alive { self.output.fraction() } else { -1.0 };
         let fraction = if fraction.is_finite() { fraction } else { -1.0 };
-        let words = if silent < self.limits.tell {
-            self.at.clone()
-        } else {
-            format!("{} (no sign of life for {:.0} s)", self.at, silent.as_secs_f64()).trim_start().to_owned()
-        };
-        if (cx.progress)(fraction, &words) == Flow::Stop && watch.asked.is_none() {
+        if (cx.progress)(fraction, &self.at) == Flow::Stop && watch.asked.is_none() {
             self.output.cancel().store(1, Relaxed);
             watch.asked = Some(Instant::now());
             self.is_asked_to_stop = true;
         }
-        let is_late = watch.asked.map_or(silent > watch.at_most, |asked| asked.elapsed() > self.limits.stop);
+        let is_too_long = silent > watch.at_most;
+        let silence = (silent >= self.limits.tell).then_some(Silence { since: silent, is_too_long });
+        let is_to_end = match (cx.silent)(silence) {
+            Patience::Usual => is_too_long,
+            Patience::Wait => false,
+            Patience::End => silence.is_some(),
+        };
+        let is_late = watch.asked.map_or(is_to_end, |asked| asked.elapsed() > self.limits.stop);
         if !is_late || std::env::var_os("HONAMI_NO_WATCHDOG").is_some() || self.process.is_traced() {
             return None;
         }

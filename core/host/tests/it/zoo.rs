@@ -247,6 +247,7 @@ fn a_call_tells_its_progress_and_stops_when_told() {
             if heard.fetch_add(1, Relaxed) == 1 { Flow::Stop } else { Flow::Continue }
         },
         log: &|level, line| lines.lock().unwrap().push((level, line.to_owned())),
+        ..CallContext::silent()
     };
     let (mut tracker, _) = host().tracker(&info, &Values::default(), &cx).unwrap();
     tracker.begin(stream(), &cx).unwrap();

@@ -67,7 +67,7 @@ fn what_is_no_project_is_told_apart() {
         (other, "not a honami project"),
         (bench.folder.path().to_owned(), "not a honami project"),
         (bench.folder.path().join("gone.honami"), "cannot open the project"),
-        (newer, "schema 9, this honami knows up to 3; update honami"),
+        (newer, "schema 9, this honami knows up to 5; update honami"),
         (damaged, "damaged"),
         (rootless, "damaged"),
     ];
@@ -359,7 +359,10 @@ fn a_seat_is_kept_without_an_edit_and_a_project_of_before_gets_one() {
     drop(bench.create());
     // As the first schema was.
     let conn = Connection::open(bench.path()).unwrap();
-    conn.execute_batch("DROP TABLE seam; DROP TABLE seat; PRAGMA user_version = 1").unwrap();
+    conn.execute_batch(
+        "DROP TABLE seam; DROP TABLE seat; ALTER TABLE run DROP COLUMN request; PRAGMA user_version = 1",
+    )
+    .unwrap();
     drop(conn);
     let mut project = Project::open(&bench.path(), Access::Write).unwrap();
     assert_eq!(project.seat().unwrap(), None);

@@ -32,6 +32,16 @@ impl Project {
         row.unwrap_or(Err(StoreError::NoSuchRun(run)))
     }
 
+    /// What was kept of what a run was asked for; `None` where nothing was.
+    ///
+    /// # Errors
+    /// [`StoreError::NoSuchRun`], or what SQLite met.
+    pub fn request_of(&self, run: RunId) -> Result<Option<String>, StoreError> {
+        let mut statement = self.conn.prepare_cached("SELECT request FROM run WHERE id = ?1")?;
+        let request = statement.query_row([run.0], |row| row.get(0)).optional()?;
+        request.ok_or(StoreError::NoSuchRun(run))
+    }
+
     /// The spans of one track in one run, in order; a working or interrupted run gives what is written.
     ///
     /// # Errors

@@ -47,3 +47,26 @@ fn what_a_plugin_prints_is_told_once_and_bounded() {
     assert_eq!((prints.len(), texts), (N_KEPT, vec!["1", "1000"]), "the oldest goes");
     assert_eq!(running.prints(), []);
 }
+
+#[test]
+fn a_silent_plugin_is_asked_about_once_it_is_too_long_and_ended_when_its_user_says_so() {
+    let silence = |since, is_too_long| Some(Silence { since: Duration::from_secs(since), is_too_long });
+    let mut watch = Watch::default();
+    // Seconds of silence and whether that is too long, what the user then answers, whether they are asked before.
+    let steps = [
+        (3, false, None, false, Patience::Wait),
+        (11, true, None, true, Patience::Wait),
+        (12, true, Some(Patience::Wait), true, Patience::Wait),
+        (23, true, None, false, Patience::Wait),
+        (24, true, Some(Patience::End), true, Patience::Wait),
+        (25, true, None, true, Patience::End),
+        (26, true, None, true, Patience::Wait),
+    ];
+    for (since, is_too_long, answer, is_asked, wanted) in steps {
+        assert_eq!(watch.look("mine", "", silence(since, is_too_long)), wanted, "{since} s");
+        assert_eq!(watch.quiet.as_ref().map(|quiet| quiet.is_asked), Some(is_asked), "{since} s");
+        answer.into_iter().for_each(|answer| watch.answer(answer));
+    }
+    assert_eq!(watch.look("mine", "", None), Patience::Usual);
+    assert_eq!((watch.quiet, watch.waits), (None, Duration::ZERO));
+}

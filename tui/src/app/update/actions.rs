@@ -5,11 +5,12 @@ use std::path::PathBuf;
 
 use super::{
     Action, Effect, Mode, State, choose, complain, edit, history, look, motion, moving, open_menu, pick,
-    queue, ranges, say, sketch, time, tracks, versus,
+    queue, ranges, recovery, say, sketch, time, tracks, versus,
 };
 use honami_model::judgement::Verdict;
 use honami_model::track::{Status, TrackSet};
 use honami_workbench::cluster::ClusterRequest;
+use honami_workbench::progress::Patience;
 use honami_workbench::retrack;
 use honami_workbench::track::{Area, PointSource, TrackRequest};
 
@@ -173,7 +174,7 @@ fn pan(state: &mut State, dx: f32, dy: f32) -> Vec<Effect> {
     Vec::new()
 }
 
-/// The actions that correct.
+/// The actions that correct, and what is done about plugins that fail.
 fn correct(state: &mut State, action: Action) -> Vec<Effect> {
     match action {
         Action::MoveSample => return moving::begin(state),
@@ -198,6 +199,9 @@ fn correct(state: &mut State, action: Action) -> Vec<Effect> {
         Action::TakeA => return versus::take(state, 0),
         Action::TakeB => return versus::take(state, 1),
         Action::NameTrack => tracks::begin_name(state),
+        Action::GoOn => return recovery::go_on(state),
+        Action::WaitOn => return recovery::answer(state, Patience::Wait),
+        Action::EndPlugin => return recovery::answer(state, Patience::End),
         other => debug_assert!(false, "{other:?} is done nowhere"),
     }
     Vec::new()

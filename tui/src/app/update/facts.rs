@@ -15,6 +15,7 @@ use crate::app::files::Listing;
 use crate::app::menu::Menu;
 use crate::app::plotted::Subject;
 use crate::app::prints::Print;
+use crate::app::recovery::Recovery;
 use crate::app::state::{Display, Job, Link, Notice};
 use crate::app::tracks::{Groups, TrackRow};
 use honami_workbench::plots::Plots;
@@ -45,6 +46,8 @@ pub enum Fact {
     Job(Option<Job>),
     /// Plugins have printed or logged this.
     Printed(Vec<Print>),
+    /// This can be done about what has ended early.
+    Recovery(Option<Recovery>),
     /// Something worth a line.
     Said(Notice),
     /// What is known of the link.
@@ -113,14 +116,7 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
             let missed = state.missed.take().filter(|missed| state.row(*missed).is_some());
             time::select(state, missed.unwrap_or(track));
         }
-        Fact::Job(job) => {
-            if let (Some(old), None) = (&state.job, &job) {
-                let plugin = old.plugin.clone();
-                logged::ended(state, plugin);
-            }
-            let was_stopping = state.job.as_ref().is_some_and(|old| old.is_stopping);
-            state.job = job.map(|job| Job { is_stopping: job.is_stopping || was_stopping, ..job });
-        }
+        Fact::Job(job) => on_job(state, job),
         Fact::Said(notice) => tell(state, notice),
         Fact::Link(link) => state.link = link,
         Fact::Dropped(dropped) => state.dropped = dropped.filter(|_| state.play.is_some()),
@@ -141,6 +137,7 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
             state.history.grow(new, head);
             queue::on_history(state, from, has_grown);
         }
+        Fact::Recovery(recovery) => state.recovery = recovery,
         Fact::Printed(lines) => state.prints.add(lines),
         Fact::Refused => {
             if let Some(before) = state.before.take() {
@@ -149,6 +146,19 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
         }
         Fact::Files(listing) => state.mode = Mode::Menu(Box::new(Menu::of_files(listing))),
     }
+}
+
+/// What one job has left to be done is gone with the next.
+fn on_job(state: &mut State, job: Option<Job>) {
+    if let (Some(old), None) = (&state.job, &job) {
+        let plugin = old.plugin.clone();
+        logged::ended(state, plugin);
+    }
+    if state.job.is_none() && job.is_some() {
+        state.recovery = None;
+    }
+    let was_stopping = state.job.as_ref().is_some_and(|old| old.is_stopping);
+    state.job = job.map(|job| Job { is_stopping: job.is_stopping || was_stopping, ..job });
 }
 
 fn on_tracks(state: &mut State, rows: Vec<TrackRow>) {

@@ -36,7 +36,15 @@ pub(super) fn start(words: &str) -> State {
                 let (what, plugin) = ("frame".to_owned(), "klt".to_owned());
                 let since = Duration::ZERO;
                 let done = (10, 100);
-                state.job = Some(Job { plugin, what, done, since, keeps_frames: true, is_stopping: false });
+                state.job = Some(Job {
+                    plugin,
+                    what,
+                    done,
+                    since,
+                    keeps_frames: true,
+                    is_stopping: false,
+                    quiet: None,
+                });
             }
             "bare" => state.plugins.clear(),
             "versus" => fixture::versus(&mut state),

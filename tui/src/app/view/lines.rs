@@ -17,8 +17,9 @@ use crate::app::clock::rate_words;
 use crate::app::correcting::{Moving, Tool, nudge_px};
 use crate::app::keymap::shown;
 use crate::app::layout::{Lens, bar, column_of, frame_at};
+use crate::app::recovery::Recovery;
 use crate::app::sketching::Sketching;
-use crate::app::state::{Job, Mode, State};
+use crate::app::state::{Job, Mode, Quiet, State};
 use crate::app::tracks::TrackRow;
 use crate::app::versus::{LETTERS, Sides, Versus};
 use crate::term::encode::Frame;
@@ -442,7 +443,7 @@ fn hint_line(state: &State, room: usize) -> Line<'static> {
         .collect();
     // What is open can be kept, and what is marked worked on: that must be seen on the narrowest screen.
     hints.sort_by_key(|(_, word)| match word.as_str() {
-        "keep" => 0,
+        "keep" | "go on" => 0,
         "model" if context == Context::Move => 1,
         "back" if context == Context::Move => 2,
         "end" | "lost" | "occluded" | "take away" | "average" => 1,
@@ -492,6 +493,7 @@ fn is_useful(state: &State, action: Action) -> bool {
         Action::RunTracker => state.tracks.is_empty() && state.job.is_none() && state.read_only.is_none(),
         Action::RetrackBoth => state.selected.is_some() && state.job.is_none() && state.read_only.is_none(),
         Action::RunClusterer => state.tracks.len() > 1 && state.job.is_none() && state.read_only.is_none(),
+        Action::GoOn => state.recovery.is_some() && state.job.is_none() && state.read_only.is_none(),
         Action::Range => state.range.is_some_and(|range| range.to.is_none()),
         Action::MarkLost | Action::MarkOccluded | Action::DeleteRange => state.range.is_some(),
         Action::Average => state.picked.len() > 1,
@@ -508,7 +510,23 @@ pub(super) fn notices(state: &State, area: Rect, frame: &mut Frame) {
         let rows = wrapped(&notice.text, usize::from(area.width.saturating_sub(2)));
         lines.extend(rows.into_iter().map(|row| Line::styled(row, style)));
     }
-    lines.extend(state.job.as_ref().map(|job| job_line(job, state, area.width)));
+    lines.extend(
+        state
+            .recovery
+            .as_ref()
+            .filter(|_| state.notice.is_some())
+            .map(|recovery| recovery_line(recovery, state)),
+    );
+    if let Some(job) = &state.job {
+        match job.quiet.as_ref().filter(|_| !job.is_stopping) {
+            Some(quiet) => {
+                let rows =
+                    wrapped(&quiet_words(job, quiet, state), usize::from(area.width.saturating_sub(2)));
+                lines.extend(rows.into_iter().map(|row| Line::styled(row, style::ERROR)));
+            }
+            None => lines.push(job_line(job, state, area.width)),
+        }
+    }
     let n = (lines.len() as u16).min(area.height);
     let rows = Rect { y: area.bottom() - n, height: n, ..area };
     fill(frame, rows, style::PANEL);
@@ -541,6 +559,33 @@ pub(super) fn wrapped(text: &str, room: usize) -> Vec<String> {
         }
     }
     rows
+}
+
+/// `! goes on from frame 212   P o what it printed`.
+fn recovery_line(recovery: &Recovery, state: &State) -> Line<'static> {
+    let key = |action, words: &str| {
+        let key = state.keys.keys_of(Context::Review, action).unwrap_or_default();
+        [Span::styled(key, style::ACCENT), Span::raw(format!(" {words}   "))]
+    };
+    let prints =
+        if state.prints.n() > 0 { key(Action::PanelPrints, "what it printed").to_vec() } else { Vec::new() };
+    Line::from([key(Action::GoOn, &recovery.words).to_vec(), prints].concat())
+}
+
+/// `my-flow, frame 212/378: no sign of life for 12 s   W waits   I ends it   Esc stops`.
+fn quiet_words(job: &Job, quiet: &Quiet, state: &State) -> String {
+    let Quiet { plugin, seconds, at, is_asked } = quiet;
+    let (done, total) = job.done;
+    let mut words = format!("{plugin}, {} {done}/{total}: no sign of life for {seconds} s", job.what);
+    if !at.is_empty() && !is_asked {
+        words.push_str(&format!(" (at: {at})"));
+    }
+    let answers = [(Action::WaitOn, "waits"), (Action::EndPlugin, "ends it")];
+    for (action, word) in answers.into_iter().filter(|_| *is_asked) {
+        let key = state.keys.keys_of(Context::Review, action).unwrap_or_default();
+        words.push_str(&format!(", {key} {word}"));
+    }
+    words + ", Esc stops"
 }
 
 fn job_line(job: &Job, state: &State, width: u16) -> Line<'static> {

@@ -89,17 +89,26 @@ fn compare(name: &str, frame: &Frame) {
     assert!(seen == wanted, "{} differs; this was drawn (REGENERATE=1 accepts it):\n{seen}", file.display());
 }
 
+/// A run that is half-way.
+fn job(state: &mut State) {
+    let (plugin, what) = ("klt".to_owned(), "frame".to_owned());
+    let since = std::time::Duration::ZERO;
+    state.now = std::time::Duration::from_secs(4);
+    state.job = Some(Job {
+        plugin,
+        what,
+        done: (50, 100),
+        since,
+        keeps_frames: true,
+        is_stopping: false,
+        quiet: None,
+    });
+}
+
 #[test]
 fn screens() {
     let small = (80, 24);
     let large = (120, 40);
-    let job = |state: &mut State| {
-        let (plugin, what) = ("klt".to_owned(), "frame".to_owned());
-        let since = std::time::Duration::ZERO;
-        state.now = std::time::Duration::from_secs(4);
-        state.job =
-            Some(Job { plugin, what, done: (50, 100), since, keeps_frames: true, is_stopping: false });
-    };
     check("review_80x24", small, "", |_| {});
     check("review_120x40", large, "", |_| {});
     check("column_120x40", large, "j Tab", |_| {});

@@ -1,0 +1,149 @@
+//! Going on with a run that has ended early: a new run begins where it saw the features last.
+
+use std::sync::Arc;
+
+use honami_host::{Kind, Values};
+use honami_model::document::{RunId, ShownRun};
+use honami_model::edit::{Edit, Transaction};
+use honami_model::track::{TrackId, TrackSet};
+use honami_store::{Project, RunInfo, RunState, Seam, StoreError};
+use serde::{Deserialize, Serialize};
+
+use super::{Area, PointSource, TrackJob, TrackRequest, begin, mask};
+use crate::drive::{Detect, Seed};
+use crate::error::WorkbenchError;
+use crate::session::Session;
+
+/// What a run was asked for beyond what its head says; kept with it, so that it can be gone on with.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub(super) struct Asked {
+    /// Frame, track, and where.
+    seeds: Vec<(u32, u32, f32, f32)>,
+    /// New features are looked for, from this frame on.
+    found_from: Option<u32>,
+    every: Option<u32>,
+    area: Area,
+    /// The run that it goes on with.
+    resumes: Option<u32>,
+}
+
+impl Asked {
+    /// Of a request with the features that came of it.
+    pub(super) fn of(request: &TrackRequest, seeds: &[Seed], detect: Option<&Detect>) -> Self {
+        Self {
+            seeds: seeds.iter().map(|seed| (seed.frame, seed.track.0, seed.x, seed.y)).collect(),
+            found_from: detect.map(|detect| detect.since),
+            every: request.every,
+            area: request.area.clone(),
+            resumes: None,
+        }
+    }
+
+    pub(super) fn text(&self) -> String {
+        // It has no maps, so nothing of it cannot be written.
+        serde_json::to_string(self).unwrap_or_default()
+    }
+
+    /// What a run of this project was asked for; `None` where that was not kept: it was imported, or corrects a track.
+    fn read(project: &Project, run: RunId) -> Result<Option<Self>, WorkbenchError> {
+        Ok(project.request_of(run)?.and_then(|text| serde_json::from_str(&text).ok()))
+    }
+
+    fn seeds(&self) -> impl Iterator<Item = Seed> {
+        self.seeds.iter().map(|&(frame, track, x, y)| Seed { frame, track: TrackId(track), x, y })
+    }
+}
+
+/// The newest run that has ended early and that no other goes on with; `None` where all are through.
+///
+/// # Errors
+/// What the project met.
+pub fn unfinished(project: &Project) -> Result<Option<RunId>, WorkbenchError> {
+    let mut taken_up = Vec::new();
+    for run in project.runs()?.iter().rev() {
+        let Some(asked) = Asked::read(project, run.id)? else { continue };
+        if is_early(run) && !taken_up.contains(&run.id.0) {
+            return Ok(Some(run.id));
+        }
+        taken_up.extend(asked.resumes);
+    }
+    Ok(None)
+}
+
+fn is_early(run: &RunInfo) -> bool {
+    matches!(run.state, RunState::Stopped { .. } | RunState::Interrupted)
+}
+
+/// Loads the tracker of a run as it is now, and begins a run that goes on with it: from the last frame in which it saw a
+/// feature, to the end that it was asked for.
+///
+/// # Errors
+/// [`WorkbenchError::NothingToResume`], when the run is through or was not tracked here; as [`prepare`](super::prepare).
+pub fn resume(session: &mut Session, run: RunId) -> Result<TrackJob, WorkbenchError> {
+    let info = session.project.run(run)?;
+    let asked = Asked::read(&session.project, run)?.filter(|_| is_early(&info));
+    let asked = asked.ok_or(WorkbenchError::NothingToResume { run: Some(run) })?;
+    let registry = Arc::clone(&session.registry);
+    let made = &info.head.provenance;
+    let plugin = registry.find(Kind::Tracker, &made.plugin_id)?;
+    let last = seen_last(&session.project, run)?;
+    let start = last.first().map_or(info.head.frames.start, |seed| seed.frame);
+    let later = asked.seeds().filter(|seed| last.is_empty() || seed.frame > start);
+    let seeds: Vec<Seed> = last.iter().copied().chain(later).collect();
+    let detect = match asked.found_from {
+        Some(since) => {
+            let mask = mask(&asked.area, session.media.clip())?;
+            Some(Detect { every: asked.every, mask, present: session.project.shown_all()?, since })
+        }
+        None => None,
+    };
+    let request = TrackRequest {
+        plugin: made.plugin_id.clone(),
+        params: made.params.clone().into_iter().collect::<Values>(),
+        points: PointSource::Given(Vec::new()),
+        frames: start..info.head.frames.end,
+        every: asked.every,
+        area: asked.area.clone(),
+    };
+    let kept = Asked { resumes: Some(run.0), ..Asked::of(&request, &seeds, detect.as_ref()) };
+    let mut job = begin(session, plugin, &request, seeds, detect, &kept)?;
+    let why = format!("ended in run {run}");
+    job.writer.seam(&Seam { frame: start + 1, why, build: None })?;
+    job.resumes = Some(run);
+    Ok(job)
+}
+
+/// The features that a run saw in the last frame in which it saw any.
+fn seen_last(project: &Project, run: RunId) -> Result<Vec<Seed>, StoreError> {
+    let mut last: Vec<Seed> = Vec::new();
+    for (track, span) in project.run_tracks(run)? {
+        let seen = span.frames().zip(&span.samples).rfind(|(_, sample)| sample.status.is_seen());
+        let Some((frame, sample)) = seen else { continue };
+        if last.first().is_some_and(|other| other.frame < frame) {
+            last.clear();
+        }
+        if last.first().is_none_or(|other| other.frame == frame) {
+            last.push(Seed { frame, track, x: sample.x, y: sample.y });
+        }
+    }
+    // A track may have several spans, of which the last counts.
+    last.sort_by_key(|seed| seed.track);
+    last.dedup_by_key(|seed| seed.track);
+    Ok(last)
+}
+
+/// Shows a run, and below it the one that it goes on with, where that is not shown yet.
+pub(super) fn shown(
+    project: &Project,
+    run: RunId,
+    found: TrackSet,
+    resumes: Option<RunId>,
+) -> Result<Transaction, StoreError> {
+    let shown = Transaction::show_run(run, found);
+    let is_hidden =
+        |before: &RunId| !project.document().runs().iter().any(|one: &ShownRun| one.run == *before);
+    let Some(before) = resumes.filter(is_hidden) else { return Ok(shown) };
+    let below = Edit::ShowRun { run: before, tracks: project.run(before)?.tracks, above: None };
+    Ok(Transaction::new(shown.label, [vec![below], shown.edits].concat()))
+}
