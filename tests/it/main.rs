@@ -23,4 +23,5 @@ mod sdk;
 mod simulated;
 mod stopped;
 mod tidy;
+mod trax;
 mod wrong;

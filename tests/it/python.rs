@@ -73,6 +73,10 @@ fn what_python_raises_is_told_in_its_words() {
         ("return 1 / 0", "ZeroDivisionError: division by zero, template.py line 28 (a fault in the plugin)"),
         ("return honami.Points([1, 2], [0], [0], [1])", "columns of honami.points/1 have [1, 2] rows"),
         ("open('/etc/passwd')", "PermissionError: [Errno 13] Permission denied: '/etc/passwd'"),
+        (
+            "import subprocess; subprocess.run(['true'])",
+            "PermissionError: [Errno 13] Permission denied: 'true'",
+        ),
         ("import os; os._exit(3)", "ended its process with status 3 in push of frame"),
     ] {
         if wanted.starts_with("PermissionError") && !is_shut_in() {

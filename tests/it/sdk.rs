@@ -23,7 +23,7 @@ fn runs(bench: &Bench, words: &[&str]) -> Option<Output> {
 }
 
 /// Begins a plugin and builds it; its file, or `None` where this machine cannot.
-fn begun(bench: &Bench, line: &str, needed: &[&str]) -> Option<String> {
+pub(crate) fn begun(bench: &Bench, line: &str, needed: &[&str]) -> Option<String> {
     if !runs(bench, needed).is_some_and(|output| output.status.success()) {
         skipped(&needed.join(" "));
         return None;

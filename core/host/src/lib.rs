@@ -40,7 +40,7 @@ pub use context::{CallContext, Flow, Level, Patience, Silence};
 pub use error::{Code, HostError};
 pub use host::{Host, Hosting, Origin};
 pub use isolated::{Ended, Limits, program};
-pub use manifest::{Caps, Entry, Kind, Numeric, Param, ParamKind};
+pub use manifest::{Caps, Entry, Kind, Needs, Numeric, Param, ParamKind};
 pub use note::needed;
 pub use plain::plain;
 pub use plughost::{serve, shut_in};

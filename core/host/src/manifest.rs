@@ -4,6 +4,7 @@ use crate::values::{Value, Values};
 use honami_abi::kind;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
 
 /// What a plugin does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -44,6 +45,27 @@ pub(crate) struct Manifest {
     /// Of a manifest beside a program: how the program is started, its own files by name.
     #[serde(default)]
     pub(crate) exec: Vec<String>,
+    /// What it must have beside what every plugin has.
+    #[serde(default)]
+    pub(crate) needs: Needs,
+}
+
+/// What a program must have beside what every plugin has; libraries get none of it.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Needs {
+    /// It starts other programs.
+    pub exec: bool,
+    /// It reads these files and folders, beside the files that its parameters name.
+    pub read: Vec<PathBuf>,
+}
+
+impl std::fmt::Display for Needs {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let read = self.read.iter().map(|path| format!("reads {}", path.display()));
+        let all = self.exec.then(|| "starts other programs".to_owned()).into_iter().chain(read);
+        f.write_str(&all.collect::<Vec<_>>().join(", "))
+    }
 }
 
 /// Of a library as a whole.

@@ -25,8 +25,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::Ordering::Relaxed;
 
-/// First word of the arguments when the plugin is a program.
+/// First word of the arguments when the plugin is a program,
 pub(crate) const EXEC: &str = "--exec";
+/// and when it is one that starts others.
+pub(crate) const EXEC_AND_OTHERS: &str = "--exec-and-others";
 
 /// What `honami-plughost` does with its arguments: serves a plugin of a library, or becomes a program that does.
 ///
@@ -38,7 +40,9 @@ pub fn serve(args: impl Iterator<Item = OsString>) -> io::Result<()> {
     sandbox::limit(memory.and_then(|bytes| bytes.parse().ok()));
     let mut args = args.peekable();
     let mut command = Vec::new();
-    if args.next_if(|word| word == EXEC).is_some() {
+    let flag = args.next_if(|word| word == EXEC || word == EXEC_AND_OTHERS);
+    let starts_others = flag.as_ref().is_some_and(|word| word == EXEC_AND_OTHERS);
+    if flag.is_some() {
         let n = args.next().and_then(|n| n.to_str()?.parse().ok()).unwrap_or(0);
         command.extend(args.by_ref().take(n));
     }
@@ -48,7 +52,7 @@ pub fn serve(args: impl Iterator<Item = OsString>) -> io::Result<()> {
     let read: Vec<PathBuf> = args.map(PathBuf::from).collect();
     match command.split_first() {
         None => serve_library(&file, &read),
-        Some((program, args)) => Err(program::become_it(&file, program, args, read)),
+        Some((program, args)) => Err(program::become_it(&file, program, args, read, starts_others)),
     }
 }
 
@@ -87,7 +91,7 @@ fn serve_library(library: &Path, read: &[PathBuf]) -> io::Result<()> {
 /// Gives up all that a plugin's process gives up before it loads this library: for good, and for this thread and those
 /// it starts. How far this system could: `full`, `partial` or `none`.
 pub fn shut_in(library: &Path, read: &[PathBuf]) -> &'static str {
-    sandbox::enter(library, read, Programs::Refused).word()
+    sandbox::enter(library, read, &Programs::Refused).word()
 }
 
 fn make(

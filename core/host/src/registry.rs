@@ -1,7 +1,7 @@
 //! Finds plugin libraries along the search path and says what is in them, and whether they may be loaded.
 
 use crate::error::HostError;
-use crate::manifest::{Caps, Kind, Manifest, Param};
+use crate::manifest::{Caps, Kind, Manifest, Needs, Param};
 use crate::trust::TrustBook;
 use crate::{note, script, store, trust};
 use std::collections::BTreeMap;
@@ -97,6 +97,8 @@ pub struct PluginInfo {
     pub params: Vec<Param>,
     /// New ids of renamed parameters.
     pub renamed: BTreeMap<String, String>,
+    /// What it must have beside what every plugin has.
+    pub needs: Needs,
     /// How its program is started, where it is one and no library.
     pub(crate) exec: Vec<String>,
     /// What all of this was read from, to tell whether the library is still the same when it is loaded.
@@ -296,6 +298,7 @@ impl Registry {
                 caps: plugin.caps,
                 params,
                 renamed,
+                needs: manifest.needs.clone(),
                 exec: manifest.exec.clone(),
                 manifest: Arc::clone(json),
             };

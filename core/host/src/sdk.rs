@@ -4,6 +4,9 @@
 mod rust;
 #[cfg(test)]
 mod tests;
+mod trax;
+
+pub use trax::adapt;
 
 use crate::manifest::Kind;
 
@@ -41,7 +44,7 @@ pub(crate) const HONAMI_PY: &str = include_str!("../../plugin/python/honami.py")
 const ID: [&str; 2] = ["org.honami.template", "org.honami.linkage"];
 
 /// What a file of that name would stand in the way of, because the SDK for Python imports it.
-const PYTHON_MODULES: [&str; 24] = [
+const PYTHON_MODULES: [&str; 28] = [
     "ast",
     "base64",
     "code",
@@ -55,17 +58,21 @@ const PYTHON_MODULES: [&str; 24] = [
     "operator",
     "os",
     "pathlib",
+    "pickle",
     "random",
     "re",
     "select",
     "socket",
     "string",
     "struct",
+    "subprocess",
     "sys",
+    "tempfile",
     "threading",
     "time",
     "traceback",
     "types",
+    "zlib",
 ];
 
 /// The files of a new plugin, and how it is built.
@@ -73,17 +80,8 @@ const PYTHON_MODULES: [&str; 24] = [
 /// # Errors
 /// When the name will not do, or this kind cannot be begun in this language; a sentence.
 pub fn begin(name: &str, kind: Kind, language: Language) -> Result<Begun, String> {
-    let is_word = name.chars().all(|c| c.is_ascii_alphanumeric() || "-_".contains(c));
-    if !is_word || !name.starts_with(|c: char| c.is_ascii_alphabetic()) {
-        return Err(format!(
-            "wanted a name of letters, digits, - and _ that begins with a letter, got {name:?}"
-        ));
-    }
-    if name == "honami" || (language == Language::Python && PYTHON_MODULES.contains(&name)) {
-        return Err(format!("{name:?} is the name of what the plugin needs: choose another"));
-    }
-    let own =
-        |text: &str| ID.iter().fold(text.to_owned(), |text, id| text.replace(id, &format!("org.me.{name}")));
+    check(name, language == Language::Python)?;
+    let own = |text: &str| own(name, text);
     let header = ("honami.h".to_owned(), include_str!("../../abi/include/honami.h").to_owned());
     match (language, kind) {
         (Language::Python, Kind::Tracker | Kind::Clusterer) => {
@@ -135,4 +133,23 @@ pub fn begin(name: &str, kind: Kind, language: Language) -> Result<Begun, String
             Err(format!("a {kind} is a draft still, and cannot be begun"))
         }
     }
+}
+
+/// Whether a plugin can have this name.
+fn check(name: &str, is_python: bool) -> Result<(), String> {
+    let is_word = name.chars().all(|c| c.is_ascii_alphanumeric() || "-_".contains(c));
+    if !is_word || !name.starts_with(|c: char| c.is_ascii_alphabetic()) {
+        return Err(format!(
+            "wanted a name of letters, digits, - and _ that begins with a letter, got {name:?}"
+        ));
+    }
+    if name == "honami" || (is_python && PYTHON_MODULES.contains(&name)) {
+        return Err(format!("{name:?} is the name of what the plugin needs: choose another"));
+    }
+    Ok(())
+}
+
+/// A template under the name of its author's.
+fn own(name: &str, text: &str) -> String {
+    ID.iter().fold(text.to_owned(), |text, id| text.replace(id, &format!("org.me.{name}")))
 }

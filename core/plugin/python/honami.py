@@ -187,10 +187,14 @@ def log(text, level=1):
     _host.say({"m": "log", "level": level, "text": str(text)})
 
 
-def run(library=None, version="0", license=""):
-    """Serves the host that has started this program, or writes the manifest."""
+def run(library=None, version="0", license="", exec=False, read=()):
+    """Serves the host that has started this program, or writes the manifest.
+
+    `exec`: it starts other programs; `read`: files and folders that it reads beside those that parameters name. The user
+    sees both before they allow it.
+    """
     if "--honami-manifest" in sys.argv:
-        return _write_manifest(library, version, license)
+        return _write_manifest(library, version, license, {"exec": exec, "read": list(read)})
     global _host
     _host = _Host()
     _host.serve()
@@ -206,12 +210,12 @@ def _kept_manifest():
         return json.load(file)["plugins"]
 
 
-def _write_manifest(library, version, license):
+def _write_manifest(library, version, license, needs):
     script = os.path.abspath(sys.argv[0])
     plugins = [cls._manifest for cls in _plugins.values()]
     about = {"id": library or plugins[0]["id"], "version": version, "license": license}
     manifest = {"honami": 1, "abi": [1, 1], "library": about, "plugins": plugins,
-                "exec": ["python3", os.path.basename(script)]}
+                "exec": ["python3", os.path.basename(script)], "needs": needs}
     path = _manifest_file(script)
     with open(path, "w") as file:
         json.dump(manifest, file, indent=1)

@@ -373,6 +373,9 @@ pub(super) enum Plugin {
         name: String,
     },
     /// Begin a plugin of your own: a folder with one that works, to be changed.
+    ///
+    /// A tracker that speaks TraX, as those of the VOT challenges do, becomes a plugin as it is: --lang trax, and after
+    /// -- how its server is started.
     New {
         /// Its name: a letter, then letters, digits, `-` and `_`.
         name: String,
@@ -382,6 +385,9 @@ pub(super) enum Plugin {
         /// What it is written in.
         #[arg(long, value_enum, default_value_t = Lang::Python)]
         lang: Lang,
+        /// Of trax: how its server is started.
+        #[arg(last = true)]
+        command: Vec<String>,
     },
     /// Let a third party's plugin be loaded, as its file is now.
     Allow {
@@ -445,6 +451,7 @@ pub(super) enum Lang {
     Rust,
     C,
     Cpp,
+    Trax,
 }
 
 /// Kinds of plugins that can be begun.

@@ -11,18 +11,29 @@ use super::Answer;
 use super::args::{Kind, Lang};
 
 /// Writes the files of a new plugin into a folder of its name.
-pub(super) fn plugin(name: &str, kind: Kind, lang: Lang) -> anyhow::Result<Answer> {
+pub(super) fn plugin(name: &str, kind: Kind, lang: Lang, command: &[String]) -> anyhow::Result<Answer> {
     let language = match lang {
-        Lang::Python => Language::Python,
-        Lang::Rust => Language::Rust,
-        Lang::C => Language::C,
-        Lang::Cpp => Language::Cpp,
+        Lang::Python => Some(Language::Python),
+        Lang::Rust => Some(Language::Rust),
+        Lang::C => Some(Language::C),
+        Lang::Cpp => Some(Language::Cpp),
+        Lang::Trax => None,
     };
     let of = match kind {
         Kind::Tracker => honami_workbench::plugins::Kind::Tracker,
         Kind::Clusterer => honami_workbench::plugins::Kind::Clusterer,
     };
-    let begun = sdk::begin(name, of, language).map_err(anyhow::Error::msg)?;
+    let begun = match language {
+        Some(language) => {
+            anyhow::ensure!(command.is_empty(), "a command line belongs to --lang trax");
+            sdk::begin(name, of, language)
+        }
+        None => {
+            anyhow::ensure!(of == honami_workbench::plugins::Kind::Tracker, "what speaks TraX is a tracker");
+            sdk::adapt(name, command)
+        }
+    };
+    let begun = begun.map_err(anyhow::Error::msg)?;
     fs::create_dir(name).with_context(|| format!("cannot make the folder {name}"))?;
     for (file, text) in &begun.files {
         let path = Path::new(name).join(file);
@@ -39,10 +50,12 @@ pub(super) fn plugin(name: &str, kind: Kind, lang: Lang) -> anyhow::Result<Answe
              honami cluster calm.honami --with {name} --plugin {plugin}"
         ),
     };
+    // Each of its points has a process of its own.
+    let few = if language.is_none() { " --leaves 20" } else { "" };
     let next = json!({
         "build": begun.build,
         "look": format!("honami plugin info {name} --plugin {plugin}"),
-        "try": format!("honami synth calm.y4m --wind calm && {tried}"),
+        "try": format!("honami synth calm.y4m --wind calm{few} && {tried}"),
     });
     let line = |what: &str| format!("\n  {what:<6} {}", next[what].as_str().unwrap_or_default());
     let text = format!(

@@ -61,7 +61,7 @@ pub(super) fn plugin(command: &Plugin, common: &Common) -> anyhow::Result<Outcom
         Plugin::Check(args) => return check::check(args, common).map(Outcome::Exit),
         Plugin::List => Ok(list(&registry)),
         Plugin::Info { name } => info(named(&registry, name)?),
-        Plugin::New { name, kind, lang } => begin::plugin(name, *kind, *lang),
+        Plugin::New { name, kind, lang, command } => begin::plugin(name, *kind, *lang, command),
         Plugin::Allow { plugin } => allow(&file(&registry, plugin)?),
         Plugin::Deny { plugin } => {
             let library = file(&registry, plugin)?;
@@ -106,12 +106,13 @@ fn allow(library: &Path) -> anyhow::Result<Answer> {
         registry.plugins().iter().map(|plugin| format!("{} ({})", plugin.id, plugin.kind)).collect();
     let text = format!(
         "allowed as it is now: {}\n  plugins  {}\n  sha256   {sha256}\n  size     {} bytes, of user {}\n  needs    {}\n\
-         It works in a process of its own. When its file changes it asks again.",
+         {}It works in a process of its own. When its file changes it asks again.",
         library.display(),
         names.join(", "),
         meta.len(),
         meta.uid(),
         if needed.is_empty() { "no libraries".to_owned() } else { needed.join(", ") },
+        registry.plugins().first().map_or_else(String::new, may),
     );
     let json = json!({ "allowed": library, "sha256": sha256, "plugins": names, "needs": needed });
     Ok(Answer { json, text, done: true })
@@ -206,6 +207,7 @@ fn describe(plugin: &PluginInfo) -> serde_json::Value {
         "interfaces": plugin.interfaces,
         "params": plugin.params,
         "cite": plugin.cite,
+        "needs": plugin.needs,
     })
 }
 
@@ -222,6 +224,7 @@ fn info(plugin: &PluginInfo) -> anyhow::Result<Answer> {
     for source in &plugin.cite {
         text += &format!("from {source}\n");
     }
+    text += &may(plugin);
     text += "\n";
     let head = ["parameter", "default", "takes", ""].map(str::to_owned).to_vec();
     let row = |param: &Param| {
@@ -232,6 +235,12 @@ fn info(plugin: &PluginInfo) -> anyhow::Result<Answer> {
     json["sha256"] = sha256.into();
     json["doc"] = plugin.doc.clone().into();
     Ok(Answer { json, text, done: true })
+}
+
+/// What a program is given beside what every plugin has, as a line; nothing for most.
+fn may(plugin: &PluginInfo) -> String {
+    let needs = plugin.needs.to_string();
+    if needs.is_empty() { needs } else { format!("it also {needs}\n") }
 }
 
 fn first_line(text: &str) -> String {

@@ -67,12 +67,16 @@ pub(crate) fn create(
 fn arguments(info: &PluginInfo, copy: &Path, read: Vec<PathBuf>) -> Vec<OsString> {
     let mut args = Vec::new();
     if !info.exec.is_empty() {
-        args.push(plughost::EXEC.into());
+        let flag = if info.needs.exec { plughost::EXEC_AND_OTHERS } else { plughost::EXEC };
+        args.push(flag.into());
         args.push(info.exec.len().to_string().into());
         args.extend(info.exec.iter().map(OsString::from));
     }
     args.push(copy.into());
     args.extend(read.into_iter().map(OsString::from));
+    if info.is_program() {
+        args.extend(info.needs.read.iter().map(OsString::from));
+    }
     args
 }
 

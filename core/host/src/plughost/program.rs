@@ -5,10 +5,19 @@ use crate::wire::Tell;
 use rustix::net::{SendFlags, send};
 use rustix::stdio::stdin;
 use std::ffi::{OsStr, OsString};
+use std::fs;
 use std::io;
 use std::os::unix::process::CommandExt as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+
+/// What loads programs for the kernel.
+const LOADERS: [&str; 4] = [
+    "/lib64/ld-linux-x86-64.so.2",
+    "/lib/ld-linux-aarch64.so.1",
+    "/lib/ld-musl-x86_64.so.1",
+    "/lib/ld-musl-aarch64.so.1",
+];
 
 /// Starts a program in place of this one; its own files are in `folder`. Returns only when that is not possible.
 pub(super) fn become_it(
@@ -16,6 +25,7 @@ pub(super) fn become_it(
     program: &OsStr,
     args: &[OsString],
     mut read: Vec<PathBuf>,
+    starts_others: bool,
 ) -> io::Error {
     let is_bare = Path::new(program).components().count() == 1;
     let Some(mut program) = find(program) else {
@@ -35,7 +45,14 @@ pub(super) fn become_it(
     // Never all of what is the user's own.
     let home = std::env::var_os("HOME").map(PathBuf::from).unwrap_or_default();
     read.retain(|path| path.parent().is_some() && !home.starts_with(path));
-    let level = sandbox::enter(folder, &read, Programs::Allowed);
+    // A script has an interpreter, which may have another: which, only the kernel knows.
+    let is_elf = fs::read(&program).is_ok_and(|bytes| bytes.starts_with(b"\x7fELF"));
+    let programs = if starts_others || !is_elf {
+        Programs::All
+    } else {
+        Programs::These(std::iter::once(program.clone()).chain(LOADERS.map(PathBuf::from)).collect())
+    };
+    let level = sandbox::enter(folder, &read, &programs);
     if let Err(error) = shut_in(level) {
         return error;
     }

@@ -6,7 +6,7 @@
 mod calls;
 
 use landlock::{
-    ABI, Access as _, AccessFs, AccessNet, CompatLevel, Compatible as _, Ruleset, RulesetAttr as _,
+    ABI, Access as _, AccessFs, AccessNet, BitFlags, CompatLevel, Compatible as _, Ruleset, RulesetAttr as _,
     RulesetCreatedAttr as _, RulesetStatus, Scope, path_beneath_rules,
 };
 use rustix::process::{Resource, Rlimit, setrlimit};
@@ -36,11 +36,13 @@ const SYSTEM: [&str; 14] = [
 ];
 
 /// Whether other programs may be started: the plugin itself may be one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Programs {
     Refused,
+    /// What the plugin itself is, and what that needs to be started.
+    These(Vec<PathBuf>),
     /// They give up what this process has given up.
-    Allowed,
+    All,
 }
 
 /// How much of it this system could do, in a word for the user.
@@ -75,30 +77,40 @@ pub(super) fn limit(memory_bytes: Option<u64>) {
 }
 
 /// Gives it all up but these files and the folder of its own, for this thread and those it starts from now on.
-pub(super) fn enter(library: &Path, read: &[PathBuf], programs: Programs) -> Level {
-    let files = files(library, read).unwrap_or(RulesetStatus::NotEnforced);
+pub(super) fn enter(library: &Path, read: &[PathBuf], programs: &Programs) -> Level {
+    let files = files(library, read, programs).unwrap_or(RulesetStatus::NotEnforced);
     let calls = calls::refuse(programs);
     match (files, calls) {
-        (RulesetStatus::FullyEnforced, Ok(())) if programs == Programs::Refused => Level::Full,
+        (RulesetStatus::FullyEnforced, Ok(())) if *programs == Programs::Refused => Level::Full,
         (RulesetStatus::NotEnforced, Err(_)) => Level::None,
         _ => Level::Partial,
     }
 }
 
-fn files(library: &Path, read: &[PathBuf]) -> Result<RulesetStatus, landlock::RulesetError> {
+fn files(
+    library: &Path,
+    read: &[PathBuf],
+    programs: &Programs,
+) -> Result<RulesetStatus, landlock::RulesetError> {
     let abi = ABI::V6;
     let paths = SYSTEM.iter().map(Path::new).chain([library]).chain(read.iter().map(PathBuf::as_path));
     let paths = paths.filter(|path| path.exists());
     // The host has made one, and removes it.
     let own = std::env::var_os(ROOM).map(PathBuf::from);
+    let (these, others) = match programs {
+        Programs::These(these) => (these.as_slice(), AccessFs::Execute.into()),
+        Programs::Refused | Programs::All => (&[][..], BitFlags::EMPTY),
+    };
+    let these = these.iter().filter(|path| path.exists());
     let status = Ruleset::default()
         .set_compatibility(CompatLevel::BestEffort)
         .handle_access(AccessFs::from_all(abi))?
         .handle_access(AccessNet::from_all(abi))?
         .scope(Scope::from_all(abi))?
         .create()?
-        .add_rules(path_beneath_rules(paths, AccessFs::from_read(abi)))?
-        .add_rules(path_beneath_rules(own, AccessFs::from_all(abi)))?
+        .add_rules(path_beneath_rules(paths, AccessFs::from_read(abi) & !others))?
+        .add_rules(path_beneath_rules(own, AccessFs::from_all(abi) & !others))?
+        .add_rules(path_beneath_rules(these, AccessFs::from_read(abi)))?
         .restrict_self()?;
     Ok(status.ruleset)
 }

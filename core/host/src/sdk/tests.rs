@@ -1,7 +1,7 @@
 //! What a plugin is begun with is whole, and carries the name that was asked for.
 
 use super::rust::SDK;
-use super::{Language, begin};
+use super::{Language, adapt, begin};
 use crate::manifest::Kind;
 use std::collections::BTreeSet;
 use std::fs;
@@ -44,6 +44,22 @@ fn a_plugin_that_was_just_begun_has_its_own_id_and_nothing_of_the_template() {
         assert!(text.contains("org.me.my-own") && !text.contains("org.honami."), "{file}: {text}");
         assert!(begun.build.contains("my-own"), "{}", begun.build);
     }
+}
+
+#[test]
+fn the_adapter_of_a_trax_server_has_its_command_with_whole_paths_and_reads_its_folder() {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let words =
+        ["python3", here.join("src/sdk.rs").to_str().unwrap(), "--fast", "a \"b\""].map(str::to_owned);
+    let (file, text) = adapt("kcf", &words).unwrap().files.swap_remove(0);
+    let src = here.join("src");
+    let wanted = [
+        format!("COMMAND = [\"python3\",\"{}/sdk.rs\",\"--fast\",\"a \\\"b\\\"\"]", src.display()),
+        format!("READS = [\"{}\"]", src.display()),
+        "org.me.kcf".to_owned(),
+    ];
+    assert!(wanted.iter().all(|part| text.contains(part)), "{file}: {wanted:?}, {text}");
+    assert!(adapt("kcf", &[]).unwrap_err().contains("-- python3 tracker.py"));
 }
 
 #[test]

@@ -49,9 +49,9 @@ const WORLDS: [libc::c_int; 7] = [
 const OTHER_NUMBERS: u32 = 0x4000_0000;
 
 /// Refuses them from now on, to this thread and those it starts.
-pub(super) fn refuse(programs: Programs) -> Result<(), Box<dyn std::error::Error>> {
+pub(super) fn refuse(programs: &Programs) -> Result<(), Box<dyn std::error::Error>> {
     let mut rules: BTreeMap<i64, Vec<SeccompRule>> = REFUSED.iter().map(|call| (*call, Vec::new())).collect();
-    if programs == Programs::Allowed {
+    if *programs != Programs::Refused {
         rules.remove(&libc::SYS_execve);
     }
     let bits = |argument, mask: libc::c_int, value: libc::c_int| {

@@ -1,0 +1,54 @@
+//! Trackers that speak TraX become plugins as they are.
+
+use std::fs;
+
+use honami_tests::{Bench, root};
+
+use crate::sdk::begun;
+
+/// A small clip, and the server of the tests beside it.
+fn with_server() -> Bench {
+    let bench = Bench::new();
+    bench.synth("clip.y4m", 6, "--leaves 12 --wind calm");
+    fs::create_dir(bench.path("theirs")).unwrap();
+    fs::copy(root().join("tests/peers/trax_server.py"), bench.path("theirs/server.py")).unwrap();
+    bench
+}
+
+const NEEDED: [&str; 3] = ["python3", "-c", "import numpy"];
+
+#[test]
+fn a_trax_server_follows_the_points_whatever_its_form_of_images_and_version() {
+    let bench = with_server();
+    for (name, form, version) in
+        [("memory", "memory;path", "1"), ("file", "path", "3"), ("buffer", "buffer", "4")]
+    {
+        let line = format!("{name} --lang trax -- python3 theirs/server.py {form} {version}");
+        let Some(plugin) = begun(&bench, &line, &NEEDED) else { return };
+        let told = bench.text(&format!("plugin info {name} --plugin {plugin}"));
+        assert!(told.contains("it also starts other programs, reads ") && told.contains("/theirs"), "{told}");
+        let said = bench.json(&format!(
+            "compare clip.y4m --truth clip.truth.csv --with {name} --plugin {plugin} --quick"
+        ));
+        let share = |row: usize| said["trackers"][row]["delta_avg"].as_f64().unwrap();
+        assert!(share(0) > share(1) + 0.05, "{name}: {}, {} of what stands still", share(0), share(1));
+    }
+}
+
+#[test]
+fn a_trax_server_that_goes_loses_its_point_and_one_that_is_none_says_so() {
+    let bench = with_server();
+    fs::write(bench.path("points.csv"), "id,x,y\n1,60,60\n2,80,50\n").unwrap();
+    let _said = bench.text("new p.honami clip.y4m");
+    let Some(plugin) = begun(&bench, "goes --lang trax -- python3 theirs/server.py memory 4 quits", &NEEDED)
+    else {
+        return;
+    };
+    let said = bench.text(&format!("track p.honami --plugin {plugin} --with goes --points points.csv"));
+    assert!(said.contains("at the end 2 lost"), "{said}");
+    let Some(plugin) = begun(&bench, "none --lang trax -- true", &NEEDED) else { return };
+    let ran = bench.line(&format!("track p.honami --plugin {plugin} --with none"));
+    assert!(ran.code == Some(1) && ran.stderr.contains("true ended before it said hello"), "{ran:?}");
+    let few = format!("track p.honami --plugin {plugin} --with none --set most=1");
+    assert!(bench.line(&few).stderr.contains("1 points at most"), "{few}");
+}
