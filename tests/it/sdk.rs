@@ -15,6 +15,16 @@ const TRACKERS: [(&str, &str, &[&str]); 4] = [
     ("in-cpp", "cpp", &["c++", "--version"]),
 ];
 
+/// So far every one of them is checked; the levels above take longer, and are for the trackers that ship.
+const LEVEL: u32 = 4;
+
+/// Holds a plugin against what honami asks of all.
+#[track_caller]
+fn assert_checked(bench: &Bench, plugin: &str) {
+    let checked = bench.line(&format!("plugin check {plugin} --level {LEVEL}"));
+    assert!(matches!(checked.code, Some(0 | 3)), "{plugin}: {checked:?}");
+}
+
 fn runs(bench: &Bench, words: &[&str]) -> Option<Output> {
     // As an author has it: cargo builds into the plugin's own folder.
     let mut command = Command::new(words[0]);
@@ -48,6 +58,7 @@ fn a_tracker_that_was_just_begun_follows_the_texture_and_is_the_same_in_every_la
         let Some(plugin) = begun(&bench, &format!("{name} --lang {lang}"), needed) else { continue };
         let told = bench.text(&format!("plugin info {name} --plugin {plugin}"));
         assert!(told.contains("radius") && told.contains("Half the side of the template."), "{told}");
+        assert_checked(&bench, &plugin);
         let with = format!("--with {name} --plugin {plugin}");
         let said = bench.json(&format!("compare clip.y4m --truth clip.truth.csv {with} --quick"));
         let share = |row: usize| said["trackers"][row]["delta_avg"].as_f64().unwrap();
@@ -69,6 +80,7 @@ fn a_clusterer_that_was_just_begun_groups_tracks_alike_in_every_language() {
         let Some(plugin) = begun(&bench, &format!("{name} --kind clusterer --lang {lang}"), needed) else {
             continue;
         };
+        assert_checked(&bench, &plugin);
         let said = bench.json(&format!("cluster p.honami --with {name} --plugin {plugin}"));
         assert!(said["groups"].as_array().unwrap().len() > 1, "{said}");
         groups.push(said["groups"].clone());

@@ -55,14 +55,16 @@ pub(super) fn plugin(name: &str, kind: Kind, lang: Lang, command: &[String]) -> 
     let next = json!({
         "build": begun.build,
         "look": format!("honami plugin info {name} --plugin {plugin}"),
+        "check": format!("honami plugin check {plugin}"),
         "try": format!("honami synth calm.y4m --wind calm{few} && {tried}"),
     });
     let line = |what: &str| format!("\n  {what:<6} {}", next[what].as_str().unwrap_or_default());
     let text = format!(
-        "{name}/{}: a {of} that works, to be changed. Build it before the first run and after each change:{}{}{}",
+        "{name}/{}: a {of} that works, to be changed. Build it before the first run and after each change:{}{}{}{}",
         begun.files[0].0,
         line("build"),
         line("look"),
+        line("check"),
         line("try"),
     );
     let files: Vec<&str> = begun.files.iter().map(|(file, _)| file.as_str()).collect();

@@ -20,8 +20,9 @@ pub fn adapt(name: &str, command: &[String]) -> Result<Begun, String> {
     let (mut words, mut reads) = (Vec::new(), Vec::new());
     for (k, word) in command.iter().enumerate() {
         let path = Path::new(word);
-        // A program without a folder is looked for on the search path.
-        let is_ours = path.exists() && (k > 0 || path.components().count() > 1);
+        // A program without a folder is looked for on the search path; a word alone is no folder.
+        let has_folder = path.components().count() > 1;
+        let is_ours = (has_folder && path.exists()) || (k > 0 && path.is_file());
         let whole = std::path::absolute(path).ok().filter(|_| is_ours);
         reads.extend(whole.as_deref().and_then(|path| needed(path, k == 0)));
         words.push(whole.map_or_else(|| word.clone(), |path| path.to_string_lossy().into_owned()));
