@@ -18,6 +18,7 @@ mod params;
 mod raw;
 mod report;
 mod running;
+mod state;
 mod stress;
 mod subject;
 mod truth;
@@ -120,6 +121,7 @@ pub fn checks() -> Vec<Check> {
         loading::CHECKS,
         abi::CHECKS,
         params::CHECKS,
+        state::CHECKS,
         frames::CHECKS,
         &truth::checks(),
         clusterer::CHECKS,

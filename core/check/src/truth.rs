@@ -1,8 +1,8 @@
 //! Level 7: trackers against clips whose motion is known.
 //!
 //! A tracker that does not claim more is allowed half a pixel, and a fifth of the points lost. One that is further off is
-//! doubtful as long as it is clearly better than none: it must be off by less than half of what a tracker would be that
-//! leaves every point where it was. Some trackers cannot follow a texture by their nature, because they know things by
+//! doubtful as long as it is better than none: where the picture shifts it must be off by less than half of what a tracker
+//! would be that leaves every point where it was, and where more than that happens, by less at all. Some trackers cannot follow a texture by their nature, because they know things by
 //! their colours: these are doubtful too, where they follow coloured discs instead.
 
 mod dense;
@@ -27,6 +27,8 @@ const NEAR_PX: f64 = 0.5;
 const LOST_SHARE: f64 = 0.2;
 /// A tracker that is off by less than this share of the motion follows it.
 const FOLLOWS_SHARE: f64 = 0.5;
+/// One that is off by less than this share is better than none.
+const BETTER_SHARE: f64 = 0.9;
 /// Size of the pictures.
 pub(crate) const SIZE: [u32; 2] = [160, 120];
 /// Frames of a clip.
@@ -56,21 +58,21 @@ const CHECKS: &[Check] = &[
         level: 7,
         claim: "it follows a picture that turns by a degree a frame",
         deadline: DEADLINE,
-        run: |subject| of_tracker(subject, |subject| judge(subject, &Case::moving(turn))),
+        run: |subject| of_tracker(subject, |subject| judge(subject, &Case::hard(turn))),
     },
     Check {
         id: "truth.zoom",
         level: 7,
         claim: "it follows a picture that grows by a hundredth a frame",
         deadline: DEADLINE,
-        run: |subject| of_tracker(subject, |subject| judge(subject, &Case::moving(zoom))),
+        run: |subject| of_tracker(subject, |subject| judge(subject, &Case::hard(zoom))),
     },
     Check {
         id: "truth.sway",
         level: 7,
         claim: "it follows what sways at 1, 3, 6 and 10 Hz at once",
         deadline: DEADLINE,
-        run: |subject| of_tracker(subject, |subject| judge(subject, &Case::moving(sway))),
+        run: |subject| of_tracker(subject, |subject| judge(subject, &Case::hard(sway))),
     },
     Check {
         id: "truth.light",
@@ -78,7 +80,7 @@ const CHECKS: &[Check] = &[
         claim: "it follows through light that fades by a hundredth a frame",
         deadline: DEADLINE,
         run: |subject| {
-            of_tracker(subject, |subject| judge(subject, &Case { light: fading, ..Case::moving(shift) }))
+            of_tracker(subject, |subject| judge(subject, &Case { light: fading, ..Case::hard(shift) }))
         },
     },
     Check {
@@ -87,7 +89,7 @@ const CHECKS: &[Check] = &[
         claim: "it follows a picture that blurs",
         deadline: DEADLINE,
         run: |subject| {
-            of_tracker(subject, |subject| judge(subject, &Case { blur: blurring, ..Case::moving(shift) }))
+            of_tracker(subject, |subject| judge(subject, &Case { blur: blurring, ..Case::hard(shift) }))
         },
     },
 ];
@@ -99,11 +101,18 @@ struct Case {
     light: fn(usize) -> f64,
     /// Standard deviation of a Gaussian, pixels.
     blur: fn(usize) -> f64,
+    /// A tracker must be off by less than this share of what one would be that leaves every point where it was.
+    share: f64,
 }
 
 impl Case {
     fn moving(moved: fn(usize) -> Moved) -> Self {
-        Self { moved, light: |_| 1.0, blur: |_| 0.0 }
+        Self { moved, light: |_| 1.0, blur: |_| 0.0, share: FOLLOWS_SHARE }
+    }
+
+    /// One that some trackers are not made for.
+    fn hard(moved: fn(usize) -> Moved) -> Self {
+        Self { share: BETTER_SHARE, ..Self::moving(moved) }
     }
 
     /// The case as a texture, and points that stay in the picture.
@@ -206,8 +215,8 @@ impl Score {
     }
 
     /// Whether what it calls tracked is clearly better than nothing.
-    fn follows(&self) -> bool {
-        self.n_seen > 0 && self.rms_px < FOLLOWS_SHARE * self.unmoved_px
+    fn follows(&self, share: f64) -> bool {
+        self.n_seen > 0 && self.rms_px < share * self.unmoved_px
     }
 }
 
@@ -231,12 +240,12 @@ fn judge(subject: &Subject, case: &Case) -> Result<Verdict, Fault> {
         return Ok(Verdict::Holds(texture.to_string()));
     }
     let wanted = format!("wanted {NEAR_PX} px and {:.0} % lost at most", 100.0 * LOST_SHARE);
-    if texture.follows() {
+    if texture.follows(case.share) {
         return Ok(Verdict::Doubtful(format!("{texture}; {wanted}")));
     }
     let (clip, seeds) = case.discs(subject);
     let discs = Score::of(&follow(&mut tracker(subject)?, &clip, &seeds)?, &seeds, case.moved);
-    if discs.follows() {
+    if discs.follows(case.share) {
         return Ok(Verdict::Doubtful(format!("in a texture {texture}, {wanted}; coloured discs: {discs}")));
     }
     let unmoved = texture.unmoved_px;

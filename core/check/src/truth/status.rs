@@ -150,13 +150,13 @@ fn hidden(subject: &Subject) -> Result<Verdict, Fault> {
     if free.is_near() && passed.rms_px < FOLLOWS_SHARE * PASSING_PX {
         return Ok(Verdict::Holds(said));
     }
-    if free.follows() {
+    if free.follows(FOLLOWS_SHARE) {
         return Ok(Verdict::Doubtful(said));
     }
     // Whoever cannot follow a texture at all has been told so before.
     let (clip, seeds) = case.texture(subject);
     let alone = Score::of(&follow(&mut tracker(subject)?, &clip, &seeds)?, &seeds, slowly);
-    if alone.follows() {
+    if alone.follows(FOLLOWS_SHARE) {
         return Err(Fault(format!("{said}; with nothing before the picture: {alone}")));
     }
     Ok(Verdict::Doubtful(format!("it does not follow this texture: {alone}")))

@@ -18,6 +18,8 @@ struct Bad {
 }
 
 const LOADED: &str = "tests/bad/loaded.c";
+const TRACKER: &str = "tests/bad/tracker.c";
+const CLUSTERER: &str = "tests/bad/clusterer.c";
 
 /// Levels 1 to 3.
 const LOW: &[Bad] = &[
@@ -119,6 +121,136 @@ const LOW: &[Bad] = &[
     Bad { fault: "OTHER_TABLE", source: LOADED, flags: &[], check: "abi.tables", says: "another table" },
 ];
 
+/// Levels 4 to 8.
+const MIDDLE: &[Bad] = &[
+    Bad {
+        fault: "NAN_AT_THE_END",
+        source: TRACKER,
+        flags: &["-lm"],
+        check: "params.extremes",
+        says: "radius=9",
+    },
+    Bad {
+        fault: "INACTIVE",
+        source: TRACKER,
+        flags: &["-lm"],
+        check: "params.inactive",
+        says: "reach does not count",
+    },
+    Bad { fault: "READS_PAST", source: TRACKER, flags: &["-lm"], check: "frames.bounds", says: "SIGSEGV" },
+    Bad { fault: "READS_BEFORE", source: TRACKER, flags: &["-lm"], check: "frames.bounds", says: "SIGSEGV" },
+    Bad {
+        fault: "READS_GAPS",
+        source: TRACKER,
+        flags: &["-lm"],
+        check: "frames.stride",
+        says: "bytes between rows",
+    },
+    Bad { fault: "DIES_OF_SMALL", source: TRACKER, flags: &["-lm"], check: "frames.small", says: "SIGSEGV" },
+    Bad {
+        fault: "STAYS",
+        source: TRACKER,
+        flags: &["-lm"],
+        check: "truth.shift",
+        says: "left where they were",
+    },
+    Bad {
+        fault: "DRIFTS",
+        source: TRACKER,
+        flags: &["-lm"],
+        check: "truth.still",
+        says: "nothing moves, and points do",
+    },
+    Bad {
+        fault: "FORGETS",
+        source: TRACKER,
+        flags: &["-lm"],
+        check: "truth.ids",
+        says: "have no row any more",
+    },
+    Bad {
+        fault: "KEEPS_RETIRED",
+        source: TRACKER,
+        flags: &["-lm"],
+        check: "truth.seeds",
+        says: "which is not live there",
+    },
+    Bad {
+        fault: "TRACKS_NOTHING",
+        source: TRACKER,
+        flags: &["-lm"],
+        check: "truth.outside",
+        says: "that had left are called tracked",
+    },
+    Bad {
+        fault: "MERGES_TWICE",
+        source: CLUSTERER,
+        flags: &["-lm"],
+        check: "clusterer.groups",
+        says: "a second time",
+    },
+    Bad {
+        fault: "WITHOUT_THE_LAST",
+        source: CLUSTERER,
+        flags: &["-lm"],
+        check: "clusterer.groups",
+        says: "not 15",
+    },
+    Bad {
+        fault: "BY_ORDER",
+        source: CLUSTERER,
+        flags: &["-lm"],
+        check: "clusterer.order",
+        says: "in another order",
+    },
+    Bad {
+        fault: "BY_SIZE",
+        source: CLUSTERER,
+        flags: &["-lm"],
+        check: "clusterer.groups",
+        says: "pairs of tracks are wrong",
+    },
+    Bad {
+        fault: "DIES_OF_NONE",
+        source: CLUSTERER,
+        flags: &["-lm"],
+        check: "clusterer.few",
+        says: "SIGSEGV",
+    },
+    Bad {
+        fault: "DIES_OF_LOST",
+        source: CLUSTERER,
+        flags: &["-lm"],
+        check: "clusterer.hard",
+        says: "SIGSEGV",
+    },
+];
+
+/// Level 9, whose checks take longer.
+const HIGH: &[Bad] = &[
+    Bad { fault: "CLOCK", source: TRACKER, flags: &["-lm"], check: "running.twice", says: "and point" },
+    Bad { fault: "THREADS", source: TRACKER, flags: &["-lm"], check: "running.threads", says: "and point" },
+    Bad {
+        fault: "ELSEWHERE",
+        source: TRACKER,
+        flags: &["-lm"],
+        check: "running.isolated",
+        says: "and point",
+    },
+    Bad { fault: "STATE", source: TRACKER, flags: &["-lm"], check: "running.again", says: "and point" },
+    Bad { fault: "SHARED", source: TRACKER, flags: &["-lm"], check: "running.turns", says: "and point" },
+    Bad { fault: "FALLS", source: TRACKER, flags: &["-lm"], check: "running.progress", says: "and then at" },
+    Bad { fault: "DEAF", source: TRACKER, flags: &["-lm"], check: "running.stop", says: "gave a result" },
+    Bad {
+        fault: "LEAKS_FILES",
+        source: TRACKER,
+        flags: &["-lm"],
+        check: "running.growth",
+        says: "2000 files",
+    },
+    Bad { fault: "LEAKS_MEMORY", source: TRACKER, flags: &["-lm"], check: "running.growth", says: "kB" },
+];
+
 fn finds(table: &[Bad]) {
     if !has_cc() {
         return;
@@ -162,4 +294,14 @@ fn a_library_that_is_not_there_is_named() {
     let library = compile(LOADED, "needs", &flags);
     let got = failed(&check(&library, |known| known.level == 1));
     assert!(got.len() == 1 && got[0].starts_with("file.needed: it needs libnobody-has-this.so.1"), "{got:?}");
+}
+
+#[test]
+fn a_fault_in_parameters_frames_or_what_is_said_of_them_is_found_at_its_level() {
+    finds(MIDDLE);
+}
+
+#[test]
+fn a_fault_in_the_way_of_working_is_found_at_its_level() {
+    finds(HIGH);
 }
