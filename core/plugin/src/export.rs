@@ -291,10 +291,12 @@ unsafe extern "C" fn set_params<S: State>(
     // SAFETY: the host keeps the contract of honami_instance.set_params.
     unsafe {
         door::<S>(instance, call, |state, _| {
-            let (mut params, mut told) = (S::Params::default(), 0);
+            let (mut params, mut told) = (S::Params::default(), 0_u64);
             for value in table::slice(values, u64::from(n))? {
                 params.set(text(value.id), value_of(value)?)?;
-                told = mix(told, format!("{} {:?}", text(value.id), value_of(value)?).as_bytes());
+                // They come in any order.
+                let words = format!("{} {:?}", text(value.id), value_of(value)?);
+                told = told.wrapping_add(mix(0, words.as_bytes()));
             }
             *state.params()? = params;
             state.told(told);

@@ -146,7 +146,7 @@ static float off(bad *self, const honami_frame *frame) {
   int is_shared = self->n_frames > 0 && last != self;
   last = self;
   if (FAULT == NAN_AT_THE_END && self->radius == 9) return NAN;
-  if (FAULT == CLOCK && frame->width == 96) {
+  if (FAULT == CLOCK && frame->index == 7) {
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);
     return (float)(now.tv_nsec % 1000) * 1e-5f;
