@@ -2,6 +2,7 @@
 process of its own. https://github.com/votchallenge/trax/blob/master/docs/protocol.rst
 """
 import base64
+import contextlib
 import os
 import re
 import select
@@ -108,11 +109,10 @@ class Server:
         return self.state()
 
     def end(self):
-        try:
+        with contextlib.suppress(Gone):
             self.say("quit")
-        except Gone:
-            pass
-        self.process.stdin.close()
+        with contextlib.suppress(BrokenPipeError):
+            self.process.stdin.close()
         try:
             self.process.wait(0.5)
         except subprocess.TimeoutExpired:
