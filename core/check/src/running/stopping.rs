@@ -139,13 +139,13 @@ fn progress(subject: &Subject, task: &Task) -> Result<Verdict, Fault> {
 
 fn stop(subject: &Subject, task: &Task) -> Result<Verdict, Fault> {
     let mut work = Work::start(subject, HERE, task)?;
-    let (was_told, slowest) = told_to_stop(&mut work)?;
+    let (was_told, slowest) = told_to_stop(&mut work, subject.info.is_program())?;
     if slowest.own > SLOW * PATIENCE {
         let silent = format!("it worked for {slowest} and never asked whether to go on");
         return Err(Fault(if was_told { format!("it went on for {slowest}") } else { silent }));
     }
     if !was_told {
-        let said = format!("no call took more than {slowest}, and none asked");
+        let said = format!("no call took more than {slowest}, and none heard that it must stop");
         return Ok(if slowest.clock > PATIENCE { Verdict::Doubtful(said) } else { Verdict::Beside(said) });
     }
     // The same instance is idle again, and as good as a fresh one.
@@ -159,8 +159,8 @@ fn stop(subject: &Subject, task: &Task) -> Result<Verdict, Fault> {
 }
 
 /// Makes calls until one asks whether to go on and hears that it must not. Whether one did, and how long it then took;
-/// else how long the longest call took.
-fn told_to_stop(work: &mut Work<'_>) -> Result<(bool, Took), Fault> {
+/// else how long the longest call took. One that `is_apart`, in a process of its own, hears it late, and may have ended.
+fn told_to_stop(work: &mut Work<'_>, is_apart: bool) -> Result<(bool, Took), Fault> {
     let mut slowest = Took::default();
     loop {
         let told = Mutex::new(None);
@@ -172,9 +172,11 @@ fn told_to_stop(work: &mut Work<'_>) -> Result<(bool, Took), Fault> {
         let done = work.step(&CallContext { progress: &listen, ..CallContext::silent() });
         match (told.into_inner().unwrap_or_else(PoisonError::into_inner), done) {
             (Some(told), Err(HostError::Cancelled { .. })) => return Ok((true, told.took())),
-            (Some(_), Ok(_)) => return Err(Fault("it was told to stop, and gave a result".into())),
+            (Some(_), Ok(_)) if !is_apart => {
+                return Err(Fault("it was told to stop, and gave a result".into()));
+            }
             (_, Err(error)) => return Err(Fault(format!("told to stop: {error}"))),
-            (None, Ok(is_last)) => {
+            (_, Ok(is_last)) => {
                 slowest = slowest.max(begun.took());
                 if is_last {
                     return Ok((false, slowest));
