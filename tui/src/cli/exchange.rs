@@ -74,7 +74,8 @@ pub(super) fn import(args: &Import) -> anyhow::Result<Answer> {
 /// Writes what was asked for.
 pub(super) fn export(args: &Export) -> anyhow::Result<Answer> {
     want(args.out != Path::new("-"), || {
-        "export writes a file that is whole or not there, never to standard output: name one instead of -".to_owned()
+        "export writes a file that is whole or not there, never to standard output: name one instead of -"
+            .to_owned()
     })?;
     match args.what {
         ExportWhat::Tracks => tracks(args),

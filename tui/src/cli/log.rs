@@ -1,5 +1,6 @@
 //! `log`: everything that was done to a project, with its provenance.
 
+use honami_model::provenance::Provenance;
 use honami_workbench::store::{LogItem, LogLine, Seam};
 use serde_json::json;
 
@@ -25,14 +26,28 @@ fn line(line: &LogLine) -> String {
             let state = &run.state;
             let seams: String = run.seams.iter().map(|seam| format!(", {seam}")).collect();
             format!(
-                "{date}  run {}  {}: {} frames {}..{}, {state}{seams}  {made}",
-                run.id, made.what, run.tracks, found.start, found.end
+                "{date}  run {}  {}: {} frames {}..{}, {state}{seams}  {made}{}",
+                run.id,
+                made.what,
+                run.tracks,
+                found.start,
+                found.end,
+                place(made)
             )
         }
         LogItem::Clustering(info) => {
             let made = &info.provenance;
             format!("{date}  clustering {}  {} tracks in {} groups  {made}", info.id, info.n_tracks, info.cut)
         }
+    }
+}
+
+/// Where a plugin worked, and how far it was shut in there; nothing of what no plugin made.
+fn place(made: &Provenance) -> String {
+    match made.sandbox.as_str() {
+        _ if made.simd == "none" => String::new(),
+        "in process" => "  in process".to_owned(),
+        level => format!("  in a process of its own, sandbox {level}"),
     }
 }
 

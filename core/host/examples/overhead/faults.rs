@@ -53,7 +53,9 @@ fn until_told(info: &PluginInfo, words: &str) -> Outcome<f64> {
     let frame = FrameView { gray, chroma: None, range: None, index: 2, time_s: 2.0 };
     let (start, heard) = (Instant::now(), OnceLock::new());
     let silent = |silence: Option<Silence>| {
-        silence.inspect(|_| drop(heard.get_or_init(|| start.elapsed())));
+        if silence.is_some() {
+            heard.get_or_init(|| start.elapsed());
+        }
         Patience::Usual
     };
     let stop = |_: f64, _: &str| if heard.get().is_some() { Flow::Stop } else { Flow::Continue };

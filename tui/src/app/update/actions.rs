@@ -412,7 +412,12 @@ pub(super) fn open_form(state: &mut State, task: Task) {
     };
     let wanted = Wanted { features, frames: likely_frames(state), n_frames: state.clip.n_frames() };
     match Form::new(task, &state.plugins, &wanted) {
-        Some(form) => state.mode = Mode::Form(Box::new(form)),
+        Some(mut form) => {
+            // Likely the one whose run is on top.
+            let last = state.tracker.as_deref().and_then(|tracker| tracker.split_whitespace().next());
+            last.into_iter().for_each(|name| form.choose(name));
+            state.mode = Mode::Form(Box::new(form));
+        }
         None => complain(
             state,
             format!("no {} was found; `honami doctor` says where {plugin} is looked for", task.word()),
