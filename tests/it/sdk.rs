@@ -38,7 +38,8 @@ pub(crate) fn begun(bench: &Bench, line: &str, needed: &[&str]) -> Option<String
         skipped(&needed.join(" "));
         return None;
     }
-    let said = bench.json(&format!("plugin new {line}"));
+    // What comes after `--` is another program's.
+    let said = bench.line(&format!("plugin new --json {line}")).json();
     let build: Vec<&str> = said["next"]["build"].as_str().unwrap().split_whitespace().collect();
     let built = runs(bench, &build).unwrap();
     assert!(built.status.success(), "{build:?}: {}", String::from_utf8_lossy(&built.stderr));
