@@ -13,8 +13,10 @@ fn dense_motion_is_that_of_the_leaves() {
     let bench = Bench::new();
     bench.json(&format!("synth clip.y4m --size 320x240 --frames {N_FRAMES} --leaves 60 --wind wind"));
     let truth = read_truth(&bench.path("clip.truth.csv"), N_FRAMES).unwrap();
-    let options =
-        SessionOptions { plugin_paths: vec![program().parent().unwrap().to_owned()], read_only: false };
+    let options = SessionOptions {
+        plugin_paths: vec![program().parent().unwrap().to_owned()],
+        ..SessionOptions::default()
+    };
     let session = Session::create(&bench.path("p.honami"), &bench.path("clip.y4m"), None, &options).unwrap();
     let times = &session.media.clip().times;
     let mut meter = dense::prepare(&session, None).unwrap();

@@ -16,6 +16,7 @@ mod offers;
 mod opencv;
 mod python;
 mod real_clips;
+mod rebuilt;
 mod replay;
 mod retrack;
 mod schema;

@@ -22,7 +22,7 @@ fn session(bench: &Bench) -> Session {
     bench.json("new p.honami clip.y4m");
     bench.json("track p.honami --with klt --set max_features=20");
     let plugin_paths = vec![program().parent().unwrap().to_owned()];
-    let options = SessionOptions { plugin_paths, read_only: false };
+    let options = SessionOptions { plugin_paths, ..SessionOptions::default() };
     let mut session = Session::open(&bench.path("p.honami"), &options).unwrap();
     let mut params = Values::default();
     let klt = session.registry.find(honami_workbench::plugins::Kind::Tracker, "klt").unwrap();

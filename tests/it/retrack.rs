@@ -262,8 +262,10 @@ fn a_stopped_re_tracking_leaves_nothing_behind() {
     let bench = bench();
     assert_eq!(bench.edit("p.honami", "confirm 3 12").code, Some(0));
     let (before, n_entries) = (bench.samples("p.honami"), bench.log("p.honami", "log").len());
-    let options =
-        SessionOptions { plugin_paths: vec![program().parent().unwrap().to_owned()], read_only: false };
+    let options = SessionOptions {
+        plugin_paths: vec![program().parent().unwrap().to_owned()],
+        ..SessionOptions::default()
+    };
     let session = Session::open(&bench.path("p.honami"), &options).unwrap();
     let (track, _) = session.project.document().tracks().find(|(track, _)| track.0 == 3).unwrap();
     let request =
@@ -282,8 +284,10 @@ fn a_stopped_re_tracking_leaves_nothing_behind() {
 fn a_re_tracking_of_what_has_changed_meanwhile_is_not_laid() {
     let bench = bench();
     assert_eq!(bench.edit("p.honami", "confirm 3 12").code, Some(0));
-    let options =
-        SessionOptions { plugin_paths: vec![program().parent().unwrap().to_owned()], read_only: false };
+    let options = SessionOptions {
+        plugin_paths: vec![program().parent().unwrap().to_owned()],
+        ..SessionOptions::default()
+    };
     let mut session = Session::open(&bench.path("p.honami"), &options).unwrap();
     let (track, _) = session.project.document().tracks().find(|(track, _)| track.0 == 3).unwrap();
     let request =

@@ -18,8 +18,10 @@ fn whoever_finishes_is_right_and_every_key_frame_stays_where_it_was_put() {
     let mut points = points_of(&truth);
     points.retain(|seed| seed.frame == 0);
     points.truncate(2);
-    let options =
-        SessionOptions { plugin_paths: vec![program().parent().unwrap().to_owned()], read_only: false };
+    let options = SessionOptions {
+        plugin_paths: vec![program().parent().unwrap().to_owned()],
+        ..SessionOptions::default()
+    };
     for (number, model) in Model::ALL.into_iter().enumerate() {
         let project = bench.path(&format!("{number}.honami"));
         let mut session = Session::create(&project, &bench.path("clip.y4m"), None, &options).unwrap();

@@ -37,6 +37,7 @@ pub mod plotted;
 pub mod prints;
 pub mod queue;
 pub mod ranging;
+mod rebuilding;
 pub mod recent;
 pub mod recovery;
 mod replay;

@@ -17,6 +17,7 @@ mod review;
 mod spectrum;
 mod synth;
 mod track;
+mod watch;
 
 use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
@@ -156,6 +157,7 @@ fn run(command: Command, common: &Common) -> anyhow::Result<Outcome> {
     let answer = match command {
         Command::New(args) => project::new(&args, common)?,
         Command::Relink(args) => project::relink(&args)?,
+        Command::Track(args) if args.watch => return watch::watch(&args, common).map(Outcome::Exit),
         Command::Track(args) => track::track(&args, common)?,
         Command::Cluster(args) => groups::cluster(&args, common)?,
         Command::Edit(args) => {
@@ -222,7 +224,8 @@ fn offers(common: &Common) -> Offers {
 }
 
 fn options(common: &Common) -> SessionOptions {
-    SessionOptions { plugin_paths: common.plugins.clone(), read_only: false }
+    let (plugin_paths, dev) = (common.plugins.clone(), common.dev.clone());
+    SessionOptions { plugin_paths, dev, read_only: false }
 }
 
 /// Opens a project for a command that writes to it.

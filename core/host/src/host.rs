@@ -13,7 +13,7 @@ use crate::reply::Reply;
 use crate::tracker::Tracker;
 use crate::values::{Value, Values};
 use crate::{in_process, isolated, script, store};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Where a plugin works.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -208,6 +208,21 @@ impl Host {
         Ok((handle, origin))
     }
 
+    pub(crate) fn store(&self) -> &Path {
+        &self.store
+    }
+
+    /// Where a plugin works.
+    pub(crate) fn hosting_of(&self, info: &PluginInfo) -> Hosting {
+        let usual = if info.trust == Trust::Shipped && info.exec.is_empty() {
+            Hosting::InProcess
+        } else {
+            Hosting::Isolated
+        };
+        // A program has a process of its own by its nature.
+        self.hosting.filter(|_| info.exec.is_empty()).unwrap_or(usual)
+    }
+
     /// Makes an instance where it is to work; with the hash of its library and how far it is kept apart.
     fn instance(
         &self,
@@ -215,13 +230,7 @@ impl Host {
         values: &Values,
         cx: &CallContext<'_>,
     ) -> Result<(Box<dyn Instance>, String, String), HostError> {
-        let usual = if info.trust == Trust::Shipped && info.exec.is_empty() {
-            Hosting::InProcess
-        } else {
-            Hosting::Isolated
-        };
-        // A program has a process of its own by its nature.
-        match self.hosting.filter(|_| info.exec.is_empty()).unwrap_or(usual) {
+        match self.hosting_of(info) {
             Hosting::InProcess => {
                 let library = in_process::load(info, &self.store)?;
                 let sha256 = library.sha256.clone();

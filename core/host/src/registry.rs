@@ -10,6 +10,8 @@ use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+mod dev;
+
 /// Where plugins are looked for; the first of two with the same id wins.
 #[derive(Clone, Debug, Default)]
 pub struct SearchPath {
@@ -19,6 +21,9 @@ pub struct SearchPath {
     pub executable: Option<PathBuf>,
     /// Folders of third parties' plugins.
     pub installed: Vec<PathBuf>,
+    /// One's own build trees: `--dev`, then `$HONAMI_DEV`. What is built there is found, and trusted for this session, as
+    /// long as only this user or root may write it.
+    pub dev: Vec<PathBuf>,
     /// Which of them may be loaded.
     pub book: TrustBook,
 }
@@ -27,10 +32,11 @@ impl SearchPath {
     /// The search path of this process, with the `--plugin` arguments first.
     #[must_use]
     pub fn of_process(extra: &[PathBuf]) -> Self {
-        let mut named = extra.to_vec();
-        if let Some(paths) = std::env::var_os("HONAMI_PLUGIN_PATH") {
-            named.extend(std::env::split_paths(&paths).filter(|path| !path.as_os_str().is_empty()));
-        }
+        let listed = |name| {
+            let paths = std::env::var_os(name).unwrap_or_default();
+            std::env::split_paths(&paths).filter(|path| !path.as_os_str().is_empty()).collect::<Vec<_>>()
+        };
+        let named = [extra.to_vec(), listed("HONAMI_PLUGIN_PATH")].concat();
         let absolute = |name| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
         let data =
             absolute("XDG_DATA_HOME").or_else(|| absolute("HOME").map(|home| home.join(".local/share")));
@@ -40,7 +46,14 @@ impl SearchPath {
             .chain(["/usr/local/lib/honami/plugins", "/usr/lib/honami/plugins"].map(PathBuf::from))
             .collect();
         let executable = std::env::current_exe().ok().and_then(|path| path.canonicalize().ok());
-        Self { named, executable, installed, book: TrustBook::of_user() }
+        Self { named, dev: listed("HONAMI_DEV"), executable, installed, book: TrustBook::of_user() }
+    }
+
+    /// With these build trees before the others.
+    #[must_use]
+    pub fn with_dev(mut self, trees: &[PathBuf]) -> Self {
+        self.dev.splice(0..0, trees.iter().cloned());
+        self
     }
 }
 
@@ -51,6 +64,8 @@ pub enum Trust {
     Shipped,
     /// The user named it.
     Named,
+    /// It lies in the user's own build tree, for as long as this honami runs.
+    Dev,
     /// A person has allowed this content.
     Allowed {
         /// Of the content, lower-case hexadecimal.
@@ -176,6 +191,9 @@ impl Registry {
                 registry.add_file(named, of_named(named), true);
             }
         }
+        for folder in path.dev.iter().flat_map(|tree| dev::folders(tree)) {
+            registry.scan_folder(&folder, |file| path.book.of_dev(file));
+        }
         if let Some((executable, folder)) =
             path.executable.as_deref().and_then(|exe| Some((exe, exe.parent()?)))
         {
@@ -184,9 +202,23 @@ impl Registry {
             }
         }
         for folder in &path.installed {
-            registry.scan_folder(folder, |file| path.book.of(file));
+            registry.scan_folder(folder, |file| match dev::is_below(&path.dev, file) {
+                true => path.book.of_dev(file),
+                false => path.book.of(file),
+            });
         }
         registry
+    }
+
+    /// Looks into one file.
+    pub(crate) fn of_file(file: &Path, trust: Trust) -> Self {
+        let mut registry = Self::default();
+        registry.add_file(file, trust, true);
+        registry
+    }
+
+    pub(crate) fn into_problems(self) -> Vec<HostError> {
+        self.problems
     }
 
     /// The plugins, in the order of the search path.

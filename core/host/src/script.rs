@@ -90,7 +90,7 @@ pub(crate) fn keep(info: &PluginInfo, store: &Path) -> Result<Stored, HostError>
         let why = "it has changed since you allowed it".into();
         return Err(HostError::NotTrusted { path: info.library.clone(), why });
     }
-    let folder = store.join(format!("{sha256}.program"));
+    let folder = folder_in(store, &sha256);
     store::make_room(store, &folder);
     let copied = || -> io::Result<()> {
         let named = parts
@@ -106,4 +106,13 @@ pub(crate) fn keep(info: &PluginInfo, store: &Path) -> Result<Stored, HostError>
     };
     copied().map_err(|e| file_error(format!("cannot be copied to {}: {e}", folder.display())))?;
     Ok(Stored { path: folder, sha256 })
+}
+
+fn folder_in(store: &Path, sha256: &str) -> PathBuf {
+    store.join(format!("{sha256}.program"))
+}
+
+/// The copy of a program's manifest, its files beside it, once it has been started.
+pub(crate) fn copy_of(store: &Path, sha256: &str, manifest: &Path) -> PathBuf {
+    folder_in(store, sha256).join(manifest.file_name().unwrap_or_default())
 }

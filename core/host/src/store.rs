@@ -105,7 +105,7 @@ fn keep_now(path: &Path, folder: &Path) -> Result<Stored, HostError> {
     let bytes = read(path)?;
     let sha256 = hex(&bytes);
     let keep_in = |folder: &Path| {
-        let copy = folder.join(format!("{sha256}.so"));
+        let copy = copy_in(folder, &sha256);
         make_room(folder, &copy);
         keep_bytes(folder, &copy, &bytes).map(|()| copy)
     };
@@ -118,6 +118,16 @@ fn keep_now(path: &Path, folder: &Path) -> Result<Stored, HostError> {
         ),
     })?;
     Ok(Stored { path: copy, sha256 })
+}
+
+fn copy_in(folder: &Path, sha256: &str) -> PathBuf {
+    folder.join(format!("{sha256}.so"))
+}
+
+/// Where a library was copied to that has been loaded.
+pub(crate) fn copy_of(folder: &Path, sha256: &str) -> PathBuf {
+    let copy = copy_in(folder, sha256);
+    if copy.exists() { copy } else { copy_in(&temporary_folder(), sha256) }
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, HostError> {

@@ -134,6 +134,15 @@ impl TrustBook {
         if self.entry(library).is_some_and(|entry| entry.sha256.is_none()) { denied() } else { Trust::Named }
     }
 
+    /// Whether a library in the user's own build tree may be loaded: unless it was denied, or others may write it.
+    pub(crate) fn of_dev(&self, library: &Path) -> Trust {
+        match (self.of_named(library), all_parts(library, only_user_writes)) {
+            (Trust::Named, Ok(())) => Trust::Dev,
+            (Trust::Named, Err(why)) => Trust::No(why),
+            (trust, _) => trust,
+        }
+    }
+
     /// Allows a library as it is now; its hash.
     ///
     /// # Errors

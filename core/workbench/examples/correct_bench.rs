@@ -88,7 +88,7 @@ fn scene(
     if project.exists() {
         std::fs::remove_file(&project)?;
     }
-    let options = SessionOptions { plugin_paths: vec![plugin.to_owned()], read_only: false };
+    let options = SessionOptions { plugin_paths: vec![plugin.to_owned()], ..SessionOptions::default() };
     let mut session = Session::create(&project, &clip, None, &options)?;
     let wide: Values = [("radius".to_owned(), Value::Int(20))].into_iter().collect();
     for (params, points) in [(wide, PointSource::Given(points)), (Values::default(), PointSource::Existing)] {

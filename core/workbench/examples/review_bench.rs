@@ -104,7 +104,7 @@ struct Scene {
 }
 
 fn options(asked: &Asked) -> SessionOptions {
-    SessionOptions { plugin_paths: vec![asked.plugin.clone()], read_only: false }
+    SessionOptions { plugin_paths: vec![asked.plugin.clone()], ..SessionOptions::default() }
 }
 
 /// Renders the clip, gives the tracker the leaves that can be seen at first, and chooses evenly among them.

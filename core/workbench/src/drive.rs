@@ -16,14 +16,16 @@ use honami_store::Seam;
 
 use crate::ear::Ear;
 use crate::error::WorkbenchError;
-use crate::progress::{Flow, Progress};
+use crate::progress::Progress;
 use crate::stamp::SEED;
 
 mod board;
 mod resume;
+mod trial;
 
 use board::Board;
 use resume::Saved;
+use trial::Before;
 
 /// More features than any tracker finds in a frame; a tracker's own parameter sets the real limit.
 pub(crate) const MAX_FEATURES: u32 = 100_000;
@@ -81,8 +83,36 @@ pub type Rows = Vec<(TrackId, Sample)>;
 /// Takes the rows of a frame; frames come in order.
 pub type Sink<'a> = &'a mut dyn FnMut(u32, &Rows) -> Result<(), WorkbenchError>;
 
-/// Gives another tracker like the one that has died, unless it has died too often.
-pub type Restart<'a> = &'a mut dyn FnMut(&Seam, Death) -> Result<Tracker, WorkbenchError>;
+/// Who has other trackers for a drive: where one has died, and where its file was rebuilt.
+pub trait Relay {
+    /// Another like the one that has died.
+    ///
+    /// # Errors
+    /// When it has died too often, or cannot be made again.
+    fn again(&mut self, seam: &Seam, death: Death) -> Result<Tracker, WorkbenchError>;
+
+    /// One of a rebuilt file, where there is a new one. It is on trial for a few frames, which no sink is given
+    /// meanwhile.
+    fn rebuilt(&mut self) -> Option<Tracker>;
+
+    /// That one cannot go on from where the other is, which goes on itself.
+    fn refused(&mut self, why: &HostError);
+
+    /// That one has taken over; this is the first frame of its own.
+    ///
+    /// # Errors
+    /// When that cannot be kept; the drive ends then.
+    fn taken(&mut self, frame: u32) -> Result<(), WorkbenchError>;
+
+    /// That one has failed on trial; from this frame on the one before tracks them all.
+    ///
+    /// # Errors
+    /// When that cannot be kept; the drive ends then.
+    fn given_up(&mut self, frame: u32, why: &HostError) -> Result<(), WorkbenchError>;
+
+    /// That one is on trial no more.
+    fn proved(&mut self);
+}
 
 /// So often a tracker may die in one frame, whatever is known of it otherwise.
 const MAX_DEATHS: u32 = 3;
@@ -130,7 +160,8 @@ pub fn check_seeds(seeds: &[Seed], clip: &Clip) -> Result<(), WorkbenchError> {
 /// When the tracker's process dies another one goes on with what it carried when it was asked last, by the same way to the
 /// same bits; or, where it saves nothing, with the features that were seen in the frame before. A frame in which that dies,
 /// too, is left out, and all are lost there. Where a person stops it, or the tracker fails, the frames before are
-/// with the sink already.
+/// with the sink already. A tracker that was rebuilt meanwhile goes on in the same way, and has the other waiting until
+/// it has done some frames.
 ///
 /// # Errors
 /// What the clip, the tracker or the sink met.
@@ -140,68 +171,58 @@ pub fn drive(
     mut plan: Plan,
     numbers: Numbers<'_>,
     sink: Sink<'_>,
-    mut restart: Option<Restart<'_>>,
+    mut relay: Option<&mut dyn Relay>,
     progress: &dyn Progress,
 ) -> Result<Driven, WorkbenchError> {
     plan.seeds.sort_by_key(|seed| (seed.frame, seed.track));
-    let (first, total) = (plan.frames.start, u64::from(plan.frames.end - plan.frames.start));
+    let Range { start: first, end } = plan.frames;
+    let total = u64::from(end - first);
     let ear = Ear::new(tracker.plugin(), progress);
-    let board = Board::new(first);
     let mut ride = Ride {
         media,
         tracker,
         plan: &plan,
-        board,
+        board: Board::new(first),
         born: BTreeMap::new(),
         saved: Saved::default(),
         step_secs: Vec::new(),
+        before: None,
     };
-    let mut stopped = ear.call(0, total, |call| ride.begin(call));
-    for frame in plan.frames.clone() {
+    let mut outcome = ear.call(0, total, |call| ride.begin(call));
+    let mut frame = first;
+    // After the last frame comes the end, which may have answers, too.
+    while frame <= end && outcome.is_ok() {
         let done = u64::from(frame - first);
-        if stopped.is_ok() && progress.report(done, total, "frame") == Flow::Stop {
-            stopped = Err(WorkbenchError::Stopped);
-        }
-        if stopped.is_err() {
-            break;
-        }
-        stopped = ear
-            .call(done, total, |call| ride.keep(frame, call).and_then(|()| ride.step(frame, numbers, call)));
-        let (mut death, mut n_deaths) = (Death::First, 0);
-        while let (Err(WorkbenchError::Plugin(HostError::Ended { how, .. })), Some(restart)) =
-            (&stopped, restart.as_mut())
-        {
-            let seam = Seam { frame: ride.board.end, why: how.to_string(), build: None };
-            if n_deaths + 1 == MAX_DEATHS {
-                // What it carried may be what it dies of.
-                ride.saved.forget();
+        outcome = if ear.is_told_to_stop(done, total) && frame < end {
+            Err(WorkbenchError::Stopped)
+        } else {
+            ear.call(done, total, |call| ride.advance(frame, relay.as_deref_mut(), numbers, call))
+        };
+        if let Some(relay) = &mut relay {
+            if let Some(back) = ride.give_up(&mut outcome, &mut **relay)? {
+                frame = back;
+                continue;
             }
-            stopped = restart(&seam, death).and_then(|tracker| {
-                *ride.tracker = tracker;
-                ride.tracker.pardon(true);
-                let resumed = ear.call(done, total, |call| ride.resume(frame, death, numbers, call));
-                ride.tracker.pardon(false);
-                resumed
-            });
-            death = Death::Again;
-            n_deaths += 1;
-            if n_deaths == MAX_DEATHS {
-                break;
+            if frame < end {
+                outcome = ride.revive(frame, outcome, &mut **relay, numbers, &ear);
             }
-            if progress.report(done, total, "frame") == Flow::Stop {
-                stopped = Err(WorkbenchError::Stopped);
+            if outcome.is_ok() {
+                ride.settle(frame, &mut **relay);
             }
         }
-        ride.board.flush(sink)?;
+        if ride.before.is_none() {
+            ride.board.flush(sink)?;
+        }
+        frame += 1;
     }
-    if stopped.is_ok() {
-        stopped = ear.call(total, total, |call| ride.end(numbers, call));
-        ride.board.flush(sink)?;
-        progress.report(total, total, "frame");
-    }
-    match stopped {
+    match outcome {
         // What was tracked is kept; that it was stopped shows in how far it came.
-        Ok(()) | Err(WorkbenchError::Stopped | WorkbenchError::Plugin(HostError::Cancelled { .. })) => {}
+        Ok(()) | Err(WorkbenchError::Stopped | WorkbenchError::Plugin(HostError::Cancelled { .. })) => {
+            if let Some(relay) = relay.filter(|_| ride.before.is_some()) {
+                relay.proved();
+            }
+            ride.board.flush(sink)?;
+        }
         Err(error) => return Err(error),
     }
     Ok(Driven { end: ride.board.end, step_secs: ride.step_secs, warnings: ear.warnings() })
@@ -218,9 +239,29 @@ struct Ride<'a> {
     /// For another tracker, should this one die.
     saved: Saved,
     step_secs: Vec<f64>,
+    /// What waits while the tracker is on trial.
+    before: Option<Before>,
 }
 
 impl Ride<'_> {
+    /// Does a frame, with a rebuilt tracker where there is one; after the last frame, ends the stream.
+    fn advance(
+        &mut self,
+        frame: u32,
+        relay: Option<&mut (dyn Relay + '_)>,
+        numbers: Numbers<'_>,
+        call: &CallContext<'_>,
+    ) -> Result<(), WorkbenchError> {
+        if frame == self.plan.frames.end {
+            return self.end(numbers, call);
+        }
+        if let Some(relay) = relay {
+            self.relieve(frame, relay, numbers, call)?;
+        }
+        self.keep(frame, call)?;
+        self.step(frame, numbers, call)
+    }
+
     fn begin(&mut self, call: &CallContext<'_>) -> Result<(), WorkbenchError> {
         let clip = self.media.clip();
         let info = StreamInfo {

@@ -29,6 +29,11 @@ impl<'a> Ear<'a> {
         self.listen(|_| self.progress.report(done, total, "frame"), work)
     }
 
+    /// Whether the job is to stop, between two calls.
+    pub(crate) fn is_told_to_stop(&self, done: u64, total: u64) -> bool {
+        self.progress.report(done, total, "frame") == Flow::Stop
+    }
+
     /// Makes the only call of a job; its progress is the plugin's own.
     pub(crate) fn whole<R>(&self, what: &str, work: impl FnOnce(&CallContext<'_>) -> R) -> R {
         self.listen(|share| self.progress.report((share.clamp(0.0, 1.0) * 1000.0) as u64, 1000, what), work)

@@ -18,6 +18,7 @@ pub mod import;
 pub mod offer;
 pub mod plots;
 pub mod progress;
+pub mod rebuilt;
 pub mod retrack;
 pub mod review;
 pub mod script;

@@ -19,6 +19,9 @@ pub trait Progress: Sync {
     fn silent(&self, _plugin: &str, _at: &str, _silence: Option<Silence>) -> Patience {
         Patience::Usual
     }
+
+    /// Something has become of the job on its way that is worth a line; called from any thread.
+    fn say(&self, _line: &str) {}
 }
 
 /// Somebody who watches, told of all steps under one name.
@@ -40,6 +43,10 @@ impl Progress for Named<'_> {
 
     fn silent(&self, plugin: &str, at: &str, silence: Option<Silence>) -> Patience {
         self.progress.silent(plugin, at, silence)
+    }
+
+    fn say(&self, line: &str) {
+        self.progress.say(line);
     }
 }
 

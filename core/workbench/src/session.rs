@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use honami_host::Registry;
+use honami_host::{Registry, SearchPath};
 use honami_media::{Media, OpenOptions, Step};
 use honami_model::edit::Transaction;
 use honami_store::{Access, ClipRecord, Project, StoreError};
@@ -16,8 +16,18 @@ use crate::track::any_reaches;
 pub struct SessionOptions {
     /// Files and folders in which plugins are looked for first.
     pub plugin_paths: Vec<PathBuf>,
+    /// One's own build trees, in which plugins are looked for next, and trusted.
+    pub dev: Vec<PathBuf>,
     /// Only look: never lock the project.
     pub read_only: bool,
+}
+
+impl SessionOptions {
+    /// Looks for the plugins that there are now.
+    #[must_use]
+    pub fn registry(&self) -> Registry {
+        Registry::scan_path(&SearchPath::of_process(&self.plugin_paths).with_dev(&self.dev))
+    }
 }
 
 /// An open project with its clip and the plugins at hand.
@@ -28,6 +38,8 @@ pub struct Session {
     pub media: Arc<Media>,
     /// The plugins.
     pub registry: Arc<Registry>,
+    /// What it started with.
+    pub options: SessionOptions,
     /// What was found unfinished when the project was opened, and what became of it: one line each.
     pub notes: Vec<String>,
 }
@@ -39,6 +51,11 @@ impl Session {
     /// When the project is locked by another session, is none, or its clip is missing or has changed.
     pub fn open(path: &Path, options: &SessionOptions) -> Result<Self, WorkbenchError> {
         Self::open_with(path, options, &mut |_, _| {})
+    }
+
+    /// Looks for the plugins again: those that were rebuilt may take other parameters.
+    pub fn look_for_plugins(&mut self) {
+        self.registry = Arc::new(self.options.registry());
     }
 
     /// [`open`](Self::open), telling which step is taken with which clip: a long one takes seconds to read.
@@ -55,7 +72,8 @@ impl Session {
         // Before the clip, which may be missing.
         let notes = if options.read_only { Vec::new() } else { show_interrupted(&mut project)? };
         let media = Arc::new(open_clip_of(&project, on_step)?);
-        Ok(Self { project, media, registry: Arc::new(Registry::scan(&options.plugin_paths)), notes })
+        let (registry, options) = (Arc::new(options.registry()), options.clone());
+        Ok(Self { project, media, registry, options, notes })
     }
 
     /// Opens a project to write, or to look where another session writes; tells its steps as
@@ -112,8 +130,8 @@ impl Session {
             clip: media.clip().clone(),
         };
         let project = Project::create(project, &record)?;
-        let registry = Arc::new(Registry::scan(&options.plugin_paths));
-        Ok(Self { project, media: Arc::new(media), registry, notes: Vec::new() })
+        let (registry, options) = (Arc::new(options.registry()), options.clone());
+        Ok(Self { project, media: Arc::new(media), registry, options, notes: Vec::new() })
     }
 }
 

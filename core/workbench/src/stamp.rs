@@ -55,5 +55,8 @@ fn narrow(version: u32) -> u16 {
     u16::try_from(version).unwrap_or(u16::MAX)
 }
 
+/// What was done where a rebuilt tracker did frames again, beside the run that it went on with.
+pub(crate) const REBUILT: &str = "rebuilt";
+
 /// The seed of every run: shipped plugins make no random choices, and what is repeated should repeat.
 pub(crate) const SEED: u64 = 0;

@@ -6,29 +6,29 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
-use honami_host::{CallContext, Host, Kind, Origin, PluginInfo, Tracker, Values};
+use honami_host::{CallContext, Host, Kind, PluginInfo, Tracker, Values};
 use honami_media::{Media, OpenOptions};
 use honami_model::clip::Clip;
 use honami_model::document::{RunId, ShownRun};
 use honami_model::track::{TrackId, TrackSet};
-use honami_store::{Project, RunHead, RunWriter, Seam};
+use honami_store::{Build, Project, RunHead, RunWriter};
 use serde::{Deserialize, Serialize};
 
-use crate::drive::{self, Death, Detect, Driven, Plan, Rows, Seed};
+use crate::drive::{self, Detect, Driven, Plan, Seed};
 use crate::error::WorkbenchError;
 use crate::progress::Progress;
+use crate::rebuilt::{Difference, Found, Made};
 use crate::session::Session;
-use crate::stamp::stamp;
+use crate::stamp::{REBUILT, stamp};
 
 mod ends;
+mod kept;
 mod resume;
 
 pub use ends::Ends;
+use kept::{Kept, Tracked};
 use resume::Asked;
 pub use resume::{resume, unfinished};
-
-/// Frames that are written at a time.
-const CHUNK: usize = 64;
 
 /// Numbers that a table of points may use: above them there must be room for those of features to come.
 pub(crate) const MAX_NUMBER: u32 = i32::MAX.unsigned_abs();
@@ -78,23 +78,12 @@ pub struct TrackRequest {
 /// A run that is ready to go.
 pub struct TrackJob {
     media: Arc<Media>,
-    tracker: Tracker,
+    tracker: (Tracker, Made),
+    host: Host,
     plan: Plan,
     writer: RunWriter,
-    maker: Box<Maker>,
     /// The run that it goes on with.
     resumes: Option<RunId>,
-}
-
-/// What a tracker is made from, and again when its process has died.
-struct Maker {
-    host: Host,
-    plugin: PluginInfo,
-    params: Values,
-}
-
-fn make(host: &Host, plugin: &PluginInfo, params: &Values) -> Result<(Tracker, Origin), WorkbenchError> {
-    Ok(host.tracker(plugin, params, &CallContext::silent())?)
 }
 
 /// A run that has ended; give it to [`finish`].
@@ -106,6 +95,21 @@ pub struct TrackDone {
     driven: Driven,
     seconds: f64,
     error: Option<WorkbenchError>,
+    /// What a rebuilt tracker makes of the frames before it took over.
+    beside: Option<Found>,
+}
+
+/// A run beside a run: what the tracker that was rebuilt on its way makes of the frames before.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rebuilt {
+    /// The first frame that the rebuilt one tracked in the run.
+    pub seam: u32,
+    /// Its build.
+    pub build: Build,
+    /// The run that holds what it makes of the frames before; it is not shown.
+    pub run: RunId,
+    /// How that differs from what the build before had made of them.
+    pub difference: Difference,
 }
 
 /// What a run found.
@@ -132,8 +136,10 @@ pub struct TrackOutcome {
     pub tracker_secs: f64,
     /// Why it ended early, when nobody stopped it; the frames before are kept.
     pub error: Option<WorkbenchError>,
-    /// What the tracker warned of.
+    /// What the tracker warned of, and what became of builds that could not take over.
     pub warnings: Vec<String>,
+    /// What the tracker was rebuilt to last, where it was and had done frames before.
+    pub rebuilt: Option<Rebuilt>,
     /// All of that in one line.
     pub line: String,
 }
@@ -182,10 +188,10 @@ fn begin(
     asked: &Asked,
 ) -> Result<TrackJob, WorkbenchError> {
     let (host, params) = (Host::new(), request.params.clone());
-    let (tracker, origin) = make(&host, plugin, &params)?;
-    let maker = Maker { host, plugin: plugin.clone(), params };
+    let (tracker, made) = Made::start(&host, plugin.clone(), params, &CallContext::silent())?;
+    let revision = session.project.revision();
     let head = RunHead {
-        provenance: stamp(session.project.revision(), "track", plugin, &request.params, origin),
+        provenance: stamp(revision, "track", plugin, &request.params, made.origin.clone()),
         tracks: seeds.iter().map(|seed| seed.track).collect(),
         frames: request.frames.clone(),
     };
@@ -194,10 +200,10 @@ fn begin(
     let max_threads = threads();
     Ok(TrackJob {
         media: Arc::clone(&session.media),
-        tracker,
+        tracker: (tracker, made),
+        host,
         plan: Plan { frames: request.frames.clone(), seeds, detect, max_threads },
         writer,
-        maker: Box::new(maker),
         resumes: None,
     })
 }
@@ -206,7 +212,7 @@ impl TrackJob {
     /// Short name of the tracker.
     #[must_use]
     pub fn plugin(&self) -> &str {
-        &self.maker.plugin.short_name
+        &self.tracker.1.plugin.short_name
     }
 
     /// Tracks to the end, or until a person stops it. What was tracked is kept in any case, also when the
@@ -215,21 +221,22 @@ impl TrackJob {
     /// # Errors
     /// When the project cannot be written; what a tracker met that failed before it had tracked a frame: then there is
     /// no run.
-    pub fn run(mut self, progress: &dyn Progress) -> Result<TrackDone, WorkbenchError> {
+    pub fn run(self, progress: &dyn Progress) -> Result<TrackDone, WorkbenchError> {
         let begun = Instant::now();
         let frames = self.plan.frames.clone();
-        let mut kept = Kept { writer: self.writer, first_frame: frames.start, frames: Vec::new() };
-        let driven = kept.track(&self.media, &mut self.tracker, &self.maker, self.plan, progress);
+        let plugin = self.tracker.1.plugin.short_name.clone();
+        let mut kept = Kept::new(self.writer, frames.start);
+        let tracked = kept::track(&mut kept, &self.media, self.tracker, &self.host, self.plan, progress);
         let run = kept.writer.run();
         let reached = kept.first_frame;
-        let (driven, error) = match driven {
-            Ok(driven) => (driven, None),
+        let (Tracked { driven, beside }, error) = match tracked {
+            Ok(tracked) => (tracked, None),
             // A run that goes on with another has that one's last frame first.
             Err(error) if reached <= frames.start + u32::from(self.resumes.is_some()) => {
                 kept.writer.discard()?;
                 return Err(error);
             }
-            Err(error) => (Driven { end: reached, step_secs: Vec::new(), warnings: Vec::new() }, Some(error)),
+            Err(error) => (Tracked::up_to(reached), Some(error)),
         };
         match &error {
             Some(error) => kept.writer.abandon(&error.to_string()).map(drop)?,
@@ -237,53 +244,8 @@ impl TrackJob {
             None => kept.writer.finish().map(drop)?,
         }
         let seconds = begun.elapsed().as_secs_f64();
-        let (plugin, resumes) = (self.maker.plugin.short_name, self.resumes);
-        Ok(TrackDone { run, plugin, frames, resumes, driven, seconds, error })
-    }
-}
-
-/// Frames that are tracked, and the pen that keeps them a chunk at a time.
-struct Kept {
-    writer: RunWriter,
-    first_frame: u32,
-    frames: Vec<Rows>,
-}
-
-impl Kept {
-    fn track(
-        &mut self,
-        media: &Media,
-        tracker: &mut Tracker,
-        maker: &Maker,
-        plan: Plan,
-        progress: &dyn Progress,
-    ) -> Result<Driven, WorkbenchError> {
-        let kept = std::cell::RefCell::new(self);
-        let mut again = |seam: &Seam, death: Death| {
-            // A file that was rebuilt meanwhile is another one, and begins anew.
-            let (tracker, _) = make(&maker.host, &maker.plugin, &maker.params)?;
-            if death == Death::First {
-                kept.borrow_mut().writer.seam(seam)?;
-            }
-            Ok(tracker)
-        };
-        let mut numbers = |n| Ok(kept.borrow_mut().writer.reserve_tracks(n)?);
-        let mut sink = |_: u32, rows: &Rows| kept.borrow_mut().add(rows);
-        let driven = drive::drive(media, tracker, plan, &mut numbers, &mut sink, Some(&mut again), progress);
-        kept.borrow_mut().flush()?;
-        driven
-    }
-
-    fn add(&mut self, rows: &Rows) -> Result<(), WorkbenchError> {
-        self.frames.push(rows.clone());
-        if self.frames.len() == CHUNK { self.flush() } else { Ok(()) }
-    }
-
-    fn flush(&mut self) -> Result<(), WorkbenchError> {
-        self.writer.append(self.first_frame, &self.frames)?;
-        self.first_frame += u32::try_from(self.frames.len()).unwrap_or(u32::MAX);
-        self.frames.clear();
-        Ok(())
+        let resumes = self.resumes;
+        Ok(TrackDone { run, plugin, frames, resumes, driven, seconds, error, beside })
     }
 }
 
@@ -292,7 +254,7 @@ impl Kept {
 /// # Errors
 /// What the project met.
 pub fn finish(session: &mut Session, done: TrackDone) -> Result<TrackOutcome, WorkbenchError> {
-    let TrackDone { run, plugin, frames, resumes, driven, seconds, error } = done;
+    let TrackDone { run, plugin, frames, resumes, driven, seconds, error, beside } = done;
     let info = session.project.run(run)?;
     let found = info.tracks;
     let n_tracks = found.len();
@@ -323,11 +285,15 @@ pub fn finish(session: &mut Session, done: TrackDone) -> Result<TrackOutcome, Wo
     for seam in &info.seams {
         line += &format!("; {seam}");
     }
+    let rebuilt = beside.map(|found| keep_beside(session, found)).transpose()?;
     if stopped {
         line = format!("{plugin}: stopped at frame {}; {kept}", driven.end);
     }
     if let Some(error) = &error {
         line = format!("{plugin} failed at frame {}, {kept}: {error}", driven.end);
+    }
+    if let Some(Rebuilt { seam, difference, .. }) = &rebuilt {
+        line += &format!("; rebuilt at frame {seam}: {difference}");
     }
     let Driven { step_secs, warnings, .. } = driven;
     let (frames, tracker_secs) = (reached, step_secs.iter().sum());
@@ -343,8 +309,23 @@ pub fn finish(session: &mut Session, done: TrackDone) -> Result<TrackOutcome, Wo
         tracker_secs,
         error,
         warnings,
+        rebuilt,
         line,
     })
+}
+
+/// Keeps what a rebuilt tracker makes of the frames before, beside the run.
+fn keep_beside(session: &mut Session, found: Found) -> Result<Rebuilt, WorkbenchError> {
+    let Found { made, seam, frames, spans, difference } = found;
+    let (build, revision) = (made.build(), session.project.revision());
+    let head = RunHead {
+        provenance: stamp(revision, REBUILT, &made.plugin, &made.params, made.origin),
+        tracks: spans.iter().map(|(track, _)| *track).collect(),
+        frames,
+    };
+    let kept = session.project.keep_runs(&[(head, spans)])?;
+    let run = kept.first().copied().unwrap_or(RunId(0));
+    Ok(Rebuilt { seam, build, run, difference })
 }
 
 /// Whether any of the tracks, as it is shown, goes on at this frame.

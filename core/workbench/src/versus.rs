@@ -17,6 +17,7 @@ pub use honami_motion::disagreement::{
 };
 
 use crate::error::WorkbenchError;
+use crate::stamp::REBUILT;
 
 /// A run that can be compared.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,8 +26,8 @@ pub struct Entrant {
     pub run: RunId,
     /// Short name of its tracker.
     pub tracker: String,
-    /// Version of the tracker.
-    pub version: String,
+    /// Content hash of its library.
+    pub sha256: String,
     /// The parameters in which it differs from other runs of the same tracker: `radius=5`; empty where in none.
     pub params: String,
     /// The tracks it has samples of.
@@ -35,6 +36,8 @@ pub struct Entrant {
     pub frames: Range<u32>,
     /// Whether it is shown.
     pub is_shown: bool,
+    /// Whether a tracker that was rebuilt in the middle of a run did the frames before again.
+    pub is_beside: bool,
 }
 
 impl Entrant {
@@ -42,12 +45,13 @@ impl Entrant {
     #[must_use]
     pub fn name(&self) -> String {
         let gap = if self.params.is_empty() { "" } else { " " };
-        format!("run {} {}{gap}{}", self.run, self.tracker, self.params)
+        let rebuilt = if self.is_beside { " rebuilt" } else { "" };
+        format!("run {} {}{rebuilt}{gap}{}", self.run, self.tracker, self.params)
     }
 
-    /// Whether the same tracker with the same parameters made both.
+    /// Whether the same build of a tracker with the same parameters made both.
     fn is_alike(&self, other: &Self) -> bool {
-        let made = |one: &Self| (one.tracker.clone(), one.version.clone(), one.params.clone());
+        let made = |one: &Self| (one.tracker.clone(), one.sha256.clone(), one.params.clone());
         made(self) == made(other)
     }
 
@@ -66,16 +70,17 @@ pub fn entrants(project: &Project) -> Result<Vec<Entrant>, WorkbenchError> {
     let shown: BTreeSet<RunId> = project.document().runs().iter().map(|shown| shown.run).collect();
     let mut runs = project.runs()?;
     runs.retain(|run| {
-        let is_whole = matches!(run.head.provenance.what.as_str(), "track" | "import");
+        let is_whole = matches!(run.head.provenance.what.as_str(), "track" | "import" | REBUILT);
         is_whole && run.state != RunState::Running && !run.tracks.is_empty()
     });
     let made: Vec<Provenance> = runs.iter().map(|run| run.head.provenance.clone()).collect();
     let entrant = |run: honami_store::RunInfo| {
-        let Provenance { plugin_id, plugin_version, .. } = &run.head.provenance;
+        let Provenance { what, plugin_id, plugin_sha256, .. } = &run.head.provenance;
         Entrant {
             run: run.id,
             tracker: plugin_id.rsplit('.').next().unwrap_or(plugin_id).to_owned(),
-            version: plugin_version.clone(),
+            sha256: plugin_sha256.clone(),
+            is_beside: what == REBUILT,
             params: differing(&run.head.provenance, &made),
             is_shown: shown.contains(&run.id),
             tracks: run.tracks,
@@ -96,9 +101,16 @@ fn differing(own: &Provenance, all: &[Provenance]) -> String {
 }
 
 /// The two that are compared unless others are wished for: B is the newest that is shown, A the newest before it of
-/// another tracker, or else of the same, that has some of its tracks. `None` where no two runs have a track together.
+/// another tracker or build, or else of the same, that has some of its tracks. After a run in which the tracker was rebuilt
+/// they are that run and what the rebuilt one made of the frames before. `None` where no two runs have a track together.
 #[must_use]
 pub fn usual(entrants: &[Entrant]) -> Option<[Entrant; 2]> {
+    if let Some((newest, others)) = entrants.split_first()
+        && newest.is_beside
+        && let Some(run) = others.iter().find(|other| other.is_shown && other.shares_tracks(newest))
+    {
+        return Some([run.clone(), newest.clone()]);
+    }
     let (shown, hidden): (Vec<&Entrant>, Vec<&Entrant>) = entrants.iter().partition(|one| one.is_shown);
     let by_rank: Vec<&Entrant> = shown.into_iter().chain(hidden).collect();
     by_rank.iter().enumerate().find_map(|(at, b)| {

@@ -28,6 +28,7 @@ use super::dense::Measuring;
 use super::form::{Plugin, Task};
 use super::jobs::{Done, Running, Work};
 use super::offering::Offering;
+use super::rebuilding::Rebuilding;
 use super::recovery::Recovery;
 use super::reviewing::Reviewing;
 use super::seat::Seat;
@@ -56,6 +57,8 @@ pub(super) struct World {
     n_before: usize,
     /// The track that a correction is open on.
     studied: Option<TrackId>,
+    /// Looks after the files of plugins; `None` where there are none but shipped ones, or no thread for it.
+    rebuilding: Option<Rebuilding>,
     /// Works corrections out; `None` where there is no thread for it.
     offering: Option<Offering>,
 }
@@ -67,6 +70,7 @@ impl World {
     pub(super) fn new(session: Session, waker: Waker) -> Self {
         let reviewing = Reviewing::start(Arc::clone(&session.media), waker.clone()).ok();
         let offering = Offering::start(waker.clone()).ok();
+        let rebuilding = Rebuilding::start(session.registry.plugins(), waker.clone());
         let (rows, seat) = (BTreeMap::new(), Seat::default());
         let (running, measuring) = (None, None);
         let n_before = session.project.history().entries().len();
@@ -82,6 +86,7 @@ impl World {
             n_before,
             seat,
             studied: None,
+            rebuilding,
             offering,
         }
     }
@@ -95,7 +100,7 @@ impl World {
             let holder = project.holder();
             state.read_only = Some(holder.map_or_else(|| "somebody else".to_owned(), |h| h.to_string()));
         }
-        state.plugins = self.session.registry.plugins().iter().filter_map(plugin).collect();
+        state.plugins = self.plugins();
         state.n_ready = self.session.media.n_ready();
         let mut notes = self.session.notes.clone();
         notes.extend_from_slice(self.session.media.notes());
@@ -113,6 +118,10 @@ impl World {
         }
         self.seat = Seat::of(&state);
         Ok(state)
+    }
+
+    fn plugins(&self) -> Vec<Plugin> {
+        self.session.registry.plugins().iter().filter_map(plugin).collect()
     }
 
     /// Which project it is, and where its document stands.
@@ -378,7 +387,7 @@ impl World {
     }
 
     fn track(&mut self, request: &TrackRequest, now: Duration) -> Facts {
-        let work = Work::Track(track::prepare(&mut self.session, request)?);
+        let work = Work::Track(Box::new(track::prepare(&mut self.session, request)?));
         self.start(work, &request.plugin, true, now)
     }
 
@@ -391,7 +400,7 @@ impl World {
         };
         let job = track::resume(&mut self.session, run)?;
         let plugin = job.plugin().to_owned();
-        self.start(Work::Track(job), &plugin, true, now)
+        self.start(Work::Track(Box::new(job)), &plugin, true, now)
     }
 
     /// Lets a plugin start again that has failed too often.
@@ -414,7 +423,7 @@ impl World {
     }
 
     fn cluster(&mut self, request: &ClusterRequest, now: Duration) -> Facts {
-        let work = Work::Cluster(cluster::prepare(&self.session, request)?);
+        let work = Work::Cluster(Box::new(cluster::prepare(&self.session, request)?));
         self.start(work, &request.plugin, false, now)
     }
 
@@ -468,7 +477,17 @@ impl World {
         let answers = self.offering.as_mut().map(Offering::news).unwrap_or_default();
         news.extend(answers.into_iter().map(Fact::Offered));
         news.extend(self.job_news());
+        news.extend(self.rebuilt());
         news
+    }
+
+    /// The plugins there are now, when the file of one is another than it was. While a job runs it looks after its own.
+    fn rebuilt(&mut self) -> Option<Fact> {
+        let rebuilding = self.rebuilding.as_ref().filter(|_| self.running.is_none())?;
+        rebuilding.is_news().then(|| {
+            self.session.look_for_plugins();
+            Fact::Plugins(self.plugins())
+        })
     }
 
     fn job_news(&mut self) -> Vec<Fact> {
@@ -478,6 +497,7 @@ impl World {
         let prints = running.prints();
         let mut facts: Vec<Fact> =
             (!prints.is_empty()).then_some(Fact::Printed(prints)).into_iter().collect();
+        facts.extend(running.said().into_iter().map(Fact::Happened));
         if !is_finished {
             let step = running.step();
             let (done, quiet) = ((step.done, step.total), running.quiet());

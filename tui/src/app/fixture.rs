@@ -211,7 +211,8 @@ pub(super) fn entrants() -> Vec<Entrant> {
     let entrant = |(run, radius, is_shown)| Entrant {
         run: RunId(run),
         tracker: "klt".to_owned(),
-        version: "0.1.0".to_owned(),
+        sha256: "3f2a".to_owned(),
+        is_beside: false,
         params: format!("radius={radius}"),
         tracks: [1, 2, 7].map(TrackId).into_iter().collect(),
         frames: 0..100,

@@ -143,6 +143,18 @@ impl Form {
         }
     }
 
+    /// Takes what was filled into another form of this task: the plugin, and what it still takes under the same ids.
+    pub fn take(&mut self, other: &Self) {
+        self.choose(&other.plugin().name);
+        for (id, value) in other.values.iter() {
+            // What it takes no more is as it is by itself.
+            self.values.set(&self.plugins[self.which].params, id, value.clone()).ok();
+        }
+        self.unfolded = other.unfolded;
+        self.typed.clone_from(&other.typed);
+        self.at = other.at.min(self.rows().len().saturating_sub(1));
+    }
+
     /// The chosen plugin.
     #[must_use]
     pub fn plugin(&self) -> &Plugin {

@@ -22,9 +22,9 @@ const TICK: Duration = Duration::from_millis(100);
 
 /// A job that can be run on any thread.
 pub(super) enum Work {
-    Track(TrackJob),
+    Track(Box<TrackJob>),
     Retrack(Box<RetrackJob>),
-    Cluster(ClusterJob),
+    Cluster(Box<ClusterJob>),
 }
 
 /// What a job has come to.
@@ -59,6 +59,8 @@ struct Shared {
     stop: AtomicBool,
     ended: Arc<AtomicBool>,
     waker: Waker,
+    /// What has become of it on its way, and was not told yet.
+    said: Mutex<Vec<String>>,
 }
 
 impl Progress for Shared {
@@ -74,6 +76,11 @@ impl Progress for Shared {
 
     fn silent(&self, plugin: &str, at: &str, silence: Option<Silence>) -> Patience {
         self.watch.lock().unwrap_or_else(PoisonError::into_inner).look(plugin, at, silence)
+    }
+
+    fn say(&self, line: &str) {
+        self.said.lock().unwrap_or_else(PoisonError::into_inner).push(line.to_owned());
+        self.waker.wake();
     }
 
     fn hear(&self, plugin: &str, level: Level, line: &str) {
@@ -137,6 +144,7 @@ impl Running {
             step: Mutex::default(),
             prints: Mutex::default(),
             watch: Mutex::default(),
+            said: Mutex::default(),
             stop: AtomicBool::new(false),
             ended: Arc::default(),
             waker,
@@ -172,6 +180,11 @@ impl Running {
     /// What plugins have printed since it was asked last.
     pub(super) fn prints(&self) -> Vec<Print> {
         self.shared.prints.lock().unwrap_or_else(PoisonError::into_inner).drain(..).collect()
+    }
+
+    /// What has become of the job on its way, told once.
+    pub(super) fn said(&self) -> Vec<String> {
+        std::mem::take(&mut *self.shared.said.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
     pub(super) fn is_finished(&self) -> bool {

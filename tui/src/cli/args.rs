@@ -39,6 +39,9 @@ pub(super) struct Common {
     /// Look for plugins in this file or folder first.
     #[arg(long = "plugin", value_name = "PATH", global = true)]
     pub(super) plugins: Vec<PathBuf>,
+    /// Your own build tree: plugins built in this folder are found, and trusted while this honami runs.
+    #[arg(long, value_name = "DIR", global = true)]
+    pub(super) dev: Vec<PathBuf>,
 }
 
 #[derive(Debug, Subcommand)]
@@ -172,6 +175,9 @@ pub(super) struct Track {
     /// (default: the newest such run).
     #[arg(long, value_name = "RUN", num_args = 0..=1, conflicts_with_all = ["with", "set", "detect", "points", "mask", "region", "frames", "every"])]
     pub(super) resume: Option<Option<u32>>,
+    /// Stay when all is tracked, and track again with every rebuilt file of the plugin, until Ctrl-C.
+    #[arg(long)]
+    pub(super) watch: bool,
 }
 
 #[derive(Args, Debug)]

@@ -159,7 +159,7 @@ fn file(plugin: &str, common: &Common) -> anyhow::Result<PathBuf> {
     if path.is_file() {
         return Ok(std::path::absolute(file_of(path))?);
     }
-    let registry = Registry::scan(&common.plugins);
+    let registry = super::options(common).registry();
     let info = help::named(&registry, plugin)?;
     if let Trust::No(why) = &info.trust {
         anyhow::bail!("{} is not trusted: {why}", info.library.display());

@@ -90,7 +90,7 @@ fn open(args: &Compare, common: &Common) -> anyhow::Result<Opened> {
 }
 
 fn of_clip(media: Media, common: &Common) -> Opened {
-    let registry = Arc::new(Registry::scan(&common.plugins));
+    let registry = Arc::new(super::options(common).registry());
     Opened { media: Arc::new(media), registry, points: Vec::new(), keys: KeyPaths::new() }
 }
 

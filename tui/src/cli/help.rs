@@ -34,7 +34,7 @@ pub(super) fn manual(folder: &Path) -> anyhow::Result<Answer> {
 
 /// What this machine has.
 pub(super) fn doctor(common: &Common) -> Answer {
-    let findings = doctor::examine(&Registry::scan(&common.plugins));
+    let findings = doctor::examine(&super::options(common).registry());
     let mut rows = Vec::new();
     for finding in &findings {
         let mark = if finding.there { "ok" } else { "--" };
@@ -56,7 +56,7 @@ pub(super) fn doctor(common: &Common) -> Answer {
 
 /// Lists plugins, or describes one.
 pub(super) fn plugin(command: &Plugin, common: &Common) -> anyhow::Result<Outcome> {
-    let registry = Registry::scan(&common.plugins);
+    let registry = super::options(common).registry();
     let answer = match command {
         Plugin::Check(args) => return check::check(args, common).map(Outcome::Exit),
         Plugin::List => Ok(list(&registry)),
@@ -132,7 +132,7 @@ pub(super) fn named<'r>(registry: &'r Registry, name: &str) -> anyhow::Result<&'
 
 /// The plugins there are, as text.
 pub(super) fn plugins(common: &Common) -> String {
-    list(&Registry::scan(&common.plugins)).text
+    list(&super::options(common).registry()).text
 }
 
 /// What this machine has, in a few words.
@@ -176,6 +176,7 @@ fn trust(plugin: &PluginInfo) -> &'static str {
     match plugin.trust {
         Trust::Shipped => "shipped",
         Trust::Named => "named by you",
+        Trust::Dev => "in your build tree",
         Trust::Allowed { .. } => "allowed by you",
         Trust::Lab => "allowed by your lab",
         Trust::No(_) => "not trusted",

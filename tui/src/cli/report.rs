@@ -82,6 +82,10 @@ impl Progress for Bar {
             say(name);
         }
     }
+
+    fn say(&self, line: &str) {
+        self.bar.suspend(|| say(line));
+    }
 }
 
 /// One line on standard error; where that is gone with the terminal, nobody is left to hear it.

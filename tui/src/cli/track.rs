@@ -7,6 +7,7 @@ use honami_workbench::WorkbenchError;
 use honami_workbench::compare::read_points;
 use honami_workbench::plugins::{Kind, Registry, Values};
 use honami_workbench::progress::Progress;
+use honami_workbench::rebuilt::Difference;
 use honami_workbench::session::Session;
 use honami_workbench::track::{self, Area, PointSource, TrackJob, TrackOutcome, TrackRequest};
 use serde_json::json;
@@ -27,6 +28,14 @@ pub(super) fn track(args: &Track, common: &Common) -> anyhow::Result<Answer> {
         let job = track::resume(&mut session, run)?;
         return Ok(describe(&end(&mut session, job, &bar)?, &args.project));
     }
+    let request = asked(args, &session)?;
+    // Before the run begins: from here on Ctrl-C stops it and keeps what it has.
+    let bar = report::Bar::with(common);
+    Ok(describe(&run(&mut session, &request, &bar)?, &args.project))
+}
+
+/// What the command line asks for.
+pub(super) fn asked(args: &Track, session: &Session) -> anyhow::Result<TrackRequest> {
     let detect = args.detect.as_deref().filter(|name| !name.is_empty());
     // `--detect NAME` alone means that this tracker tracks, too.
     let plugin = args.plugin.with.as_deref().or(detect).unwrap_or(DEFAULT).to_owned();
@@ -41,17 +50,8 @@ pub(super) fn track(args: &Track, common: &Common) -> anyhow::Result<Answer> {
     let params = values(&session.registry, Kind::Tracker, &plugin, &args.plugin.set)?;
     let n_frames = session.media.clip().n_frames();
     let frames = args.frames.map_or(0..n_frames, |range| range.start..range.end.unwrap_or(n_frames));
-    let request = TrackRequest {
-        plugin,
-        params,
-        points: points(args, &session)?,
-        frames,
-        every: args.every,
-        area: area(args),
-    };
-    // Before the run begins: from here on Ctrl-C stops it and keeps what it has.
-    let bar = report::Bar::with(common);
-    Ok(describe(&run(&mut session, &request, &bar)?, &args.project))
+    let points = points(args, session)?;
+    Ok(TrackRequest { plugin, params, points, frames, every: args.every, area: area(args) })
 }
 
 /// The default tracker with its default parameters, over the whole clip.
@@ -124,7 +124,7 @@ pub(super) fn values(
     Ok(values)
 }
 
-fn describe(outcome: &TrackOutcome, project: &Path) -> Answer {
+pub(super) fn describe(outcome: &TrackOutcome, project: &Path) -> Answer {
     let line = match outcome.instead_of {
         Some(before) => format!(
             "{}\nrun {} is shown now instead of run {before}; back: echo undo | honami edit {}",
@@ -148,6 +148,24 @@ fn describe(outcome: &TrackOutcome, project: &Path) -> Answer {
         "seconds": outcome.seconds,
         "tracker_seconds": outcome.tracker_secs,
         "warnings": outcome.warnings,
+        "rebuilt": outcome.rebuilt.as_ref().map(|rebuilt| json!({
+            "frame": rebuilt.seam,
+            "plugin_version": rebuilt.build.version,
+            "plugin_sha256": rebuilt.build.sha256,
+            "beside": rebuilt.run.0,
+            "difference": difference(&rebuilt.difference),
+        })),
     });
     Answer { json, text: report::with_warnings(&line, &outcome.warnings), done: !outcome.stopped }
+}
+
+/// How two builds differ.
+pub(super) fn difference(found: &Difference) -> serde_json::Value {
+    json!({
+        "frames": [found.frames.start, found.frames.end],
+        "tracks": found.n_tracks,
+        "apart": found.n_apart,
+        "median_px": found.median_px,
+        "unseen": found.n_unseen,
+    })
 }

@@ -96,6 +96,29 @@ fn what_a_person_allowed_is_loaded_until_it_changes() {
 }
 
 #[test]
+fn what_is_built_in_ones_own_tree_is_found_and_trusted_unless_others_may_write_it() {
+    let tree = folder("tree", "other.txt");
+    let built = tree.join("target/debug");
+    fs::create_dir_all(&built).unwrap();
+    let library = built.join("d.so");
+    fs::copy(folder("built", "d.so").join("d.so"), &library).unwrap();
+    let book = TrustBook::in_folder(scratch().join("trust-of-dev"));
+    let path = SearchPath { dev: vec![tree], book: book.clone(), ..SearchPath::default() };
+    let found = |path: &SearchPath| Registry::scan_path(path).find(Kind::Tracker, "drift").unwrap().clone();
+    assert_eq!((found(&path).trust, found(&path).library), (Trust::Dev, library.clone()));
+    start(&found(&path), &[]).unwrap();
+    // What is installed from there is one's own, too, and without the tree it is a third party's.
+    let installed = SearchPath { installed: vec![built], dev: path.dev.clone(), ..SearchPath::default() };
+    assert_eq!(found(&installed).trust, Trust::Dev);
+    assert!(matches!(found(&SearchPath { dev: Vec::new(), ..installed }).trust, Trust::No(_)));
+    fs::set_permissions(&library, Permissions::from_mode(0o666)).unwrap();
+    assert!(matches!(found(&path).trust, Trust::No(why) if why.contains("others may write it: chmod go-w")));
+    fs::set_permissions(&library, Permissions::from_mode(0o644)).unwrap();
+    book.deny(&library).unwrap();
+    assert!(matches!(found(&path).trust, Trust::No(why) if why.contains("it was denied")));
+}
+
+#[test]
 fn what_others_may_write_cannot_be_allowed() {
     let installed = folder("shared", "e.so");
     let library = installed.join("e.so");

@@ -80,7 +80,8 @@ pub(super) fn cases(level: Level, seed: u64, place: &Place) -> Result<Vec<Case>,
         if project.exists() {
             fs::remove_file(&project)?;
         }
-        let options = SessionOptions { plugin_paths: vec![place.plugin.clone()], read_only: false };
+        let options =
+            SessionOptions { plugin_paths: vec![place.plugin.clone()], ..SessionOptions::default() };
         let mut session = Session::create(&project, &clip, None, &options)?;
         let followers = follow(&mut session, &truth, key_every, settings.n_frames)?;
         for (k, tracker) in TRACKERS.into_iter().enumerate() {

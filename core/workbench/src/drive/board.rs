@@ -9,6 +9,7 @@ use super::{Rows, Sink};
 use crate::error::WorkbenchError;
 
 /// Rows on their way to the sink: those the tracker gave, and the seeds of frames it has not answered yet.
+#[derive(Clone)]
 pub(super) struct Board {
     /// One past the last frame that was handed over.
     pub(super) end: u32,

@@ -1,18 +1,21 @@
 //! What becomes of a run whose tracker has died: another one goes on from what it carried, or from where points were seen.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::time::Instant;
 
 use honami_host::{CallContext, Checkpoint, HostError, Point, Tracker};
+use honami_store::Seam;
 
-use super::{Death, Numbers, Ride, due, view};
+use super::{Death, MAX_DEATHS, Numbers, Relay, Ride, due, view};
+use crate::ear::Ear;
 use crate::error::WorkbenchError;
 
 /// A tracker is not asked what it carries before it has worked so many times as long as its last answer took.
 const WORK_PER_SAVE: f64 = 100.0;
 
 /// What a tracker carried, the last time that it was asked.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct Saved {
     kept: Option<(u32, Checkpoint)>,
     /// The points that it was given since, by frame.
@@ -111,12 +114,41 @@ impl Ride<'_> {
         Ok(())
     }
 
-    /// Gives a new tracker what the one before carried or had seen when it died in frame `fatal`, and goes on with that
-    /// frame or, when that is fatal again, after it.
-    pub(super) fn resume(
+    /// Lets other trackers do a frame in which the tracker has died.
+    pub(super) fn revive(
         &mut self,
-        fatal: u32,
-        death: Death,
+        frame: u32,
+        mut outcome: Result<(), WorkbenchError>,
+        relay: &mut dyn Relay,
+        numbers: Numbers<'_>,
+        ear: &Ear<'_>,
+    ) -> Result<(), WorkbenchError> {
+        let Range { start, end } = self.plan.frames;
+        let (done, total) = (u64::from(frame - start), u64::from(end - start));
+        let mut death = Death::First;
+        for n_deaths in 1..=MAX_DEATHS {
+            let Err(WorkbenchError::Plugin(HostError::Ended { how, .. })) = &outcome else { break };
+            let seam = Seam { frame: self.board.end, why: how.to_string(), build: None };
+            if n_deaths == MAX_DEATHS {
+                // What it carried may be what it dies of.
+                self.saved.forget();
+            }
+            *self.tracker = relay.again(&seam, death)?;
+            self.tracker.pardon(true);
+            outcome = ear.call(done, total, |call| self.resume(frame, death, numbers, call));
+            self.tracker.pardon(false);
+            death = Death::Again;
+            if outcome.is_err() && ear.is_told_to_stop(done, total) {
+                return Err(WorkbenchError::Stopped);
+            }
+        }
+        outcome
+    }
+
+    /// Gives a new tracker what the one before carried or had seen, and goes on with it up to a frame, which is the next.
+    pub(super) fn rejoin(
+        &mut self,
+        next: u32,
         numbers: Numbers<'_>,
         call: &CallContext<'_>,
     ) -> Result<(), WorkbenchError> {
@@ -129,13 +161,26 @@ impl Ride<'_> {
                 unanswered
             }
         };
-        for frame in first..fatal {
+        for frame in first..next {
             if self.board.is_lost(frame) {
                 self.pass_over(frame, call)?;
             } else {
                 self.step(frame, numbers, call)?;
             }
         }
+        Ok(())
+    }
+
+    /// Goes on with a new tracker where the one before died in frame `fatal`, with that frame or, when that is fatal
+    /// again, after it.
+    fn resume(
+        &mut self,
+        fatal: u32,
+        death: Death,
+        numbers: Numbers<'_>,
+        call: &CallContext<'_>,
+    ) -> Result<(), WorkbenchError> {
+        self.rejoin(fatal, numbers, call)?;
         if death == Death::Again && fatal > self.plan.frames.start {
             self.board.lose(fatal);
             return self.pass_over(fatal, call);

@@ -26,7 +26,12 @@ fn project() -> (TempDir, Session) {
 fn run(session: &mut Session, plugin: &str, radius: i64, tracks: Range<u32>, off: f32) -> RunId {
     let word = || "test".to_owned();
     let provenance = Provenance {
-        what: if plugin == "pass" { "retrack" } else { "track" }.to_owned(),
+        what: match plugin {
+            "pass" => "retrack",
+            "mine" => REBUILT,
+            _ => "track",
+        }
+        .to_owned(),
         plugin_id: format!("org.honami.{plugin}"),
         plugin_version: "0.1.0".to_owned(),
         plugin_sha256: word(),
@@ -56,7 +61,7 @@ fn run(session: &mut Session, plugin: &str, radius: i64, tracks: Range<u32>, off
     let row = |frame| tracks.clone().map(|track| (TrackId(track), sample(track, frame))).collect();
     writer.append(0, &(0..N_FRAMES).map(row).collect::<Vec<Vec<_>>>()).unwrap();
     let run = writer.finish().unwrap();
-    if plugin != "pass" {
+    if !matches!(plugin, "pass" | "mine") {
         session.project.commit(Transaction::show_run(run, set)).unwrap();
     }
     run
@@ -88,8 +93,16 @@ fn the_newest_runs_of_different_trackers_are_compared() {
         named("run 2 klt radius=10", "run 3 klt radius=5"),
         "hidden ones are last"
     );
+    run(&mut session, "mine", 5, 1..3, 0.0);
+    assert_eq!(
+        usual_of(&session),
+        named("run 3 klt radius=5", "run 7 mine rebuilt"),
+        "beside the run before it"
+    );
+    run(&mut session, "klt", 7, 1..4, 0.0);
+    assert_eq!(usual_of(&session), named("run 3 klt radius=5", "run 8 klt radius=7"), "something newer");
     let all: Vec<RunId> = entrants(&session.project).unwrap().into_iter().map(|one| one.run).collect();
-    assert_eq!(all, [6, 5, 3, 2, 1].map(RunId), "the newest first, without the pass");
+    assert_eq!(all, [8, 7, 6, 5, 3, 2, 1].map(RunId), "the newest first, without the pass");
 }
 
 #[test]

@@ -53,6 +53,28 @@ fn what_does_not_count_is_not_shown() {
 }
 
 #[test]
+fn what_was_filled_in_is_kept_when_the_plugin_is_another_build() {
+    let mut plugins = fixture::state().plugins;
+    let form = |plugins: &[Plugin]| Form::new(Task::Track, plugins, &wanted(&[Features::Here])).unwrap();
+    let mut before = form(&plugins);
+    let params = before.plugin().params.clone();
+    for (id, value) in [("radius", Value::Int(12)), ("check", Value::Bool(false))] {
+        before.values.set(&params, id, value).unwrap();
+    }
+    (before.at, before.unfolded) = (3, true);
+    // One parameter is of another type now, one is gone.
+    plugins[0].params.retain(|param| param.id != "label");
+    let check = plugins[0].params.iter_mut().find(|param| param.id == "check").unwrap();
+    check.kind = ParamKind::String { default: "both".to_owned() };
+    let mut after = form(&plugins);
+    after.take(&before);
+    let value = |id: &str| after.values.get(id).cloned();
+    assert_eq!(value("radius"), Some(Value::Int(12)));
+    assert_eq!((value("check"), value("label")), (Some(Value::Text("both".to_owned())), None));
+    assert_eq!((after.at, after.unfolded, after.frames()), (3, true, 20..60));
+}
+
+#[test]
 fn choices_are_called_what_is_shown() {
     let features = [Features::Here, Features::Selected, Features::Found];
     let form = |plugin: Plugin| Form::new(Task::Track, &[plugin], &wanted(&features)).unwrap();

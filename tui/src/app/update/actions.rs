@@ -18,10 +18,11 @@ use super::time::Pace;
 use crate::app::before::Before;
 use crate::app::correcting::nudge_px;
 use crate::app::files::Lead;
-use crate::app::form::{Features, Form, Task, Wanted};
+use crate::app::form::{Features, Form, Plugin, Task, Wanted};
 use crate::app::lesson::Lesson;
 use crate::app::menu::Choice;
 use crate::app::panel::Panel;
+use crate::app::state::Notice;
 use crate::app::tracks::TrackRow;
 
 /// Does an action. The count, if one was typed, is still in the state.
@@ -402,6 +403,42 @@ pub(super) fn open_form(state: &mut State, task: Task) {
     if task == Task::Cluster && state.tracks.len() < 2 {
         return complain(state, "two tracks or more can be grouped; t r follows features first");
     }
+    match form(state, task) {
+        Some(form) => state.mode = Mode::Form(Box::new(form)),
+        None => complain(
+            state,
+            format!("no {} was found; `honami doctor` says where {plugin} is looked for", task.word()),
+        ),
+    }
+}
+
+/// Takes in plugins that were read anew. An open form keeps what was filled in, as far as they take it.
+pub(super) fn on_plugins(state: &mut State, plugins: Vec<Plugin>) {
+    let name = |plugin: &Plugin| (plugin.task, plugin.name.clone());
+    let is_new = |plugin: &&Plugin| !state.plugins.contains(plugin);
+    let new: Vec<String> =
+        plugins.iter().filter(is_new).map(|p| format!("{} {}", p.name, p.version)).collect();
+    let gone = state.plugins.iter().filter(|old| !plugins.iter().any(|new| name(new) == name(old)));
+    let gone: Vec<String> = gone.map(|old| format!("{} is gone", old.name)).collect();
+    let what = match (new.is_empty(), gone.is_empty()) {
+        (true, true) => "a plugin was rebuilt".to_owned(),
+        (true, false) => gone.join(", "),
+        (false, true) => format!("rebuilt: {}", new.join(", ")),
+        (false, false) => format!("rebuilt: {}; {}", new.join(", "), gone.join(", ")),
+    };
+    state.plugins = plugins;
+    if let Mode::Form(old) = &state.mode {
+        let mode = form(state, old.task).map(|mut new| {
+            new.take(old);
+            Mode::Form(Box::new(new))
+        });
+        state.mode = mode.unwrap_or(Mode::Review);
+    }
+    state.notice = Some(Notice { text: what, is_error: false });
+}
+
+/// The form of a task, as it is likely to be filled in; `None` where no plugin does it.
+fn form(state: &State, task: Task) -> Option<Form> {
     let features: &[Features] = match state.selected {
         None if state.tracks.is_empty() => &[Features::Found],
         None => &[Features::Here, Features::Found],
@@ -411,18 +448,11 @@ pub(super) fn open_form(state: &mut State, task: Task) {
         Some(_) => &[Features::Here, Features::Selected, Features::Found],
     };
     let wanted = Wanted { features, frames: likely_frames(state), n_frames: state.clip.n_frames() };
-    match Form::new(task, &state.plugins, &wanted) {
-        Some(mut form) => {
-            // Likely the one whose run is on top.
-            let last = state.tracker.as_deref().and_then(|tracker| tracker.split_whitespace().next());
-            last.into_iter().for_each(|name| form.choose(name));
-            state.mode = Mode::Form(Box::new(form));
-        }
-        None => complain(
-            state,
-            format!("no {} was found; `honami doctor` says where {plugin} is looked for", task.word()),
-        ),
-    }
+    let mut form = Form::new(task, &state.plugins, &wanted)?;
+    // Likely the one whose run is on top.
+    let last = state.tracker.as_deref().and_then(|tracker| tracker.split_whitespace().next());
+    last.into_iter().for_each(|name| form.choose(name));
+    Some(form)
 }
 
 /// The frames that a run is likely for: the marked range, else those that were tracked before, else all.

@@ -8,10 +8,11 @@ use honami_model::document::RunId;
 use honami_model::history::{Entry, EntryId};
 use honami_workbench::review::Told;
 
-use super::{Mode, State, logged, motion, moving, offers, queue, sketch, tell, time, versus};
+use super::{Mode, State, actions, logged, motion, moving, offers, queue, sketch, tell, time, versus};
 use crate::app::correcting::Answer;
 use crate::app::dense::FieldOf;
 use crate::app::files::Listing;
+use crate::app::form::Plugin;
 use crate::app::menu::Menu;
 use crate::app::plotted::Subject;
 use crate::app::prints::Print;
@@ -48,6 +49,10 @@ pub enum Fact {
     Printed(Vec<Print>),
     /// This can be done about what has ended early.
     Recovery(Option<Recovery>),
+    /// These plugins there are from now on.
+    Plugins(Vec<Plugin>),
+    /// Something has become of a job on its way.
+    Happened(String),
     /// Something worth a line.
     Said(Notice),
     /// What is known of the link.
@@ -117,6 +122,8 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
             time::select(state, missed.unwrap_or(track));
         }
         Fact::Job(job) => on_job(state, job),
+        Fact::Plugins(plugins) => actions::on_plugins(state, plugins),
+        Fact::Happened(text) => happened(state, text, false),
         Fact::Said(notice) => tell(state, notice),
         Fact::Link(link) => state.link = link,
         Fact::Dropped(dropped) => state.dropped = dropped.filter(|_| state.play.is_some()),
@@ -125,8 +132,7 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
         Fact::Dense(field) => motion::on_field(state, field),
         Fact::NotMeasured(text) => {
             state.dense = None;
-            // Of its own time, not an answer to a key: it has no place in the log.
-            state.notice = Some(Notice { text, is_error: true });
+            happened(state, text, true);
         }
         Fact::Versus(runs) => versus::on_runs(state, runs),
         Fact::Entrants(first, entrants) => versus::on_entrants(state, first, entrants),
@@ -159,6 +165,11 @@ fn on_job(state: &mut State, job: Option<Job>) {
     }
     let was_stopping = state.job.as_ref().is_some_and(|old| old.is_stopping);
     state.job = job.map(|job| Job { is_stopping: job.is_stopping || was_stopping, ..job });
+}
+
+/// Says what has come about in its own time, and is no answer to a key: it has no place in the log.
+fn happened(state: &mut State, text: String, is_error: bool) {
+    state.notice = Some(Notice { text, is_error });
 }
 
 fn on_tracks(state: &mut State, rows: Vec<TrackRow>) {
