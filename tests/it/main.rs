@@ -14,6 +14,7 @@ mod journal_kill;
 mod locks;
 mod offers;
 mod opencv;
+mod outlived;
 mod python;
 mod real_clips;
 mod rebuilt;

@@ -8,7 +8,7 @@ use honami_tests::{Bench, root, skipped};
 use crate::isolated::is_shut_in;
 
 /// A folder with the example and its manifest; `None` without numpy.
-fn with_example(change: impl Fn(String) -> String) -> Option<Bench> {
+pub(crate) fn with_example(change: impl Fn(String) -> String) -> Option<Bench> {
     let sdk = root().join("core/plugin/python");
     let has_numpy = Command::new("python3").args(["-c", "import numpy"]).output();
     if !has_numpy.is_ok_and(|output| output.status.success()) {

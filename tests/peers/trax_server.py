@@ -1,8 +1,11 @@
 """A small TraX server for tests: looks for the first picture of its region, in plain Python.
 
-Arguments: the form of images that it takes, and the version of the protocol; `quits`: says quit at the third frame.
+Arguments: the form of images that it takes, and the version of the protocol; `quits`: says quit at the third frame,
+`hangs`: is silent from there on, and leaves a file `here`, `babbles`: says a line without end.
 """
 import base64
+import os
+import signal
 import struct
 import sys
 import zlib
@@ -64,6 +67,11 @@ for line in sys.stdin:
         if QUITS and n == 3:
             print("@@TRAX:quit", flush=True)
             break
+        if "hangs" in sys.argv and n == 3:
+            open(os.path.join(os.environ["TMPDIR"], "here"), "w").close()
+            signal.pause()
+        while "babbles" in sys.argv and n == 3:
+            sys.stdout.write("x" * 4096)
         rows = pixels(words[0])
         if first is None:
             first = cut(rows, *region)

@@ -22,6 +22,7 @@ pub(crate) use sandbox::ROOM;
 use std::ffi::OsString;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 use std::sync::Mutex;
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -30,12 +31,13 @@ pub(crate) const EXEC: &str = "--exec";
 /// and when it is one that starts others.
 pub(crate) const EXEC_AND_OTHERS: &str = "--exec-and-others";
 
-/// What `honami-plughost` does with its arguments: serves a plugin of a library, or becomes a program that does.
+/// What `honami-plughost` does with its arguments: serves a plugin of a library, or runs a program
+/// that does. Returns what the process ends with.
 ///
 /// # Errors
 /// When the arguments are not those that a host gives, there is no host at standard input, or it says what nobody
 /// understands.
-pub fn serve(args: impl Iterator<Item = OsString>) -> io::Result<()> {
+pub fn serve(args: impl Iterator<Item = OsString>) -> io::Result<ExitCode> {
     let memory = std::env::var(MEMORY).ok();
     sandbox::limit(memory.and_then(|bytes| bytes.parse().ok()));
     let mut args = args.peekable();
@@ -51,8 +53,8 @@ pub fn serve(args: impl Iterator<Item = OsString>) -> io::Result<()> {
     })?;
     let read: Vec<PathBuf> = args.map(PathBuf::from).collect();
     match command.split_first() {
-        None => serve_library(&file, &read),
-        Some((program, args)) => Err(program::become_it(&file, program, args, read, starts_others)),
+        None => serve_library(&file, &read).map(|()| ExitCode::SUCCESS),
+        Some((program, args)) => program::run(&file, program, args, read, starts_others),
     }
 }
 

@@ -43,37 +43,27 @@ pub(crate) const HONAMI_PY: &str = include_str!("../../plugin/python/honami.py")
 /// The ids in the templates.
 const ID: [&str; 2] = ["org.honami.template", "org.honami.linkage"];
 
-/// What a file of that name would stand in the way of, because the SDK for Python imports it.
-const PYTHON_MODULES: [&str; 28] = [
-    "ast",
-    "base64",
-    "code",
-    "collections",
-    "enum",
-    "functools",
-    "io",
-    "json",
-    "mmap",
-    "numpy",
-    "operator",
-    "os",
-    "pathlib",
-    "pickle",
-    "random",
-    "re",
-    "select",
-    "socket",
-    "string",
-    "struct",
-    "subprocess",
-    "sys",
-    "tempfile",
-    "threading",
-    "time",
-    "traceback",
-    "types",
-    "zlib",
-];
+/// What a file of that name would stand in the way of: numpy and Python's standard library (`sys.stdlib_module_names`,
+/// also of older and newer versions), any of which the SDK or what it imports may import.
+const PYTHON_MODULES: &str = "\
+    abc aifc annotationlib antigravity argparse array ast asynchat asyncio asyncore atexit audioop \
+    base64 bdb binascii binhex bisect builtins bz2 calendar cgi cgitb chunk cmath cmd code codecs codeop \
+    collections colorsys compileall compression concurrent configparser contextlib contextvars copy \
+    copyreg cProfile crypt csv ctypes curses dataclasses datetime dbm decimal difflib dis distutils \
+    doctest email encodings ensurepip enum errno faulthandler fcntl filecmp fileinput fnmatch formatter \
+    fractions ftplib functools gc genericpath getopt getpass gettext glob graphlib grp gzip hashlib \
+    heapq hmac html http idlelib imaplib imghdr imp importlib inspect io ipaddress itertools json \
+    keyword lib2to3 linecache locale logging lzma macpath mailbox mailcap marshal math mimetypes mmap \
+    modulefinder msilib msvcrt multiprocessing netrc nis nntplib nt ntpath nturl2path numbers numpy \
+    opcode operator optparse os ossaudiodev parser pathlib pdb pickle pickletools pipes pkgutil platform \
+    plistlib poplib posix posixpath pprint profile pstats pty pwd py_compile pyclbr pydoc pydoc_data \
+    pyexpat queue quopri random re readline reprlib resource rlcompleter runpy sched secrets select \
+    selectors shelve shlex shutil signal site smtpd smtplib sndhdr socket socketserver spwd sqlite3 \
+    sre_compile sre_constants sre_parse ssl stat statistics string stringprep struct subprocess sunau \
+    symbol symtable sys sysconfig syslog tabnanny tarfile telnetlib tempfile termios textwrap this \
+    threading time timeit tkinter token tokenize tomllib trace traceback tracemalloc tty turtle \
+    turtledemo types typing unicodedata unittest urllib uu uuid venv warnings wave weakref webbrowser \
+    winreg winsound wsgiref xdrlib xml xmlrpc zipapp zipfile zipimport zlib zoneinfo";
 
 /// The files of a new plugin, and how it is built.
 ///
@@ -143,7 +133,7 @@ fn check(name: &str, is_python: bool) -> Result<(), String> {
             "wanted a name of letters, digits, - and _ that begins with a letter, got {name:?}"
         ));
     }
-    if name == "honami" || (is_python && PYTHON_MODULES.contains(&name)) {
+    if name == "honami" || (is_python && PYTHON_MODULES.split(' ').any(|module| module == name)) {
         return Err(format!("{name:?} is the name of what the plugin needs: choose another"));
     }
     Ok(())

@@ -34,6 +34,7 @@ import json
 import mmap
 import os
 import select
+import signal
 import socket
 import struct
 import sys
@@ -242,7 +243,7 @@ class _Host:
         gone = select.poll()
         gone.register(self.socket, select.POLLRDHUP)
         gone.poll()
-        os._exit(0)
+        os.killpg(0, signal.SIGKILL)  # and what the plugin has started
 
     def say(self, message):
         with self.turn:

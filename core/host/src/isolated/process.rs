@@ -267,13 +267,16 @@ impl Process {
         lines
     }
 
-    /// Whether a debugger holds it.
+    /// Whether a debugger holds it, or the program that it has started.
     pub(crate) fn is_traced(&self) -> bool {
-        let status = std::fs::read_to_string(format!("/proc/{}/status", self.group.as_raw_nonzero()));
-        let tracer = status.ok().and_then(|text| {
-            text.lines().find_map(|line| line.strip_prefix("TracerPid:").map(|pid| pid.trim().to_owned()))
-        });
-        tracer.is_some_and(|pid| pid != "0")
+        let pid = self.group.as_raw_nonzero().to_string();
+        let started = std::fs::read_to_string(format!("/proc/{pid}/task/{pid}/children"));
+        let started = started.unwrap_or_default();
+        std::iter::once(pid.as_str()).chain(started.split_whitespace()).any(|pid| {
+            let status = std::fs::read_to_string(format!("/proc/{pid}/status")).unwrap_or_default();
+            let tracer = status.lines().find_map(|line| line.strip_prefix("TracerPid:"));
+            tracer.is_some_and(|pid| pid.trim() != "0")
+        })
     }
 
     /// Sends a signal to it and to all that it has started.

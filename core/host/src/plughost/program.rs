@@ -1,15 +1,21 @@
-//! Plugins that are programs: the process gives up what it must, and becomes the program.
+//! Plugins that are programs: the process gives up what it must, starts the program, and sees to it that nothing of it
+//! outlives the host.
 
 use super::sandbox::{self, Level, Programs};
 use crate::wire::Tell;
+use rustix::event::{PollFd, PollFlags, poll};
+use rustix::io::Errno;
 use rustix::net::{SendFlags, send};
-use rustix::stdio::stdin;
+use rustix::process::{
+    Pid, PidfdFlags, Signal, getpid, kill_current_process_group, kill_process, pidfd_open,
+};
+use rustix::stdio::{dup2_stdin, stdin, stdout};
 use std::ffi::{OsStr, OsString};
-use std::fs;
+use std::fs::{self, File};
 use std::io;
-use std::os::unix::process::CommandExt as _;
+use std::os::unix::process::ExitStatusExt as _;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, ExitCode, ExitStatus, Stdio};
 
 /// What loads programs for the kernel.
 const LOADERS: [&str; 4] = [
@@ -19,17 +25,18 @@ const LOADERS: [&str; 4] = [
     "/lib/ld-musl-aarch64.so.1",
 ];
 
-/// Starts a program in place of this one; its own files are in `folder`. Returns only when that is not possible.
-pub(super) fn become_it(
+/// Starts a program, whose own files are in `folder`, and waits for its end, which is then this one's. It gets the socket
+/// at standard input, and is in this process's group.
+pub(super) fn run(
     folder: &Path,
     program: &OsStr,
     args: &[OsString],
     mut read: Vec<PathBuf>,
     starts_others: bool,
-) -> io::Error {
+) -> io::Result<ExitCode> {
     let is_bare = Path::new(program).components().count() == 1;
     let Some(mut program) = find(program) else {
-        return io::Error::other(format!("there is no program {}", program.display()));
+        return Err(io::Error::other(format!("there is no program {}", program.display())));
     };
     // Only the interpreter of the user's own search path may say where it imports from: it does so unfettered.
     if is_bare
@@ -53,18 +60,60 @@ pub(super) fn become_it(
         Programs::These(std::iter::once(program.clone()).chain(LOADERS.map(PathBuf::from)).collect())
     };
     let level = sandbox::enter(folder, &read, &programs);
-    if let Err(error) = shut_in(level) {
-        return error;
-    }
+    shut_in(level)?;
     let own = |arg: &OsString| {
         let file = folder.join(arg);
         if file.is_file() { file.into_os_string() } else { arg.clone() }
     };
-    Command::new(program)
+    let child = Command::new(program)
         .args(args.iter().map(own))
         .env("PYTHONPATH", folder)
         .env("PYTHONDONTWRITEBYTECODE", "1")
-        .exec()
+        .spawn()?;
+    // The host is to see when the program hangs up.
+    dup2_stdin(File::open("/dev/null")?)?;
+    // An abort of the group is for the program, which may leave a trace of it.
+    dispose(libc::SIGABRT, libc::SIG_IGN);
+    let status = wait(child)?;
+    Ok(end_as(status))
+}
+
+/// Waits for its end; without a host this whole group is killed, with all that the program has started.
+fn wait(mut child: Child) -> io::Result<ExitStatus> {
+    let over = pidfd_open(Pid::from_child(&child), PidfdFlags::empty())?;
+    // The host reads what is printed: a pipe that nobody reads is in error, whatever the program does with the socket.
+    let printed = stdout();
+    loop {
+        let mut wanted =
+            [PollFd::from_borrowed_fd(printed, PollFlags::empty()), PollFd::new(&over, PollFlags::IN)];
+        match poll(&mut wanted, None) {
+            Err(Errno::INTR) => {}
+            Err(error) => return Err(error.into()),
+            Ok(_) if wanted[0].revents().contains(PollFlags::ERR) => {
+                kill_current_process_group(Signal::KILL)?;
+            }
+            Ok(_) => return child.wait(),
+        }
+    }
+}
+
+/// Ends this process as that one has ended: by the same signal, or with the code that this returns.
+fn end_as(status: ExitStatus) -> ExitCode {
+    let Some(signal) = status.signal() else {
+        return ExitCode::from(status.code().and_then(|code| u8::try_from(code).ok()).unwrap_or(1));
+    };
+    dispose(signal, libc::SIG_DFL);
+    if let Some(named) = Signal::from_named_raw(signal) {
+        kill_process(getpid(), named).unwrap_or_default();
+    }
+    // What a shell says of it, for the signals that this process cannot send.
+    ExitCode::from(u8::try_from(128 + signal).unwrap_or(1))
+}
+
+#[expect(unsafe_code, reason = "there is no safe call for what a signal does")]
+fn dispose(signal: libc::c_int, how: libc::sighandler_t) {
+    // SAFETY: neither of the two dispositions runs any code of this process.
+    unsafe { libc::signal(signal, how) };
 }
 
 /// A program on the search path of the user, or at its own path.

@@ -72,6 +72,9 @@ fn names_that_would_not_work_are_refused() {
         ("-x", Language::Python),
         ("honami", Language::Rust),
         ("json", Language::Python),
+        ("inspect", Language::Python),
+        ("abc", Language::Python),
+        ("zoneinfo", Language::Python),
     ] {
         let said = begin(name, Kind::Tracker, language).unwrap_err();
         assert!(said.contains(&format!("{name:?}")), "{said}");

@@ -1,5 +1,5 @@
 """A tracker that looks for every point's first picture of it, near where it was last."""
-import pickle
+import io
 
 import honami
 import numpy as np
@@ -50,10 +50,19 @@ class Template:
         return honami.TRACKED
 
     def save(self):
-        return pickle.dumps((self.at, self.first, self.last))
+        kept = {f"first {i}": window for i, window in self.first.items() if window is not None}
+        if self.last is not None:
+            kept["last"] = self.last
+        file = io.BytesIO()
+        np.savez(file, id=list(self.at), at=list(self.at.values()), **kept)
+        return file.getvalue()
 
     def load(self, data):
-        self.at, self.first, self.last = pickle.loads(data)
+        kept = np.load(io.BytesIO(data), allow_pickle=False)  # what is pickled could run anything
+        ids = kept["id"].tolist()
+        self.at = dict(zip(ids, map(tuple, kept["at"].tolist())))
+        self.first = {i: kept.get(f"first {i}") for i in ids}
+        self.last = kept.get("last")
 
 
 honami.run()

@@ -22,19 +22,31 @@ READS = []  # folders that it needs, beside those of the system
 class Settings(honami.Params):
     side = honami.Int(31, 5, 301, unit="px", doc="Side of the rectangle that stands for a point.")
     most = honami.Int(50, 1, 400, doc="The most points, each of which costs a process.")
+    patience_s = honami.Float(5, 0.1, 600, unit="s", doc="How long a server may work on a frame.")
+
+
+START_S = 60  # until its first answer: it may have a network to load
+LINE_BYTES_MAX = 1 << 20
 
 
 class Gone(Exception):
-    """A server has quit, or died."""
+    """A server is of no more use; the text is what it did."""
 
 
 class Server:
     """A process that follows one rectangle."""
 
     def __init__(self):
-        self.process = subprocess.Popen(COMMAND, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
-        self.bytes = b""
-        _, about = self.hear("hello")
+        self.process = subprocess.Popen(COMMAND, bufsize=0, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        os.set_blocking(self.process.stdin.fileno(), False)
+        self.bytes, self.patience_s, self.until = b"", START_S, time.monotonic() + START_S
+        try:
+            self.agree(*self.hear("hello"))
+        except BaseException:
+            self.kill()
+            raise
+
+    def agree(self, _, about):
         self.version = int(about.get("trax.version", "1"))
         said = about.get("trax.image", "path").split(";")
         self.images = [form for form in FORMS if form in said]
@@ -48,21 +60,33 @@ class Server:
 
     def say(self, name, *words):
         words = "".join(' "%s"' % word.replace("\\", "\\\\").replace('"', '\\"') for word in words)
-        try:
-            self.process.stdin.write(f"@@TRAX:{name}{words}\n".encode())
-            self.process.stdin.flush()
-        except BrokenPipeError:
-            raise Gone from None
+        left = memoryview(f"@@TRAX:{name}{words}\n".encode())
+        self.until = time.monotonic() + self.patience_s
+        while left:
+            honami.progress(-1, "telling the TraX server")
+            if time.monotonic() > self.until:
+                raise Gone(f"heard nothing for {self.patience_s:g} s")
+            try:
+                if select.select([], [self.process.stdin], [], 0.1)[1]:
+                    left = left[os.write(self.process.stdin.fileno(), left):]
+            except BrokenPipeError:
+                raise Gone("ended") from None
 
     def hear(self, *wanted):
         """Words and properties of its next message; everything else that it prints is a line of the log."""
+        is_late = False
         while True:
             while b"\n" not in self.bytes:
                 honami.progress(-1, "waiting for the TraX server")
-                if select.select([self.process.stdout], [], [], 0.1)[0]:
+                if is_late:
+                    raise Gone(f"gave no answer for {self.patience_s:g} s")
+                if len(self.bytes) > LINE_BYTES_MAX:
+                    raise Gone("said a line without end")
+                is_late = time.monotonic() > self.until  # once more, for what it has said while others were heard
+                if select.select([self.process.stdout], [], [], 0 if is_late else 0.1)[0]:
                     more = os.read(self.process.stdout.fileno(), 1 << 16)
                     if not more:
-                        raise Gone
+                        raise Gone("ended")
                     self.bytes += more
             line, self.bytes = self.bytes.split(b"\n", 1)
             line = line.decode(errors="replace").strip()
@@ -71,7 +95,7 @@ class Server:
                 continue
             name, *rest = line[len("@@TRAX:"):].split(" ", 1)
             if name == "quit":
-                raise Gone
+                raise Gone("quit")
             if name not in wanted:
                 raise honami.Error(f"the TraX server says {name}, wanted {wanted[0]}")
             found = [a or b for a, b in re.findall(r'"((?:[^"\\]|\\.)*)"|(\S+)', rest[0] if rest else "")]
@@ -109,16 +133,29 @@ class Server:
         return self.state()
 
     def end(self):
+        self.patience_s = 0.5  # to be told
         with contextlib.suppress(Gone):
             self.say("quit")
-        with contextlib.suppress(BrokenPipeError):
             self.process.stdin.close()
-        try:
-            self.process.wait(0.5)
-        except subprocess.TimeoutExpired:
-            self.process.kill()
-            self.process.wait()
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                self.process.wait(0.5)
+        self.kill()
+
+    def kill(self):
+        self.process.kill()
+        self.process.wait()
+        self.process.stdin.close()
         self.process.stdout.close()
+
+
+def unreadable():
+    """The first folder that its command needs and that cannot be read, and why."""
+    for path in READS + [word for word in COMMAND if os.path.isabs(word)]:
+        try:
+            os.listdir(path) if os.path.isdir(path) else open(path, "rb").close()
+        except OSError as error:
+            return path if path in READS else os.path.dirname(path), error.strerror
+    return None
 
 
 FORMS = ("memory", "path", "buffer")
@@ -172,8 +209,12 @@ class Picture:
 
 @honami.tracker("org.honami.template", "A TraX server for each point", params=Settings, deterministic=False)
 class Trax:
+    def __init__(self):
+        self.points = {}
+
     def begin(self, stream):
-        self.points, self.last = {}, None
+        self.end()  # of a stream that has failed
+        self.last = None
         self.folder = tempfile.mkdtemp()
 
     def seed(self, points):
@@ -183,19 +224,25 @@ class Trax:
                 raise honami.Error(f"{self.params.most} points at most: each has a process of its own (--set most=N)")
             self.points[i] = {"at": np.array([x, y]), "server": None, "off": 0}
             if self.last is not None:
-                self.follow(self.points[i], self.last)
+                self.follow(i, self.last)
 
-    def follow(self, point, picture):
+    def follow(self, i, picture):
         """Starts a server; what it says of the first frame is what was seeded."""
+        point, command = self.points[i], " ".join(COMMAND)
         try:
             point["server"] = Server()
-        except Gone:
-            raise honami.Error(f"{' '.join(COMMAND)} ended before it said hello: is it a TraX server?") from None
+        except (Gone, OSError) as error:
+            if folder := unreadable():
+                raise honami.Error(f"{folder[0]} cannot be read ({folder[1]}), and {command} needs it: wanted a folder in "
+                                   "READS of this file that is not your home or above it") from None
+            said = f"{error} before it said hello" if isinstance(error, Gone) else f"cannot be started: {error}"
+            raise honami.Error(f"{command} {said}: is it a TraX server?") from None
         try:
             seen = point["server"].follow(picture, *point["at"], self.params.side)
             point["off"] = 0 if seen is None else point["at"] - seen
-        except Gone:
-            self.part(point)
+            point["server"].patience_s = self.params.patience_s
+        except Gone as gone:
+            self.part(i, gone)
 
     def retire(self, ids):
         for i in ids.tolist():
@@ -207,7 +254,7 @@ class Trax:
         for i, point in self.points.items():
             status[i] = honami.LOST
             if is_first:
-                self.follow(point, picture)
+                self.follow(i, picture)
                 status[i] = honami.TRACKED if point["server"] else honami.LOST
             elif point["server"]:
                 asked.append(i)
@@ -215,22 +262,23 @@ class Trax:
             try:
                 server = self.points[i]["server"]
                 server.say("frame", picture.uri(server.images[0]))
-            except Gone:
-                self.part(self.points[i])
+            except Gone as gone:
+                self.part(i, gone)
                 asked.remove(i)
         for i in asked:
-            status[i] = self.look(self.points[i], frame.gray.shape)
+            status[i] = self.look(i, frame.gray.shape)
         if self.last is not None:
             self.last.forget()
         self.last = picture
         x, y = np.array([point["at"] for point in self.points.values()]).reshape(-1, 2).T
         return honami.Points(list(status), x, y, list(status.values()))
 
-    def look(self, point, shape):
+    def look(self, i, shape):
+        point = self.points[i]
         try:
             seen = point["server"].state()
-        except Gone:
-            self.part(point)
+        except Gone as gone:
+            self.part(i, gone)
             return honami.LOST
         if seen is None:
             return honami.LOST
@@ -238,11 +286,11 @@ class Trax:
         is_inside = -0.5 <= x < shape[1] - 0.5 and -0.5 <= y < shape[0] - 0.5
         return honami.TRACKED if is_inside else honami.OUTSIDE
 
-    def part(self, point):
-        """Of a server that has gone by itself."""
-        honami.log("a TraX server has gone: its point is lost", 2)
-        point["server"].end()
-        point["server"] = None
+    def part(self, i, gone):
+        """Of a server that is of no more use."""
+        honami.log(f"the TraX server of point {i} {gone}: its point is lost", 2)
+        self.points[i]["server"].kill()
+        self.points[i]["server"] = None
 
     def drop(self, i):
         point = self.points.pop(i, None)
