@@ -12,6 +12,7 @@
   "{\"honami\":1,\"abi\":[1,1],"                                                                                      \
   "\"library\":{\"id\":\"org.honami.template\",\"version\":\"1.0.0\",\"license\":\"MIT OR Apache-2.0\"},"             \
   "\"plugins\":[{\"id\":\"org.honami.template\",\"kind\":\"tracker\",\"name\":\"Templates of the first frame\","        \
+  "\"doc\":\"Looks for the first picture of every point, near where it was last.\","                                  \
   "\"interfaces\":[\"honami.tracker/1\"],"                                                                            \
   "\"caps\":{\"latency\":0,\"deterministic\":true,\"parallel_instances\":true,\"pixels\":[\"gray8\"]},"               \
   "\"params\":[{\"id\":\"radius\",\"type\":\"int\",\"unit\":\"px\",\"min\":2,\"max\":30,\"default\":7,"                   \

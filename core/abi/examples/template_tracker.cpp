@@ -7,7 +7,8 @@
 
 class Template : public honami::Tracker {
 public:
-  static constexpr honami::Info info{"org.honami.template", "Templates of the first frame"};
+  static constexpr honami::Info info{"org.honami.template", "Templates of the first frame",
+                                     "Looks for the first picture of every point, near where it was last."};
   static constexpr honami::Param params[] = {
       honami::integer("radius", 7, 2, 30, "px", "Half the side of the template."),
       honami::integer("search", 6, 1, 30, "px", "How far a point may move from frame to frame.")};

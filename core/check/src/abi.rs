@@ -91,11 +91,11 @@ fn tables(subject: &Subject) -> Result<Verdict, Fault> {
 /// It does in another dress what it does in today's.
 fn as_today(subject: &Subject, scene: Scene) -> Result<Verdict, Fault> {
     loaded(subject, |_| {
-        let today = play(&subject.info, GRAY)?;
+        let today = play(subject, GRAY)?;
         if let Some(beside) = beside(subject, &today) {
             return Ok(beside);
         }
-        same(subject, &today, &play(&subject.info, scene)?)
+        same(subject, &today, &play(subject, scene)?)
     })
 }
 
@@ -111,28 +111,30 @@ fn same(subject: &Subject, today: &Played, other: &Played) -> Result<Verdict, Fa
 
 fn optional(subject: &Subject) -> Result<Verdict, Fault> {
     loaded(subject, |_| {
-        let colour = play(&subject.info, Scene { has_colour: true, ..GRAY })?;
+        let colour = play(subject, Scene { has_colour: true, ..GRAY })?;
         if let Some(beside) = beside(subject, &colour) {
             return Ok(beside);
         }
-        let (today, bare) =
-            (play(&subject.info, GRAY)?, play(&subject.info, Scene { sets_params: false, ..GRAY })?);
+        let (today, bare) = (play(subject, GRAY)?, play(subject, Scene { sets_params: false, ..GRAY })?);
         same(subject, &today, &bare)
     })
 }
 
 fn no_memory(subject: &Subject) -> Result<Verdict, Fault> {
     loaded(subject, |_| {
-        let today = play(&subject.info, GRAY)?;
+        let today = play(subject, GRAY)?;
         if let Some(beside) = beside(subject, &today) {
             return Ok(beside);
         }
         let mut refused = Vec::new();
         for name in ["push", "end", "detect", "field", "run"] {
-            let played = play(&subject.info, Scene { refuses: Some(name), ..GRAY })?;
+            let played = play(subject, Scene { refuses: Some(name), ..GRAY })?;
             if played.n_refused > 0 {
                 refused.push(name);
             }
+        }
+        if refused.is_empty() {
+            return Ok(Verdict::Beside("it asked for none".into()));
         }
         Ok(Verdict::Holds(format!("refused in {}", refused.join(", "))))
     })

@@ -187,17 +187,18 @@ fn runpath(subject: &Subject) -> Result<Verdict, Fault> {
         Err(beside) => return Ok(beside),
     };
     for place in &elf.runpath {
-        if !place.starts_with('/') && !is_origin(place) {
-            return Err(Fault(format!(
-                "it looks for libraries in {place:?}, wanted $ORIGIN or absolute folders"
-            )));
+        if is_origin(place) {
+            return Err(Fault(format!("it looks for libraries in {place}: {NO_ORIGIN}")));
         }
-        let folder = beside(place, &subject.info.library);
-        if fs::metadata(&folder).is_ok_and(|meta| meta.mode() & 0o002 != 0) {
-            return Err(Fault(format!(
-                "it looks for libraries in {}, which everybody may write",
-                folder.display()
-            )));
+        if !place.starts_with('/') {
+            return Err(Fault(format!("it looks for libraries in {place:?}, wanted absolute folders")));
+        }
+        // Whoever may write the last folder that is there may make those that are not.
+        let mut folders = Path::new(place).ancestors();
+        let there = folders.find_map(|folder| Some((folder, fs::metadata(folder).ok()?)));
+        if let Some((folder, _)) = there.filter(|(_, meta)| meta.mode() & 0o002 != 0) {
+            let folder = folder.display();
+            return Err(Fault(format!("it looks for libraries in {place}; everybody may write {folder}")));
         }
     }
     Ok(Verdict::Holds(elf.runpath.join(", ")))
@@ -209,7 +210,7 @@ fn needed(subject: &Subject) -> Result<Verdict, Fault> {
         Err(beside) => return Ok(beside),
     };
     let cache = fs::read("/etc/ld.so.cache").unwrap_or_default();
-    let own: Vec<PathBuf> = elf.runpath.iter().map(|place| beside(place, &subject.info.library)).collect();
+    let own: Vec<PathBuf> = elf.runpath.iter().map(PathBuf::from).collect();
     let is_there = |name: &String| {
         let entry = format!("/{name}\0");
         let is_cached = cache.windows(entry.len()).any(|bytes| bytes == entry.as_bytes());
@@ -220,15 +221,21 @@ fn needed(subject: &Subject) -> Result<Verdict, Fault> {
     if missing.is_empty() {
         return Ok(Verdict::Holds(elf.needed.join(", ")));
     }
-    Err(Fault(format!("it needs {}, which this system does not have", missing.join(", "))))
+    let beside = subject.info.library.parent().unwrap_or(Path::new("/"));
+    let why = if elf.runpath.iter().any(|place| is_origin(place))
+        || missing.iter().any(|name| beside.join(name).is_file())
+    {
+        format!("; {NO_ORIGIN}")
+    } else {
+        String::new()
+    };
+    Err(Fault(format!("it needs {}, which this system does not have{why}", missing.join(", "))))
 }
+
+/// Why a library that lies beside the plugin is not found.
+const NO_ORIGIN: &str = "$ORIGIN does not work, because honami loads a copy of the plugin, from where nothing lies beside \
+                         it; link what it needs into it, or install that in a folder of the system's";
 
 fn is_origin(place: &str) -> bool {
     ["$ORIGIN", "${ORIGIN}"].iter().any(|origin| place.starts_with(origin))
-}
-
-/// A folder of the search path, which may be told from where the library lies.
-fn beside(place: &str, library: &Path) -> PathBuf {
-    let folder = library.parent().unwrap_or(Path::new("/")).to_string_lossy().into_owned();
-    PathBuf::from(place.replace("${ORIGIN}", &folder).replace("$ORIGIN", &folder))
 }

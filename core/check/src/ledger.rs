@@ -2,7 +2,7 @@
 //!
 //! A file for each content, named by its hash, beside the store of libraries: it may be deleted at any time.
 
-use crate::report::Report;
+use crate::report::{Report, Status};
 use honami_host::{Host, PluginInfo};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -44,21 +44,22 @@ impl Ledger {
         (entry.honami == VERSION).then_some(entry)
     }
 
-    /// Keeps a verdict, if all checks up to its level were done.
+    /// Keeps a verdict, if all checks up to its level were done. What a content has reached only a failure takes back.
     ///
     /// # Errors
     /// When it cannot be written.
     pub fn keep(&self, info: &PluginInfo, report: &Report) -> io::Result<()> {
-        let Some(level) = report.reached() else { return Ok(()) };
-        let mut entry = self.entry(&report.sha256).unwrap_or_default();
+        let (Some(level), Some(sha256)) = (report.reached(), &report.sha256) else { return Ok(()) };
+        let mut entry = self.entry(sha256).unwrap_or_default();
         VERSION.clone_into(&mut entry.honami);
         (entry.bytes, entry.stamp) = (fs::metadata(&info.library)?.len(), info.stamp()?);
-        entry.levels.insert(info.id.clone(), level);
+        let before = entry.levels.get(&info.id).copied().filter(|_| report.status() != Status::Failed);
+        entry.levels.insert(info.id.clone(), before.map_or(level, |before| level.max(before)));
         fs::create_dir_all(&self.0)?;
         // Whole or not at all.
         let half = self.0.join(format!("half-{}", std::process::id()));
         fs::write(&half, serde_json::to_vec(&entry)?)?;
-        fs::rename(half, self.file(&report.sha256))
+        fs::rename(half, self.file(sha256))
     }
 
     /// The level that a plugin has reached as its file is now; `None` where its content was never checked.

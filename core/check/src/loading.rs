@@ -175,7 +175,7 @@ pub(crate) fn loaded(
     if subject.info.is_program() {
         return Ok(Verdict::Beside("a program has a process of its own, and nothing is loaded".into()));
     }
-    run(&Library::open(&subject.info)?)
+    run(&Library::open(subject)?)
 }
 
 fn twice(subject: &Subject) -> Result<Verdict, Fault> {

@@ -15,8 +15,8 @@ pub struct Report {
     pub name: String,
     /// Its full id.
     pub plugin: String,
-    /// Of its file, lower-case hexadecimal.
-    pub sha256: String,
+    /// Of its file, lower-case hexadecimal; `None` where no plugin could be read from it.
+    pub sha256: Option<String>,
     /// Of every random choice.
     pub seed: u64,
     /// All checks up to this level were wanted; `None` when some of them were chosen.
@@ -45,7 +45,7 @@ impl Report {
         let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let repeat = format!("honami plugin check {}", file.display());
         let outcome = Outcome { check: READABLE, finding: Finding::Fails(why), took: Duration::ZERO, repeat };
-        let (plugin, sha256, outcomes) = (name.clone(), String::new(), vec![outcome]);
+        let (plugin, sha256, outcomes) = (name.clone(), None, vec![outcome]);
         Self { name, plugin, sha256, seed: 0, level: Some(1), outcomes, took: Duration::ZERO }
     }
 
@@ -60,12 +60,16 @@ impl Report {
         self.outcomes.iter().map(status).max().unwrap_or(Status::Passed)
     }
 
-    /// The highest level up to which all checks were wanted and none has failed, from 0; `None` when some were chosen.
+    /// The highest level at which something holds, and up to which all checks were wanted and none has failed, from 0;
+    /// `None` when some were chosen. Where all stand beside (no files, no such interface) nothing is known of a plugin.
     #[must_use]
     pub fn reached(&self) -> Option<u8> {
         let failed = self.outcomes.iter().filter(|outcome| matches!(outcome.finding, Finding::Fails(_)));
         let lowest = failed.map(|outcome| outcome.check.level.saturating_sub(1)).min();
-        Some(self.level?.min(lowest.unwrap_or(u8::MAX)))
+        let highest = self.level?.min(lowest.unwrap_or(u8::MAX));
+        let held = self.outcomes.iter().filter(|outcome| !matches!(outcome.finding, Finding::Beside(_)));
+        let held = held.map(|outcome| outcome.check.level).filter(|level| *level <= highest);
+        Some(held.max().unwrap_or(0))
     }
 
     /// The whole in a line: `klt: level 9, 41 checks, 2 beside, 18 s`.

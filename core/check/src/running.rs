@@ -57,7 +57,7 @@ const CHECKS: &[Check] = &[
         level: 9,
         claim: "two instances that take turns give what each gives alone",
         deadline: DEADLINE,
-        run: |subject| same(subject, turns),
+        run: |subject| alike(subject, turns),
     },
     Check {
         id: "running.parallel",
@@ -87,15 +87,29 @@ fn with_task(
     }
 }
 
+/// What an instance alone gives, and what one gives that works in another way.
+type Pair = [Outcome; 2];
+
 /// Whether a way to work gives what an instance alone gives.
 fn same(subject: &Subject, way: fn(&Subject, &Task) -> Result<Outcome, HostError>) -> Result<Verdict, Fault> {
+    alike(subject, |subject, task| Ok(vec![[alone(subject, task)?, way(subject, task)?]]))
+}
+
+fn alone(subject: &Subject, task: &Task) -> Result<Outcome, HostError> {
+    Work::start(subject, HERE, task)?.finish()
+}
+
+/// Whether both of every pair are the same.
+fn alike(
+    subject: &Subject,
+    pairs: impl Fn(&Subject, &Task) -> Result<Vec<Pair>, HostError>,
+) -> Result<Verdict, Fault> {
     if let Some(beside) = file_missed(subject)? {
         return Ok(Verdict::Beside(beside));
     }
     with_task(subject, Task::small, |task| {
-        let alone = Work::start(subject, HERE, task)?.finish()?;
-        let other = way(subject, task)?;
-        match alone.difference(&other) {
+        let pairs = pairs(subject, task)?;
+        match pairs.iter().find_map(|[alone, other]| alone.difference(other)) {
             None => Ok(Verdict::Holds(String::new())),
             Some(_) if !subject.info.caps.deterministic => {
                 Ok(Verdict::Holds("results differ, as its manifest says".into()))
@@ -138,40 +152,38 @@ fn left(subject: &Subject, task: &Task) -> Result<Outcome, HostError> {
     whole.finish()
 }
 
-fn turns(subject: &Subject, task: &Task) -> Result<Outcome, HostError> {
+fn turns(subject: &Subject, task: &Task) -> Result<Vec<Pair>, HostError> {
     let cx = CallContext::silent();
     let other = Task::endless(subject);
-    let mut whole = Work::start(subject, HERE, task)?;
-    let mut beside = other.as_ref().map(|task| Work::start(subject, HERE, task)).transpose()?;
-    while !whole.step(&cx)? {
-        if let Some(work) = &mut beside
-            && work.step(&cx)?
-        {
-            beside = None;
+    let tasks: Vec<&Task> = [Some(task), other.as_ref()].into_iter().flatten().collect();
+    let alone = tasks.iter().map(|task| alone(subject, task)).collect::<Result<Vec<_>, _>>()?;
+    let works = tasks.iter().map(|task| Work::start(subject, HERE, task));
+    let mut works = works.collect::<Result<Vec<_>, _>>()?;
+    let mut is_done = vec![false; works.len()];
+    while is_done.contains(&false) {
+        for (work, is_done) in works.iter_mut().zip(&mut is_done).filter(|(_, is_done)| !**is_done) {
+            *is_done = work.step(&cx)?;
         }
     }
-    Ok(whole.outcome().clone())
+    Ok(alone.into_iter().zip(&works).map(|(alone, work)| [alone, work.outcome().clone()]).collect())
 }
 
 fn parallel(subject: &Subject) -> Result<Verdict, Fault> {
     if !subject.info.caps.parallel_instances {
         return Ok(Verdict::Beside("its manifest does not say that they may".into()));
     }
-    same(subject, |subject, task| {
-        thread::scope(|scope| {
-            let work = || Work::start(subject, HERE, task)?.finish();
-            let others = [scope.spawn(work), scope.spawn(work)];
-            let mut outcome = work();
-            for other in others {
-                // A panic there is a fault of this program, which it takes with it.
-                let other = other.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-                outcome = outcome.and_then(|one| {
-                    let other = other?;
-                    Ok(if one == other { one } else { other })
-                });
-            }
-            outcome
-        })
+    alike(subject, |subject, task| {
+        let expected = alone(subject, task)?;
+        let outcomes = thread::scope(|scope| {
+            let others = [(); 2].map(|()| scope.spawn(|| alone(subject, task)));
+            let mut outcomes = vec![alone(subject, task)];
+            // A panic there is a fault of this program, which it takes with it.
+            let joined =
+                others.map(|other| other.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
+            outcomes.extend(joined);
+            outcomes
+        });
+        outcomes.into_iter().map(|outcome| Ok([expected.clone(), outcome?])).collect()
     })
 }
 

@@ -5,6 +5,8 @@ use honami_host::{
     CallContext, Clusterer, Host, HostError, Hosting, Kind, Origin, PluginInfo, Tracker, Values,
 };
 use rand_pcg::Pcg64;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 /// A plugin under test.
 #[derive(Clone, Debug)]
@@ -14,13 +16,28 @@ pub struct Subject {
     /// Of every random choice of a check.
     pub seed: u64,
     host: Host,
+    /// See [`Subject::copy`].
+    copy: OnceLock<PathBuf>,
 }
 
 impl Subject {
     /// A plugin that `host` is to start; where it works is up to each check.
     #[must_use]
     pub fn new(info: PluginInfo, host: Host, seed: u64) -> Self {
-        Self { info, seed, host }
+        Self { info, seed, host, copy: OnceLock::new() }
+    }
+
+    /// The copy that its library is loaded from, as honami does it: in the store, under the name of its hash. Once this
+    /// process is shut in the library itself cannot be read any more.
+    ///
+    /// # Errors
+    /// When it is not trusted, cannot be read, or has another manifest by now.
+    pub(crate) fn copy(&self) -> Result<&Path, Fault> {
+        if let Some(copy) = self.copy.get() {
+            return Ok(copy);
+        }
+        let copy = self.host.copy_of(&self.info)?;
+        Ok(self.copy.get_or_init(|| copy))
     }
 
     /// Where it comes to work when it is started there, whatever its kind.

@@ -146,6 +146,14 @@ impl Host {
         Ok((Simulator { handle, reply: Reply::default(), n_rows: None }, origin))
     }
 
+    /// The copy in the store from which a trusted plugin's library is loaded, made if it is not there yet.
+    ///
+    /// # Errors
+    /// When it is not trusted, cannot be read, or has another manifest than `info` was read from.
+    pub fn copy_of(&self, info: &PluginInfo) -> Result<PathBuf, HostError> {
+        Ok(in_process::keep_same(info, &self.store)?.path)
+    }
+
     /// A folder of this name beside the store, for what is known of contents; it may not be there yet.
     #[must_use]
     pub fn beside(&self, name: &str) -> PathBuf {

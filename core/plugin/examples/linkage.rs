@@ -14,7 +14,12 @@ struct Linkage;
 
 impl Clusterer for Linkage {
     type Params = Choice;
-    const INFO: Info = Info { id: "org.honami.linkage", name: "Average linkage", ..Info::NEW };
+    const INFO: Info = Info {
+        id: "org.honami.linkage",
+        name: "Average linkage",
+        doc: "Groups tracks by how much the distance between them changes.",
+        ..Info::NEW
+    };
 
     fn cluster(params: &Choice, tracks: &Tracks<'_>, cx: &Cx<'_>) -> Result<Clustering> {
         let all: Vec<Track<'_>> = tracks.iter().collect();

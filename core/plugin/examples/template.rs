@@ -32,7 +32,12 @@ struct Followed {
 
 impl Tracker for Template {
     type Params = Choice;
-    const INFO: Info = Info { id: "org.honami.template", name: "Templates of the first frame", ..Info::NEW };
+    const INFO: Info = Info {
+        id: "org.honami.template",
+        name: "Templates of the first frame",
+        doc: "Looks for the first picture of every point, near where it was last.",
+        ..Info::NEW
+    };
 
     fn begin(params: &Choice, _: &Stream, _: &Cx<'_>) -> Result<Self> {
         let (radius, search) = (params.radius as u32, params.search as i32);

@@ -1,6 +1,6 @@
 //! `honami plugin check`: a line a check while they run, and what to type to see one again.
 
-use std::fs;
+use std::fs::{File, OpenOptions};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -10,7 +10,9 @@ use anyhow::Context as _;
 use honami_workbench::check::{
     Asker, Check, Finding, Ledger, Outcome, Plan, Report, Status, Subject, checks, examine, junit,
 };
-use honami_workbench::plugins::{Host, PluginInfo, Registry, SearchPath, Trust, TrustBook, file_of};
+use honami_workbench::plugins::{
+    Host, HostError, PluginInfo, Registry, SearchPath, Trust, TrustBook, file_of,
+};
 use serde_json::json;
 
 use super::args::{self, Common};
@@ -24,10 +26,19 @@ pub(super) fn check(args: &args::Check, common: &Common) -> anyhow::Result<ExitC
     // Taken before anything of the plugin is looked at.
     let asker = if args.answer { Some(Asker::of_stdin()?) } else { None };
     let file = file(&args.plugin, common)?;
+    // Opened before minutes are spent on what then cannot be written.
+    let out = Out { xml: args.junit.as_deref().map(writable).transpose()?, is_json: common.json };
     let path = SearchPath { named: vec![file.clone()], book: TrustBook::of_user(), ..SearchPath::default() };
     let registry = Registry::scan_path(&path);
-    if let Some(problem) = registry.problems().first() {
-        return end(&[Report::unreadable(&file, problem.to_string())], args, common.json);
+    // A broken list of what a lab trusts is no fault of this file.
+    let is_of_file = |problem: &&HostError| !matches!(problem, HostError::File { path, .. } if *path != file);
+    if let Some(problem) = registry.problems().iter().find(is_of_file) {
+        let report = Report::unreadable(&file, problem.to_string());
+        if !out.is_json {
+            report.outcomes.iter().try_for_each(|outcome| print(&line(outcome)))?;
+            print(&report.line())?;
+        }
+        return out.end(&[report]);
     }
     let is_wanted = |info: &&PluginInfo| args.plugin_id.as_ref().is_none_or(|id| *id == info.id);
     let infos: Vec<&PluginInfo> = registry.plugins().iter().filter(is_wanted).collect();
@@ -39,36 +50,78 @@ pub(super) fn check(args: &args::Check, common: &Common) -> anyhow::Result<ExitC
         anyhow::bail!("{} is not trusted: {why}", file.display());
     }
     match &args.reproduce {
-        Some(which) => one(which, &infos, asker),
-        None => all(args, &file, &infos, common.json),
+        Some(which) => one(which, &file, &infos, asker, out),
+        None => all(args, &file, &infos, out),
     }
 }
 
+/// Where reports go.
+struct Out {
+    xml: Option<File>,
+    is_json: bool,
+}
+
+/// A file of which nothing is lost before there is something to write into it.
+fn writable(path: &Path) -> anyhow::Result<File> {
+    let file = OpenOptions::new().write(true).create(true).truncate(false).open(path);
+    file.with_context(|| format!("cannot write {}", path.display()))
+}
+
 /// Does one check in this process, and says what came to whoever asked: a person, or honami itself.
-fn one(which: &str, infos: &[&PluginInfo], asker: Option<Asker>) -> anyhow::Result<ExitCode> {
+fn one(
+    which: &str,
+    file: &Path,
+    infos: &[&PluginInfo],
+    mut asker: Option<Asker>,
+    out: Out,
+) -> anyhow::Result<ExitCode> {
     let wanted = || format!("wanted a check and a seed, such as loading.starts:1, got {which}");
     let (id, seed) = which.rsplit_once(':').with_context(wanted)?;
     let seed: u64 = seed.parse().with_context(wanted)?;
     let all = checks();
-    want(all.iter().any(|check| check.id == id), || format!("there is no check {id}; {}", ids(&all)))?;
-    let mut status = ExitCode::SUCCESS;
-    for info in infos {
-        let subject = Subject::new(PluginInfo::clone(info), Host::new(), seed);
-        let Some(check) = all.iter().find(|check| check.id == id) else { continue };
-        let finding = examine(check, &subject);
-        if let Some(asker) = asker {
-            asker.tell(&finding)?;
+    let chosen: Vec<Check> = all.iter().filter(|check| check.id == id).copied().collect();
+    want(!chosen.is_empty(), || format!("there is no check {id}; {}", ids(&all)))?;
+    // All that must be read is read before a check shuts this process in.
+    let subjects: Vec<(&PluginInfo, Plan, String)> = infos
+        .iter()
+        .map(|info| Ok((*info, plan(file, info, &chosen, seed)?, info.sha256()?)))
+        .collect::<anyhow::Result<_>>()?;
+    let mut reports = Vec::new();
+    for (info, plan, sha256) in subjects {
+        let (subject, began) = (Subject::new(info.clone(), Host::new(), seed), Instant::now());
+        let outcomes: Vec<Outcome> = chosen
+            .iter()
+            .map(|check| {
+                let finding = examine(check, &subject);
+                Outcome { check: *check, finding, took: began.elapsed(), repeat: plan.repeat(check) }
+            })
+            .collect();
+        if let [outcome] = outcomes.as_slice()
+            && let Some(asker) = asker.take()
+        {
+            asker.tell(&outcome.finding)?;
             return Ok(ExitCode::SUCCESS);
         }
-        print(&format!("{}: {} {}: {}", info.short_name, check.id, finding.word(), finding.text()))?;
-        if matches!(finding, Finding::Fails(_)) {
-            status = ExitCode::FAILURE;
+        for Outcome { check, finding, .. } in outcomes.iter().filter(|_| !out.is_json) {
+            print(&format!("{}: {} {}: {}", info.short_name, check.id, finding.word(), finding.text()))?;
         }
+        let (name, plugin, took) = (info.short_name.clone(), info.id.clone(), began.elapsed());
+        reports.push(Report { name, plugin, sha256: Some(sha256), seed, level: None, outcomes, took });
     }
-    Ok(status)
+    out.end(&reports)
 }
 
-fn all(args: &args::Check, file: &Path, infos: &[&PluginInfo], is_json: bool) -> anyhow::Result<ExitCode> {
+fn plan(file: &Path, info: &PluginInfo, checks: &[Check], seed: u64) -> anyhow::Result<Plan> {
+    Ok(Plan {
+        program: std::env::current_exe()?,
+        file: file.to_owned(),
+        plugin: info.id.clone(),
+        checks: checks.to_vec(),
+        seed,
+    })
+}
+
+fn all(args: &args::Check, file: &Path, infos: &[&PluginInfo], out: Out) -> anyhow::Result<ExitCode> {
     let has =
         |check: &Check, part: &Option<String>| part.as_ref().is_some_and(|part| check.id.contains(part));
     let known = checks();
@@ -83,17 +136,11 @@ fn all(args: &args::Check, file: &Path, infos: &[&PluginInfo], is_json: bool) ->
     let ledger = Ledger::beside(&host);
     let mut reports = Vec::new();
     for info in infos {
-        let plan = Plan {
-            program: std::env::current_exe()?,
-            file: file.to_owned(),
-            plugin: info.id.clone(),
-            checks: chosen.clone(),
-            seed: args.seed,
-        };
+        let plan = plan(file, info, &chosen, args.seed)?;
         let (sha256, began) = (info.sha256()?, Instant::now());
         let mut said = Ok(());
         let outcomes = plan.run(&mut |outcome| {
-            if !is_json && said.is_ok() {
+            if !out.is_json && said.is_ok() {
                 said = print(&line(outcome));
             }
         });
@@ -101,40 +148,38 @@ fn all(args: &args::Check, file: &Path, infos: &[&PluginInfo], is_json: bool) ->
         let level = (args.only.is_none() && args.skip.is_none()).then_some(args.level);
         let (name, plugin) = (info.short_name.clone(), info.id.clone());
         let (seed, took) = (args.seed, began.elapsed());
-        let report = Report { name, plugin, sha256, seed, level, outcomes, took };
+        let report = Report { name, plugin, sha256: Some(sha256), seed, level, outcomes, took };
         anyhow::ensure!(
-            info.sha256()? == report.sha256,
+            report.sha256 == Some(info.sha256()?),
             "{} was written anew while it was checked: check it again",
             file.display()
         );
         ledger.keep(info, &report).context("the verdict cannot be kept")?;
-        reports.push(report);
-    }
-    end(&reports, args, is_json)
-}
-
-/// Says what it has come to, and with which status to end.
-fn end(reports: &[Report], args: &args::Check, is_json: bool) -> anyhow::Result<ExitCode> {
-    if let Some(path) = &args.junit {
-        fs::write(path, junit(reports)).with_context(|| format!("cannot write {}", path.display()))?;
-    }
-    if is_json {
-        let reports: Vec<_> = reports.iter().map(Report::json).collect();
-        print(&serde_json::to_string_pretty(&json!({ "plugins": reports }))?)?;
-    } else {
-        for report in reports {
-            if report.sha256.is_empty() {
-                report.outcomes.iter().try_for_each(|outcome| print(&line(outcome)))?;
-            }
+        if !out.is_json {
             print(&report.line())?;
         }
+        reports.push(report);
     }
-    let worst = reports.iter().map(Report::status).max();
-    Ok(match worst {
-        Some(Status::Failed) => ExitCode::FAILURE,
-        Some(Status::Doubtful) => ExitCode::from(DOUBTFUL),
-        Some(Status::Passed) | None => ExitCode::SUCCESS,
-    })
+    out.end(&reports)
+}
+
+impl Out {
+    /// Writes what is for machines; with which status to end.
+    fn end(self, reports: &[Report]) -> anyhow::Result<ExitCode> {
+        if let Some(mut xml) = self.xml {
+            let written = xml.set_len(0).and_then(|()| xml.write_all(junit(reports).as_bytes()));
+            written.context("the report for JUnit cannot be written")?;
+        }
+        if self.is_json {
+            let reports: Vec<_> = reports.iter().map(Report::json).collect();
+            print(&serde_json::to_string_pretty(&json!({ "plugins": reports }))?)?;
+        }
+        Ok(match reports.iter().map(Report::status).max() {
+            Some(Status::Failed) => ExitCode::FAILURE,
+            Some(Status::Doubtful) => ExitCode::from(DOUBTFUL),
+            Some(Status::Passed) | None => ExitCode::SUCCESS,
+        })
+    }
 }
 
 /// A check in a line; of one that has failed what came, and how to see it again.

@@ -3,8 +3,9 @@
 use crate::Fault;
 use serde_json::Value;
 
-const MANIFEST: &[&str] = &["honami", "abi", "library", "plugins", "exec", "$schema"];
+const MANIFEST: &[&str] = &["honami", "abi", "library", "plugins", "exec", "needs", "$schema"];
 const LIBRARY: &[&str] = &["id", "version", "license", "url"];
+const NEEDS: &[&str] = &["exec", "read"];
 const PLUGIN: &[&str] = &["id", "kind", "name", "doc", "cite", "interfaces", "caps", "params"];
 const CAPS: &[&str] = &["latency", "deterministic", "parallel_instances", "pixels"];
 const PARAM: &[&str] = &[
@@ -27,6 +28,7 @@ const PARAM: &[&str] = &[
     "soft_max",
     "step",
     "scale",
+    "relative_to",
     "renamed_to",
 ];
 const ENTRY: &[&str] = &["id", "label", "doc"];
@@ -43,6 +45,7 @@ pub(super) fn unknown_to(json: &[u8]) -> Result<Vec<String>, Fault> {
     };
     look("", &manifest, MANIFEST);
     look("library.", &manifest["library"], LIBRARY);
+    look("needs.", &manifest["needs"], NEEDS);
     for plugin in list(&manifest["plugins"]) {
         look("plugins.", plugin, PLUGIN);
         look("caps.", &plugin["caps"], CAPS);
@@ -59,3 +62,6 @@ pub(super) fn unknown_to(json: &[u8]) -> Result<Vec<String>, Fault> {
 fn list(value: &Value) -> &[Value] {
     value.as_array().map_or(&[], Vec::as_slice)
 }
+
+#[cfg(test)]
+mod tests;

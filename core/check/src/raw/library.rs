@@ -3,9 +3,9 @@
 use super::desk::Desk;
 use super::dress::{Dress, Placed};
 use super::known;
-use crate::Fault;
+use crate::{Fault, Subject};
 use honami_abi as abi;
-use honami_host::{PluginInfo, Trust, plain};
+use honami_host::plain;
 use std::ffi::{CStr, CString};
 use std::os::unix::ffi::OsStrExt as _;
 use std::ptr::NonNull;
@@ -18,18 +18,15 @@ pub(crate) struct Library {
 
 impl Library {
     /// Loads it, after this process has given up what a plugin's own process gives up.
-    pub(crate) fn open(info: &PluginInfo) -> Result<Self, Fault> {
-        Self::dressed(info, Dress::Today)
+    pub(crate) fn open(subject: &Subject) -> Result<Self, Fault> {
+        Self::dressed(subject, Dress::Today)
     }
 
-    pub(crate) fn dressed(info: &PluginInfo, dress: Dress) -> Result<Self, Fault> {
-        if let Trust::No(why) = &info.trust {
-            return Err(Fault(format!("it is not trusted: {why}")));
-        }
-        let path =
-            CString::new(info.library.as_os_str().as_bytes()).map_err(|error| Fault(error.to_string()))?;
+    pub(crate) fn dressed(subject: &Subject, dress: Dress) -> Result<Self, Fault> {
+        let copy = subject.copy()?;
+        let path = CString::new(copy.as_os_str().as_bytes()).map_err(|error| Fault(error.to_string()))?;
         // How much of it the kernel could do is said by the check that starts it as honami does.
-        let _level = honami_host::shut_in(&info.library, &[]);
+        let _level = honami_host::shut_in(copy, &[]);
         // SAFETY: runs the library's constructors; a person has asked for it to be checked.
         let handle =
             unsafe { libc::dlopen(path.as_ptr(), libc::RTLD_NOW | libc::RTLD_LOCAL | libc::RTLD_NODELETE) };

@@ -5,7 +5,7 @@ use super::desk::Desk;
 use super::dress::{Dress, Placed};
 use super::library::Library;
 use super::made::Made;
-use crate::Fault;
+use crate::{Fault, Subject};
 use honami_abi::{self as abi, Code, Column, dtype, interface, schema};
 use honami_host::{Kind, PluginInfo};
 use std::ffi::CStr;
@@ -54,8 +54,9 @@ impl From<Fault> for Stop {
 }
 
 /// Plays a scene with a plugin.
-pub(crate) fn play(info: &PluginInfo, scene: Scene) -> Result<Played, Fault> {
-    let library = Library::dressed(info, scene.dress)?;
+pub(crate) fn play(subject: &Subject, scene: Scene) -> Result<Played, Fault> {
+    let info = &subject.info;
+    let library = Library::dressed(subject, scene.dress)?;
     let desk = Desk::dressed(scene.dress)?;
     let made = Made::of(&library, &desk, info)?;
     let mut stage = Stage { info, scene, desk, made, results: Vec::new() };

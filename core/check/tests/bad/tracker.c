@@ -7,14 +7,23 @@
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 enum fault {
   NONE,
-  /* parameters */ NAN_AT_THE_END, INACTIVE,
-  /* frames */ READS_PAST, READS_BEFORE, READS_GAPS, DIES_OF_SMALL,
+  /* parameters */ NAN_AT_THE_END, INACTIVE, CHOICE, IN_BETWEEN, SECOND,
+  /* frames */ READS_PAST, READS_BEFORE, READS_GAPS, DIES_OF_SMALL, DIES_OF_BLACK, DIES_OF_LONG, DIES_OF_LATE,
   /* truth */ STAYS, DRIFTS, FORGETS, KEEPS_RETIRED, TRACKS_NOTHING,
-  /* running */ CLOCK, THREADS, ELSEWHERE, STATE, SHARED, FALLS, DEAF, LEAKS_FILES, LEAKS_MEMORY
+  /* running */ CLOCK, THREADS, ELSEWHERE, STATE, SHARED, SHARED_SMALL, FIRST_BESIDE, FALLS, DEAF, LEAKS_FILES, LEAKS_MEMORY
 };
+
+#if defined(WHEN_NOTHING)
+#define MORE ",{\"id\":\"more\",\"type\":\"bool\",\"default\":false,\"when\":{\"nothing\":true},\"doc\":\"More.\"}"
+#elif defined(NOW_NOTHING)
+#define MORE ",{\"id\":\"old\",\"renamed_to\":\"nothing\"}"
+#else
+#define MORE ""
+#endif
 
 #define MANIFEST                                                                                                       \
   "{\"honami\":1,\"abi\":[1,0],"                                                                                       \
@@ -24,7 +33,7 @@ enum fault {
   "{\"id\":\"radius\",\"type\":\"int\",\"min\":2,\"max\":9,\"default\":5,\"doc\":\"Of the window.\"},"                 \
   "{\"id\":\"limit\",\"type\":\"bool\",\"default\":false,\"doc\":\"Loses what goes far.\"},"                           \
   "{\"id\":\"reach\",\"type\":\"float\",\"min\":0.001,\"max\":50,\"default\":10,\"when\":{\"limit\":true},"            \
-  "\"doc\":\"How far.\"}]}]}"
+  "\"doc\":\"How far.\"}" MORE "]}]}"
 HONAMI_MANIFEST(MANIFEST);
 
 typedef struct point { uint32_t id, status; float x, y; } point;
@@ -146,6 +155,16 @@ static float off(bad *self, const honami_frame *frame) {
   int is_shared = self->n_frames > 0 && last != self;
   last = self;
   if (FAULT == NAN_AT_THE_END && self->radius == 9) return NAN;
+  if (FAULT == CHOICE && self->limit) return NAN;
+  if (FAULT == IN_BETWEEN && self->radius == 4) return NAN;
+  if (FAULT == SECOND && frame->width == 48) {
+    static int n_streams;
+    n_streams += self->n_frames == 0;
+    return n_streams > 1 ? 0.01f : 0;
+  }
+  if (FAULT == DIES_OF_BLACK && frame->data[0] + frame->data[1] + frame->data[2] == 0) return *(volatile float *)NULL;
+  if (FAULT == DIES_OF_LONG && frame->width > 4000) return *(volatile float *)NULL;
+  if (FAULT == DIES_OF_LATE && frame->index > 1000) return *(volatile float *)NULL;
   if (FAULT == CLOCK && frame->index == 7) {
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);
@@ -160,6 +179,11 @@ static float off(bad *self, const honami_frame *frame) {
   if (FAULT == ELSEWHERE && strstr(program_invocation_short_name, "plughost")) return 0.01f;
   if (FAULT == STATE) return (float)(self->n_begun - 1) * 0.01f;
   if (FAULT == SHARED && is_shared) return 0.01f;
+  if (FAULT == SHARED_SMALL && is_shared && self->width == 48) return 0.01f;
+  if (FAULT == FIRST_BESIDE && gettid() != getpid()) {
+    static bad *first;
+    return __sync_bool_compare_and_swap(&first, NULL, self) || first == self ? 0.01f : 0;
+  }
   if (FAULT == LEAKS_FILES) return (float)(open("/dev/null", O_RDONLY) < -1);
   if (FAULT == LEAKS_MEMORY) return (float)*(volatile char *)memset(malloc(16384), 0, 16384);
   return 0;

@@ -2,6 +2,7 @@
 
 use crate::tools::{check, compile, failed, has_cc};
 use honami_check::{Finding, Outcome, checks};
+use std::collections::BTreeSet;
 
 /// A plugin with one fault.
 struct Bad {
@@ -238,6 +239,20 @@ const HIGH: &[Bad] = &[
         says: "and point",
     },
     Bad { fault: "STATE", source: TRACKER, flags: &["-lm"], check: "running.again", says: "and point" },
+    Bad {
+        fault: "SHARED_SMALL",
+        source: TRACKER,
+        flags: &["-lm"],
+        check: "running.turns",
+        says: "and point",
+    },
+    Bad {
+        fault: "FIRST_BESIDE",
+        source: TRACKER,
+        flags: &["-lm"],
+        check: "running.parallel",
+        says: "and point",
+    },
     Bad { fault: "SHARED", source: TRACKER, flags: &["-lm"], check: "running.turns", says: "and point" },
     Bad { fault: "FALLS", source: TRACKER, flags: &["-lm"], check: "running.progress", says: "and then at" },
     Bad { fault: "DEAF", source: TRACKER, flags: &["-lm"], check: "running.stop", says: "gave a result" },
@@ -304,4 +319,69 @@ fn a_fault_in_parameters_frames_or_what_is_said_of_them_is_found_at_its_level() 
 #[test]
 fn a_fault_in_the_way_of_working_is_found_at_its_level() {
     finds(HIGH);
+}
+
+/// One fault, and every check that is to find it, whatever others say of it.
+const SEVERAL: &[(&str, &[&str], &[&str])] = &[
+    ("NONE", &["-DWHEN_NOTHING"], &["params.when"]),
+    ("NONE", &["-DNOW_NOTHING"], &["params.renamed"]),
+    ("CHOICE", &[], &["params.choices"]),
+    ("IN_BETWEEN", &[], &["params.random"]),
+    ("SECOND", &[], &["params.default"]),
+    ("DIES_OF_BLACK", &[], &["frames.odd"]),
+    ("DIES_OF_LONG", &[], &["frames.long", "frames.large"]),
+    ("DIES_OF_LATE", &[], &["frames.gaps"]),
+    ("STAYS", &[], &["truth.turn", "truth.zoom", "truth.sway", "truth.light", "truth.blur"]),
+    ("SHARED", &[], &["running.left"]),
+    ("FIRST_BESIDE", &[], &["running.callers"]),
+];
+
+#[test]
+fn a_fault_that_several_checks_are_there_for_is_found_by_each() {
+    if !has_cc() {
+        return;
+    }
+    let mut complaints = Vec::new();
+    for (fault, flags, wanted) in SEVERAL {
+        let define = format!("-DFAULT={fault}");
+        let name = format!("several-{fault}{}", flags.concat());
+        let library = compile(TRACKER, &name, &[&[define.as_str(), "-lm"], *flags].concat());
+        let outcomes = check(&library, |known| wanted.contains(&known.id));
+        let missed = outcomes.iter().filter(|outcome| !matches!(outcome.finding, Finding::Fails(_)));
+        complaints
+            .extend(missed.map(|outcome| format!("{name}: {}: {:?}", outcome.check.id, outcome.finding)));
+    }
+    assert!(complaints.is_empty(), "\n{}\n", complaints.join("\n"));
+}
+
+/// Checks for which no bad plugin is here, and why.
+const WITHOUT: &[(&str, &str)] = &[
+    ("file.readable", "what cannot be read is no subject: tests of the command line have it"),
+    ("file.manifest", "it has doubts alone; tests of the members that are known have it"),
+    ("file.described", "it has doubts alone"),
+    ("file.program", "it is of programs, and those here are libraries"),
+    ("loading.scan", "it has doubts alone, because time decides nothing"),
+    ("clusterer.heights", "the bad clusterer has no fault of its heights"),
+    ("clusterer.scale", "the bad clusterer has no fault of scale"),
+    ("state.goes-on", "the bad tracker saves nothing"),
+    ("state.aside", "the bad tracker saves nothing"),
+    ("state.damaged", "the bad tracker saves nothing"),
+    ("truth.hidden", "the bad tracker has no fault that only hiding shows"),
+    ("truth.detect", "the bad tracker detects nothing"),
+    ("truth.aside", "the bad tracker detects nothing"),
+    ("truth.field", "the bad tracker has no field"),
+    ("running.long-growth", "it is running.growth over more frames, and takes minutes"),
+    ("stress.order", "it takes minutes"),
+    ("stress.killed", "it takes minutes"),
+];
+
+#[test]
+fn every_check_has_a_bad_plugin_or_a_reason_why_it_has_none() {
+    let single = [LOW, MIDDLE, HIGH].into_iter().flatten().map(|bad| bad.check);
+    let several = SEVERAL.iter().flat_map(|(_, _, wanted)| wanted.iter().copied());
+    let found: BTreeSet<&str> = single.chain(several).chain(["file.needed"]).collect();
+    let without: BTreeSet<&str> = WITHOUT.iter().map(|(id, _)| *id).collect();
+    assert_eq!(found.intersection(&without).count(), 0, "found, and said to be without a bad plugin");
+    let all: BTreeSet<&str> = checks().iter().map(|check| check.id).collect();
+    assert_eq!(found.union(&without).copied().collect::<BTreeSet<_>>(), all);
 }

@@ -7,7 +7,8 @@ class Settings(honami.Params):
     unknown = honami.Float(50, 0, 1000, unit="px", doc="How far apart tracks count that were never seen together.")
 
 
-@honami.clusterer("org.honami.linkage", "Average linkage", params=Settings)
+@honami.clusterer("org.honami.linkage", "Average linkage", params=Settings,
+                  doc="Groups tracks by how much the distance between them changes.")
 class Linkage:
     def cluster(self, tracks):
         apart = np.array([self.from_all(tracks, k) for k in range(len(tracks.id))]).reshape(len(tracks.id), -1)
@@ -32,4 +33,4 @@ class Linkage:
         return np.where(n > 0, sway, self.params.unknown)
 
 
-honami.run()
+honami.run(license="MIT OR Apache-2.0")

@@ -10,7 +10,8 @@ class Settings(honami.Params):
     search = honami.Int(6, 1, 30, unit="px", doc="How far a point may move from frame to frame.")
 
 
-@honami.tracker("org.honami.template", "Templates of the first frame", params=Settings)
+@honami.tracker("org.honami.template", "Templates of the first frame", params=Settings,
+                doc="Looks for the first picture of every point, near where it was last.")
 class Template:
     def begin(self, stream):
         self.at, self.first, self.last = {}, {}, None
@@ -65,4 +66,4 @@ class Template:
         self.last = kept.get("last")
 
 
-honami.run()
+honami.run(license="MIT OR Apache-2.0")

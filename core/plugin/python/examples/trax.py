@@ -207,7 +207,8 @@ class Picture:
             os.remove(self.file)
 
 
-@honami.tracker("org.honami.template", "A TraX server for each point", params=Settings, deterministic=False)
+@honami.tracker("org.honami.template", "A TraX server for each point", params=Settings, deterministic=False,
+                doc="Each point is a small rectangle, followed by a process of its own.")
 class Trax:
     def __init__(self):
         self.points = {}
@@ -302,4 +303,4 @@ class Trax:
             self.drop(i)
 
 
-honami.run(exec=True, read=READS)
+honami.run(license="MIT OR Apache-2.0", exec=True, read=READS)
