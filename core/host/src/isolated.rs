@@ -1,10 +1,11 @@
 //! Plugins in a process of their own: what they do there cannot hurt this one.
 //!
-//! `process.rs` is the process, `start.rs` how a plugin gets into it, `watch.rs` who looks whether it lives, `results.rs`
-//! what is taken from it.
+//! `process.rs` is the process, `start.rs` how a plugin gets into it, `say.rs` how it is asked, `watch.rs` who looks whether it
+//! lives, `results.rs` what is taken from it.
 
 mod process;
 mod results;
+mod say;
 mod start;
 mod watch;
 
@@ -99,9 +100,7 @@ impl Isolated {
     ) {
         reply.clear();
         self.output.cancel().store(0, Relaxed);
-        let ended = self.catch_up(cx).and_then(|()| self.say(ask));
-        let ended = ended.and_then(|()| self.listen(cx, self.limits.end));
-        match ended {
+        match self.exchange(ask, cx) {
             Ok(Heard::Answer(answer)) => {
                 reply.stopped = self.is_asked_to_stop;
                 self.take(answer, schemas, reply);
@@ -117,33 +116,17 @@ impl Isolated {
         }
     }
 
-    fn say(&mut self, ask: &Ask) -> io::Result<()> {
-        let mut line = serde_json::to_string(ask)?;
-        line.push('\n');
-        let said = match ask {
-            Ask::Hello { .. } => self.process.greet(&line, &self.input, &self.output),
-            _ => self.process.say(&line),
-        };
-        match said {
-            // It has ended: how, `listen` hears.
-            Err(error)
-                if matches!(error.kind(), io::ErrorKind::BrokenPipe | io::ErrorKind::ConnectionReset) =>
-            {
-                Ok(())
-            }
-            said => said,
+    /// Says a request and hears what it leads to. It may end already while nobody hears it, or does not listen.
+    fn exchange(&mut self, ask: &Ask, cx: &CallContext<'_>) -> io::Result<Heard> {
+        self.is_asked_to_stop = false;
+        let mut watch = Watch::new(&self.output, self.limits.end);
+        if let Some(how) = self.catch_up(&mut watch, cx)? {
+            return Ok(Heard::End(how));
         }
-    }
-
-    /// Hears what it has said since its last answer: another answer would be taken for that to the next request.
-    fn catch_up(&mut self, cx: &CallContext<'_>) -> io::Result<()> {
-        for _ in 0..LINES_A_LOOK {
-            let Some(line) = self.process.line()? else { break };
-            if self.hear(&line, cx)?.is_some() {
-                return Err(io::Error::other("answers what nobody has asked"));
-            }
+        match self.say(ask, &mut watch, cx)? {
+            Some(how) => Ok(Heard::End(how)),
+            None => self.listen(cx, self.limits.end),
         }
-        Ok(())
     }
 
     /// Takes a line apart; an answer is for who has asked.

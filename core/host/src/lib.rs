@@ -24,6 +24,7 @@ mod plughost;
 mod quarantine;
 mod rebuilt;
 mod registry;
+mod regular;
 mod reply;
 mod script;
 mod store;

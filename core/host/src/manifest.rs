@@ -1,5 +1,6 @@
 //! What a library says of itself before any of its code runs: plugins, parameters, abilities.
 
+use crate::plain::is_hidden;
 use crate::values::{Value, Values};
 use honami_abi::kind;
 use serde::{Deserialize, Serialize};
@@ -263,8 +264,10 @@ impl Manifest {
     /// # Errors
     /// A sentence, when it is no such document or says what cannot be.
     pub(crate) fn parse(json: &[u8]) -> Result<Self, String> {
-        let manifest: Self =
-            serde_json::from_slice(json).map_err(|e| format!("its manifest is broken: {e}"))?;
+        let broken = |e: serde_json::Error| format!("its manifest is broken: {e}");
+        // Before anything that it says stands in a message.
+        no_hidden(&serde_json::from_slice(json).map_err(broken)?, "the document")?;
+        let manifest: Self = serde_json::from_slice(json).map_err(broken)?;
         if manifest.honami != 1 {
             return Err(format!("its manifest is of form {}, this honami reads form 1", manifest.honami));
         }
@@ -280,6 +283,28 @@ impl Manifest {
             plugin.params().map_err(|e| format!("manifest of {}: {e}", plugin.id))?;
         }
         Ok(manifest)
+    }
+}
+
+/// Refuses letters that would change what stands around them on a screen. Only a `doc` has lines.
+fn no_hidden(value: &serde_json::Value, member: &str) -> Result<(), String> {
+    let shown = |text: &str, has_lines: bool| {
+        let is_line = |letter| has_lines && ['\n', '\t'].contains(&letter);
+        match text.chars().find(|letter| is_hidden(*letter) && !is_line(*letter)) {
+            Some(letter) => Err(format!(
+                "its manifest has U+{:04X} in {member:?}: wanted text without control characters",
+                u32::from(letter)
+            )),
+            None => Ok(()),
+        }
+    };
+    match value {
+        serde_json::Value::String(text) => shown(text, member == "doc"),
+        serde_json::Value::Array(all) => all.iter().try_for_each(|value| no_hidden(value, member)),
+        serde_json::Value::Object(all) => {
+            all.iter().try_for_each(|(name, value)| shown(name, false).and_then(|()| no_hidden(value, name)))
+        }
+        _ => Ok(()),
     }
 }
 

@@ -2,16 +2,13 @@
 
 use crate::error::HostError;
 use crate::manifest::Manifest;
+use crate::regular::{self, LIBRARY_BYTES_MAX, MANIFEST_BYTES_MAX};
 use crate::script;
 use object::elf::{self, FileHeader64};
 use object::read::ReadRef;
 use object::read::elf::{Dyn, FileHeader, ProgramHeader, Sym};
 use object::{Endianness, ReadCache};
-use std::fs::File;
 use std::path::Path;
-
-/// No manifest is larger: what claims to be is not read.
-const MANIFEST_BYTES_MAX: usize = 1 << 20;
 
 /// The manifest of a library, and its bytes as they stand in the note; `None` for a library that carries none.
 ///
@@ -19,7 +16,8 @@ const MANIFEST_BYTES_MAX: usize = 1 << 20;
 /// When the file cannot be read, is for another machine or another ABI, or its manifest is broken.
 pub(crate) fn read(path: &Path) -> Result<Option<(Manifest, Vec<u8>)>, HostError> {
     let file_error = |why: String| HostError::File { path: path.to_owned(), why };
-    let file = File::open(path).map_err(|e| file_error(format!("cannot be read: {e}")))?;
+    let file =
+        regular::open(path, LIBRARY_BYTES_MAX).map_err(|e| file_error(format!("cannot be read: {e}")))?;
     let data = ReadCache::new(file);
     let Some(json) = note(&data).map_err(file_error)? else { return Ok(None) };
     let manifest = Manifest::parse(&json).map_err(file_error)?;
@@ -47,7 +45,7 @@ fn note<'d, R: ReadRef<'d>>(data: R) -> Result<Option<Vec<u8>>, String> {
     }
     let Some(json) = found else { return Ok(None) };
     let json = json.strip_suffix(&[0]).unwrap_or(json);
-    if json.len() > MANIFEST_BYTES_MAX {
+    if json.len() as u64 > MANIFEST_BYTES_MAX {
         return Err(format!("its manifest has {} bytes, more than anybody can mean", json.len()));
     }
     exports(header, endian, data)?;
@@ -91,7 +89,8 @@ pub fn needed(path: &Path) -> Result<Vec<String>, HostError> {
     }
     let file_error = |why: String| HostError::File { path: path.to_owned(), why };
     let broken = |e: object::Error| file_error(format!("is no whole ELF file: {e}"));
-    let file = File::open(path).map_err(|e| file_error(format!("cannot be read: {e}")))?;
+    let file =
+        regular::open(path, LIBRARY_BYTES_MAX).map_err(|e| file_error(format!("cannot be read: {e}")))?;
     let data = ReadCache::new(file);
     let header = FileHeader64::<Endianness>::parse(&data).map_err(broken)?;
     let endian = header.endian().map_err(broken)?;

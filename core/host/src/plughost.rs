@@ -38,6 +38,7 @@ pub(crate) const EXEC_AND_OTHERS: &str = "--exec-and-others";
 /// When the arguments are not those that a host gives, there is no host at standard input, or it says what nobody
 /// understands.
 pub fn serve(args: impl Iterator<Item = OsString>) -> io::Result<ExitCode> {
+    sandbox::close_inherited();
     let memory = std::env::var(MEMORY).ok();
     sandbox::limit(memory.and_then(|bytes| bytes.parse().ok()));
     let mut args = args.peekable();

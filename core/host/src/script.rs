@@ -3,8 +3,8 @@
 use crate::error::HostError;
 use crate::manifest::Manifest;
 use crate::registry::{PluginInfo, Trust};
+use crate::regular::{self, LIBRARY_BYTES_MAX, MANIFEST_BYTES_MAX};
 use crate::store::{self, Stored};
-use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -32,7 +32,7 @@ pub fn manifest_of(file: &Path) -> PathBuf {
 /// When it cannot be read or is broken.
 pub(crate) fn read(path: &Path) -> Result<(Manifest, Vec<u8>), HostError> {
     let file_error = |why: String| HostError::File { path: path.to_owned(), why };
-    let json = fs::read(path).map_err(|e| {
+    let json = regular::read(path, MANIFEST_BYTES_MAX).map_err(|e| {
         file_error(format!("cannot be read: {e}; `python3 {}.py --honami-manifest` writes it", stem(path)))
     })?;
     let manifest = Manifest::parse(&json).map_err(file_error)?;
@@ -54,7 +54,8 @@ fn stem(path: &Path) -> String {
 
 /// A manifest and the program's own files, which lie beside it.
 pub(crate) fn parts(manifest: &Path) -> Vec<PathBuf> {
-    let exec = fs::read(manifest).ok().and_then(|json| Manifest::parse(&json).ok()).map(|m| m.exec);
+    let json = regular::read(manifest, MANIFEST_BYTES_MAX).ok();
+    let exec = json.and_then(|json| Manifest::parse(&json).ok()).map(|m| m.exec);
     with_own(manifest, &exec.unwrap_or_default())
 }
 
@@ -77,7 +78,9 @@ pub(crate) fn keep(info: &PluginInfo, store: &Path) -> Result<Stored, HostError>
     let parts = with_own(&info.library, &info.exec);
     let contents: Vec<Vec<u8>> = parts
         .iter()
-        .map(|part| fs::read(part).map_err(|e| file_error(format!("cannot be read: {e}"))))
+        .map(|part| {
+            regular::read(part, LIBRARY_BYTES_MAX).map_err(|e| file_error(format!("cannot be read: {e}")))
+        })
         .collect::<Result<_, _>>()?;
     let sha256 = store::hex_of_parts(&contents);
     if contents.first().is_none_or(|json| **json != *info.manifest) {

@@ -4,12 +4,13 @@
 //! old one, and an overwritten file kills the process. Copies that never change cure both.
 
 use crate::error::HostError;
+use crate::regular::{self, LIBRARY_BYTES_MAX};
 use crate::script;
 use rustix::process::geteuid;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::fs::{self, DirBuilder, File, OpenOptions, Permissions};
-use std::io::{self, Read, Write};
+use std::io::{self, Write};
 use std::os::unix::fs::{DirBuilderExt, MetadataExt, OpenOptionsExt, PermissionsExt};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
@@ -132,9 +133,7 @@ pub(crate) fn copy_of(folder: &Path, sha256: &str) -> PathBuf {
 
 fn read(path: &Path) -> Result<Vec<u8>, HostError> {
     let why = |e: io::Error| HostError::File { path: path.to_owned(), why: format!("cannot be read: {e}") };
-    let mut bytes = Vec::new();
-    File::open(path).and_then(|mut file| file.read_to_end(&mut bytes)).map_err(why)?;
-    Ok(bytes)
+    regular::read(path, LIBRARY_BYTES_MAX).map_err(why)
 }
 
 /// The hash of bytes, lower-case hexadecimal.

@@ -5,6 +5,7 @@
 use super::known::known;
 use crate::error::HostError;
 use crate::note;
+use crate::plain::plain;
 use crate::registry::{PluginInfo, Trust};
 use crate::store::{self, Stored};
 use honami_abi as abi;
@@ -109,11 +110,17 @@ fn still(info: &PluginInfo, manifest: &[u8]) -> Result<(), HostError> {
     Err(HostError::File { path: info.library.clone(), why })
 }
 
+/// An error, and what has led to it.
+fn chain(error: &dyn std::error::Error) -> String {
+    let causes = std::iter::successors(error.source(), |error| error.source());
+    plain(&causes.fold(error.to_string(), |text, cause| format!("{text}: {cause}")))
+}
+
 fn open(copy: &Path, info: &PluginInfo) -> Result<CreateFn, HostError> {
     let file_error = |why: String| HostError::File { path: info.library.clone(), why };
     // SAFETY: loading runs the library's constructors; it is trusted, and the copy is what was hashed.
     let library = unsafe { Library::open(Some(copy), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE) }
-        .map_err(|e| file_error(format!("cannot be loaded: {e}")))?;
+        .map_err(|e| file_error(format!("cannot be loaded: {}", chain(&e))))?;
     // SAFETY: the header gives the symbol this type.
     let entry = unsafe { library.get::<abi::LibraryFn>(abi::LIBRARY_SYMBOL) };
     let entry = *entry.map_err(|e| file_error(format!("does not export honami_library_v1: {e}")))?;

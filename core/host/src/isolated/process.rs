@@ -114,7 +114,7 @@ impl Process {
         fcntl_setfl(&prints, OFlags::NONBLOCK)?;
         fcntl_setfl(&ours, OFlags::NONBLOCK)?;
         let room = tempfile::Builder::new().prefix("honami-plugin-").tempdir()?;
-        let child = Command::new(program)
+        let mut child = Command::new(program)
             .args(args)
             .stdin(Stdio::from(theirs))
             .stdout(Stdio::from(print_to.try_clone()?))
@@ -128,7 +128,14 @@ impl Process {
             .envs(memory_bytes.map(|bytes| (MEMORY, bytes.to_string())))
             .spawn()?;
         let group = Pid::from_child(&child);
-        let pidfd = pidfd_open(group, PidfdFlags::empty())?;
+        let pidfd = match pidfd_open(group, PidfdFlags::empty()) {
+            Ok(pidfd) => pidfd,
+            Err(error) => {
+                child.kill()?;
+                child.wait()?;
+                return Err(error.into());
+            }
+        };
         let (heard, printed) = (Vec::new(), Vec::new());
         Ok(Self {
             child,
@@ -157,35 +164,36 @@ impl Process {
         if sent == line.len() { Ok(()) } else { Err(io::ErrorKind::WriteZero.into()) }
     }
 
-    /// Says a line.
-    pub(crate) fn say(&mut self, line: &str) -> io::Result<()> {
-        let mut left = line.as_bytes();
-        while !left.is_empty() {
+    /// Says as much of this as it takes now, in bytes; it never waits.
+    pub(crate) fn say(&mut self, left: &[u8]) -> io::Result<usize> {
+        loop {
             match self.socket.write(left) {
-                Ok(n) => left = &left[n..],
-                Err(error) if error.kind() == io::ErrorKind::WouldBlock => {
-                    let mut wanted =
-                        [PollFd::new(&self.socket, PollFlags::OUT), PollFd::new(&self.pidfd, PollFlags::IN)];
-                    poll(&mut wanted, None)?;
-                }
+                Err(error) if error.kind() == io::ErrorKind::WouldBlock => return Ok(0),
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-                Err(error) => return Err(error),
+                said => return said,
             }
         }
-        Ok(())
+    }
+
+    /// Waits until it takes more of what is said to it, ends, or so much time has passed; whether it has ended.
+    pub(crate) fn wait_to_say(&mut self, at_most: Duration) -> io::Result<bool> {
+        let mut wanted = [PollFd::new(&self.socket, PollFlags::OUT), PollFd::new(&self.pidfd, PollFlags::IN)];
+        match poll(&mut wanted, Some(&timespec(at_most))) {
+            Ok(_) => Ok(!wanted[1].revents().is_empty()),
+            Err(Errno::INTR) => Ok(false),
+            Err(error) => Err(error.into()),
+        }
     }
 
     /// Waits until it says or prints something, ends, or so much time has passed; whether it has ended. What it said
     /// before that can still be heard.
     pub(crate) fn wait(&mut self, at_most: Duration) -> io::Result<bool> {
-        let timeout =
-            Timespec { tv_sec: at_most.as_secs() as i64, tv_nsec: i64::from(at_most.subsec_nanos()) };
         // What is closed would wake the host for ever.
         let prints: &dyn AsFd = if self.can_print { &self.prints } else { &self.pidfd };
         let socket: &dyn AsFd = if self.has_hung_up { &self.pidfd } else { &self.socket };
         let mut wanted =
             [socket, prints, &self.pidfd].map(|file| PollFd::from_borrowed_fd(file.as_fd(), PollFlags::IN));
-        match poll(&mut wanted, Some(&timeout)) {
+        match poll(&mut wanted, Some(&timespec(at_most))) {
             Ok(_) => Ok(!wanted[2].revents().is_empty()),
             Err(Errno::INTR) => Ok(false),
             Err(error) => Err(error.into()),
@@ -289,6 +297,10 @@ impl Process {
     pub(crate) fn kill(&mut self) -> Ended {
         self.end().unwrap_or(Ended::Signal(Signal::KILL.as_raw()))
     }
+}
+
+fn timespec(time: Duration) -> Timespec {
+    Timespec { tv_sec: time.as_secs() as i64, tv_nsec: i64::from(time.subsec_nanos()) }
 }
 
 impl Drop for Process {

@@ -43,7 +43,7 @@ pub(crate) fn create(
     };
     let hello = Ask::Hello { honami: wire::VERSION, plugin: info.id.clone() };
     match made
-        .say(&hello)
+        .greet(&hello)
         .and_then(|()| made.listen(cx, limits.start))
         .map_err(|error| failed("does not answer", error))?
     {

@@ -36,3 +36,36 @@ fn what_cannot_be_is_refused_with_its_name() {
     }
     assert!(Manifest::parse(br#"{"honami":2}"#).is_err());
 }
+
+#[test]
+fn no_member_brings_what_moves_a_cursor_or_turns_text() {
+    let whole = serde_json::json!({
+        "honami": 1, "abi": [1, 0], "exec": ["python3", "it.py"], "later": { "new": ["thing"] },
+        "library": { "id": "org.it", "version": "1", "license": "MIT" },
+        "needs": { "exec": true, "read": ["/some/where"] },
+        "plugins": [{
+            "id": "org.it.a", "kind": "tracker", "name": "A", "doc": "lines\n\tof text", "cite": ["Somebody 1981"],
+            "interfaces": ["honami.tracker/1"], "caps": { "pixels": ["gray8"] },
+            "params": [{
+                "id": "e", "type": "enum", "default": "x", "label": "E", "group": "g", "doc": "d", "unit": "px",
+                "affects": "track", "when": { "e": "x" }, "entries": [{ "id": "x", "label": "X", "doc": "d" }],
+            }],
+        }],
+    })
+    .to_string();
+    Manifest::parse(whole.as_bytes()).unwrap();
+    // Every string of it, names of members among them, one after the other.
+    let ends: Vec<usize> =
+        (1..whole.len()).filter(|n| whole[*n..].starts_with('"')).skip(1).step_by(2).collect();
+    assert!(ends.len() > 50, "{ends:?}");
+    for end in ends {
+        for letter in ["\\u001b[2J", "\\u0000", "\\r", "\\u009b", "\u{202e}", "\u{feff}"] {
+            let hostile = format!("{}{letter}{}", &whole[..end], &whole[end..]);
+            let why = Manifest::parse(hostile.as_bytes()).expect_err(&hostile);
+            assert!(why.contains("wanted text without control characters"), "{hostile}: {why}");
+            assert!(!why.chars().any(is_hidden), "{why:?}");
+        }
+    }
+    let lines = whole.replace("org.it.a", "org.it\\na");
+    assert!(Manifest::parse(lines.as_bytes()).is_err(), "only a doc has lines");
+}

@@ -60,11 +60,19 @@ __attribute__((constructor)) static void before_main(void) {
 }
 #endif
 
+#ifdef MISSING
+int not_anywhere(void);
+int (*uses_it)(void) = not_anywhere;
+#endif
+
 /* Whether anything outside can be reached through a local socket; a pair within the process does no harm. */
 static int connects(void) {
   int pair[2];
   return socket(AF_UNIX, SOCK_STREAM, 0) >= 0 || socket(AF_UNIX, SOCK_DGRAM, 0) >= 0 ||
-         socketpair(AF_UNIX, SOCK_DGRAM, 0, pair) == 0 || socketpair(AF_UNIX, SOCK_STREAM, 0, pair) != 0;
+         socketpair(AF_UNIX, SOCK_DGRAM, 0, pair) == 0 || socketpair(AF_UNIX, SOCK_RAW, 0, pair) == 0 ||
+         socketpair(AF_UNIX, SOCK_RAW | SOCK_CLOEXEC, 0, pair) == 0 ||
+         socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, pair) != 0 ||
+         socketpair(AF_UNIX, SOCK_STREAM, 0, pair) != 0;
 }
 
 /* The call under which this kernel does what a plugin must not; NULL when it does none of them. */
@@ -74,6 +82,9 @@ static const char *calls(void) {
   if (syscall(SYS_unshare, (long)CLONE_NEWUSER) != -1) return "unshare";
   if (syscall(SYS_ptrace, 0L, 0L, 0L, 0L) != -1) return "ptrace";
   if (syscall(SYS_prlimit64, (long)getppid(), 7L, NULL, NULL) != -1) return "limits of others";
+  if (kill(-1, 0) == 0 || kill(getppid(), 0) == 0 || kill(getpid(), 0) != 0) return "signals to others";
+  if (syscall(SYS_tkill, (long)getppid(), 0L) != -1 || errno != EPERM) return "signals to threads";
+  if (fcntl(100, F_GETFD) != -1) return "a file that its host's starter left open";
 #ifdef __x86_64__
   if (syscall(0x40000000L + SYS_getpid) != -1 || errno != EPERM) return "x32";
 #endif

@@ -1,12 +1,15 @@
 """A tracker that says to its host what no plugin should: the name of one misdeed is its argument. It speaks as
 core/host/src/wire.rs describes, leaves every point where it is, and does its misdeed in frame 2."""
 
+import array
+import fcntl
 import json
 import mmap
 import os
 import socket
 import struct
 import sys
+import termios
 import threading
 import time
 
@@ -51,6 +54,17 @@ def shrink(files, size):
         refused(lambda: mmap.mmap(files[0], 4096)),
         refused(lambda: os.pwrite(files[0], b"x", 0)),
     ]
+
+
+def answer_unread(usual):
+    """Answers whatever comes, and reads nothing of it."""
+    unread, said = array.array("i", [0]), 0
+    say(usual)
+    while True:
+        fcntl.ioctl(HOST, termios.FIONREAD, unread)
+        if unread[0] > said:
+            said = unread[0]
+            say(usual)
 
 
 def main(misdeed):
@@ -105,6 +119,11 @@ def say_otherwise(misdeed, memory, files, usual):
         say(wrong[misdeed])
     elif misdeed == "--twice":
         say((json.dumps(usual) + "\n" + json.dumps(usual) + "\n").encode())
+    elif misdeed == "--later":
+        chatter = json.dumps({"m": "log", "level": 0, "text": "on and on"}) + "\n"
+        say((json.dumps(usual) + "\n" + 300 * chatter + json.dumps(usual) + "\n").encode())
+    elif misdeed == "--deaf":
+        answer_unread(usual)
     elif misdeed == "--endless":
         while True:
             say(b"x" * (1 << 16))

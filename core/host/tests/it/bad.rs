@@ -26,6 +26,15 @@ fn use_in(host: &Host, registry: &Registry) -> Result<Points, HostError> {
 }
 
 #[test]
+fn a_library_that_cannot_be_loaded_says_what_is_missing() {
+    if !has_cc() {
+        return;
+    }
+    let got = use_it(&bad("NULL_CREATE", &["-DMISSING"])).expect_err("not loaded").to_string();
+    assert!(got.contains("cannot be loaded: ") && got.contains("undefined symbol: not_anywhere"), "{got}");
+}
+
+#[test]
 fn a_fault_in_use_is_named() {
     if !has_cc() {
         return;

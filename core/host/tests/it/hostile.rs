@@ -42,6 +42,11 @@ fn watchful() -> Host {
 
 /// Frames 0 to 4; those before the misdeed, 0 and 1, are always whole.
 fn in_frame_2(misdeed: &str) -> Result<Vec<Points>, HostError> {
+    from_frame_2(misdeed, 5)
+}
+
+/// Frames 0 to `end`.
+fn from_frame_2(misdeed: &str, end: i64) -> Result<Vec<Points>, HostError> {
     let registry = hostile(misdeed);
     assert!(registry.problems().is_empty(), "{:?}", registry.problems());
     let cx = CallContext::silent();
@@ -52,7 +57,7 @@ fn in_frame_2(misdeed: &str) -> Result<Vec<Points>, HostError> {
         assert_eq!(tracker.push(&view(&pixels(n), n), &cx).unwrap()[0].rows.len(), 2, "{misdeed}");
     }
     let begun = Instant::now();
-    let rest = (2..5).map(|n| Ok(tracker.push(&view(&pixels(n), n), &cx)?.remove(0))).collect();
+    let rest = (2..end).map(|n| Ok(tracker.push(&view(&pixels(n), n), &cx)?.remove(0))).collect();
     assert!(begun.elapsed() < 10 * END, "{misdeed}: {:?}", begun.elapsed());
     rest
 }
@@ -82,6 +87,7 @@ fn what_a_hostile_process_says_is_told() {
         ("--empty", "its process said what nobody understands"),
         ("--fault", "misbehaves in push: it is all wrong"),
         ("--twice", "its process answers what nobody has asked"),
+        ("--later", "its process answers what nobody has asked"),
         ("--endless", "its process said a line without end"),
         ("--half", "was ended after 3 s without a sign of life in push of frame 2"),
         ("--half-and-gone", "ended its process with status 0 in push of frame 2"),
@@ -93,6 +99,18 @@ fn what_a_hostile_process_says_is_told() {
         let got = in_frame_2(misdeed).expect_err(misdeed).to_string();
         assert!(got.contains(wanted), "{misdeed}: wanted {wanted:?}, got {got:?}");
     }
+}
+
+/// Long before so many frames a socket is full that nobody reads.
+const FRAMES: i64 = 5_000;
+
+#[test]
+fn a_process_that_answers_and_does_not_listen_is_ended() {
+    if !has_python() {
+        return;
+    }
+    let got = from_frame_2("--deaf", FRAMES).expect_err("nobody reads").to_string();
+    assert!(got.contains("was ended after 3 s without a sign of life in push"), "{got}");
 }
 
 #[test]

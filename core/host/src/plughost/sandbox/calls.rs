@@ -62,8 +62,11 @@ pub(super) fn refuse(programs: &Programs) -> Result<(), Box<dyn std::error::Erro
     };
     let worlds = WORLDS.iter().map(|world| bits(0, *world, *world));
     rules.insert(libc::SYS_clone, worlds.collect::<Result<_, _>>()?);
-    // Datagrams go anywhere, also from one of a pair.
-    rules.insert(libc::SYS_socketpair, vec![bits(1, 0xF, libc::SOCK_DGRAM)?]);
+    // Datagrams go anywhere, also from one of a pair, and what the kernel does not know it may take for them: only
+    // streams (1) and sequences of packets (5) are left.
+    let other_kinds = [(1, 0), (2, 2), (8, 8)].map(|(mask, value)| bits(1, mask, value));
+    rules.insert(libc::SYS_socketpair, other_kinds.into_iter().collect::<Result<_, _>>()?);
+    rules.extend(signals(programs)?);
     let another = SeccompCondition::new(0, SeccompCmpArgLen::Dword, SeccompCmpOp::Ne, 0)?;
     rules.insert(libc::SYS_prlimit64, vec![SeccompRule::new(vec![another])?]);
     let refused = SeccompAction::Errno(libc::EPERM.unsigned_abs());
@@ -72,6 +75,26 @@ pub(super) fn refuse(programs: &Programs) -> Result<(), Box<dyn std::error::Erro
     apply_filter(&BpfProgram::try_from(filter)?)?;
     apply_filter(&by_number())?;
     Ok(())
+}
+
+/// Signals to others, on a kernel whose landlock does not keep them in: a library has none to send, a program may end
+/// what it has started but not everybody. Its own group is what ends with it.
+fn signals(programs: &Programs) -> Result<Vec<(i64, Vec<SeccompRule>)>, seccompiler::BackendError> {
+    let is = |op, value| SeccompCondition::new(0, SeccompCmpArgLen::Dword, op, value);
+    if *programs != Programs::Refused {
+        let everybody = is(SeccompCmpOp::Eq, u64::from(u32::MAX))?;
+        return Ok(vec![(libc::SYS_kill, vec![SeccompRule::new(vec![everybody])?])]);
+    }
+    let another = || is(SeccompCmpOp::Ne, std::process::id().into());
+    let mut rules = vec![
+        (libc::SYS_kill, vec![SeccompRule::new(vec![another()?, is(SeccompCmpOp::Ne, 0)?])?]),
+        (libc::SYS_tkill, Vec::new()),
+        (libc::SYS_pidfd_send_signal, Vec::new()),
+    ];
+    for call in [libc::SYS_tgkill, libc::SYS_rt_sigqueueinfo, libc::SYS_rt_tgsigqueueinfo] {
+        rules.push((call, vec![SeccompRule::new(vec![another()?])?]));
+    }
+    Ok(rules)
 }
 
 /// What the library for filters cannot say: a range of numbers, and that a call is not known here. `clone3` has its
