@@ -108,7 +108,7 @@ pub trait Relay {
     ///
     /// # Errors
     /// When that cannot be kept; the drive ends then.
-    fn given_up(&mut self, frame: u32, why: &HostError) -> Result<(), WorkbenchError>;
+    fn given_up(&mut self, frame: u32, why: &str) -> Result<(), WorkbenchError>;
 
     /// That one is on trial no more.
     fn proved(&mut self);
@@ -144,15 +144,19 @@ pub struct Driven {
 /// [`WorkbenchError::NoFeatures`] for none, [`WorkbenchError::Point`] for the first outside.
 pub fn check_seeds(seeds: &[Seed], clip: &Clip) -> Result<(), WorkbenchError> {
     let (width, height, n_frames) = (clip.width, clip.height, clip.n_frames());
-    let inside = |v: f32, size: u32| (-0.5..size as f32 - 0.5).contains(&v);
-    let outside = |seed: &&Seed| !(inside(seed.x, width) && inside(seed.y, height) && seed.frame < n_frames);
-    match seeds.iter().find(outside) {
+    match seeds.iter().find(|seed| !is_inside(seed, clip)) {
         _ if seeds.is_empty() => Err(WorkbenchError::NoFeatures),
         Some(&Seed { frame, track, x, y }) => {
             Err(WorkbenchError::Point { id: track.0, x, y, frame, width, height, n_frames })
         }
         None => Ok(()),
     }
+}
+
+/// Whether a point is in the clip.
+pub(crate) fn is_inside(seed: &Seed, clip: &Clip) -> bool {
+    let inside = |v: f32, size: u32| (-0.5..size as f32 - 0.5).contains(&v);
+    inside(seed.x, clip.width) && inside(seed.y, clip.height) && seed.frame < clip.n_frames()
 }
 
 /// Follows the plan and hands every frame's rows to `sink`.
@@ -217,14 +221,17 @@ pub fn drive(
     }
     match outcome {
         // What was tracked is kept; that it was stopped shows in how far it came.
-        Ok(()) | Err(WorkbenchError::Stopped | WorkbenchError::Plugin(HostError::Cancelled { .. })) => {
+        Ok(()) => {
             if let Some(relay) = relay.filter(|_| ride.before.is_some()) {
                 relay.proved();
             }
-            ride.board.flush(sink)?;
+        }
+        Err(WorkbenchError::Stopped | WorkbenchError::Plugin(HostError::Cancelled { .. })) => {
+            ride.stop(relay)?;
         }
         Err(error) => return Err(error),
     }
+    ride.board.flush(sink)?;
     Ok(Driven { end: ride.board.end, step_secs: ride.step_secs, warnings: ear.warnings() })
 }
 
@@ -298,8 +305,9 @@ impl Ride<'_> {
         let mut new: Vec<Point> = placed.unwrap_or_else(|| due(&self.plan.seeds, frame).collect());
         if let Some(detect) = self.plan.detect.as_ref().filter(|_| !is_again) {
             // What was found where a resumed run begins is known.
-            let again = |n: u32| n > 0 && !first && (frame - detect.since).is_multiple_of(n);
-            if frame == detect.since || detect.every.is_some_and(again) {
+            let since = frame.checked_sub(detect.since);
+            let again = |n: u32| !first && since.is_some_and(|since| n > 0 && since.is_multiple_of(n));
+            if since == Some(0) || detect.every.is_some_and(again) {
                 let found = self.find(detect, &view, &new, numbers, call)?;
                 new.extend(found);
             }

@@ -281,6 +281,14 @@ pub enum WorkbenchError {
         /// The run that was asked for.
         run: Option<RunId>,
     },
+    /// What a run was asked for is not in the project, or in words that this program does not know.
+    #[error(
+        "what run {run} was asked for is not kept in the project, or cannot be read: it cannot be gone on with; track again"
+    )]
+    RequestLost {
+        /// The run.
+        run: RunId,
+    },
     /// No plugin tracks.
     #[error("there is no tracker to track with; see honami plugin list")]
     NoTracker,

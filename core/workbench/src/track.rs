@@ -150,10 +150,7 @@ pub struct TrackOutcome {
 /// When the plugin, its parameters, the frames or the points are not what they must be.
 pub fn prepare(session: &mut Session, request: &TrackRequest) -> Result<TrackJob, WorkbenchError> {
     let clip = session.media.clip();
-    let Range { start, end } = request.frames;
-    if start >= end || end > clip.n_frames() {
-        return Err(WorkbenchError::Frames { start, end, n_frames: clip.n_frames() });
-    }
+    check_frames(&request.frames, clip)?;
     let registry = Arc::clone(&session.registry);
     let plugin = registry.find(Kind::Tracker, &request.plugin)?;
     let mask = mask(&request.area, clip)?;
@@ -166,7 +163,7 @@ pub fn prepare(session: &mut Session, request: &TrackRequest) -> Result<TrackJob
         PointSource::Given(seeds) => (given(session, seeds)?, None),
         PointSource::Detect if plugin.offers("honami.detect/1") => {
             let present = session.project.shown_all()?;
-            (Vec::new(), Some(Detect { every: request.every, mask, present, since: start }))
+            (Vec::new(), Some(Detect { every: request.every, mask, present, since: request.frames.start }))
         }
         PointSource::Detect => {
             return Err(WorkbenchError::CannotDetect { plugin: plugin.short_name.clone() });
@@ -177,6 +174,11 @@ pub fn prepare(session: &mut Session, request: &TrackRequest) -> Result<TrackJob
     }
     let asked = Asked::of(request, &seeds, detect.as_ref());
     begin(session, plugin, request, seeds, detect, &asked)
+}
+
+fn check_frames(&Range { start, end }: &Range<u32>, clip: &Clip) -> Result<(), WorkbenchError> {
+    let n_frames = clip.n_frames();
+    if start < end && end <= n_frames { Ok(()) } else { Err(WorkbenchError::Frames { start, end, n_frames }) }
 }
 
 fn begin(
@@ -213,6 +215,12 @@ impl TrackJob {
     #[must_use]
     pub fn plugin(&self) -> &str {
         &self.tracker.1.plugin.short_name
+    }
+
+    /// Frames that it is to track.
+    #[must_use]
+    pub fn frames(&self) -> &Range<u32> {
+        &self.plan.frames
     }
 
     /// Tracks to the end, or until a person stops it. What was tracked is kept in any case, also when the
@@ -271,7 +279,7 @@ pub fn finish(session: &mut Session, done: TrackDone) -> Result<TrackOutcome, Wo
     let tracks = found.to_string();
     let of_same = |before: &&ShownRun| before.tracks.iter().any(|track| found.contains(track));
     let instead_of = session.project.document().runs().iter().rev().find(of_same).map(|before| before.run);
-    let instead_of = instead_of.filter(|_| shown && resumes.is_none());
+    let instead_of = instead_of.filter(|before| shown && Some(*before) != resumes);
     if shown {
         let shown = resume::shown(&session.project, run, found, resumes)?;
         session.project.commit(shown)?;
@@ -324,7 +332,7 @@ fn keep_beside(session: &mut Session, found: Found) -> Result<Rebuilt, Workbench
         frames,
     };
     let kept = session.project.keep_runs(&[(head, spans)])?;
-    let run = kept.first().copied().unwrap_or(RunId(0));
+    let run = kept.first().copied().ok_or(WorkbenchError::Fault)?;
     Ok(Rebuilt { seam, build, run, difference })
 }
 

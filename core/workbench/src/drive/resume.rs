@@ -5,9 +5,10 @@ use std::ops::Range;
 use std::time::Instant;
 
 use honami_host::{CallContext, Checkpoint, HostError, Point, Tracker};
+use honami_model::track::TrackId;
 use honami_store::Seam;
 
-use super::{Death, MAX_DEATHS, Numbers, Relay, Ride, due, view};
+use super::{Death, MAX_DEATHS, Numbers, Relay, Ride, Seed, due, is_inside, view};
 use crate::ear::Ear;
 use crate::error::WorkbenchError;
 
@@ -188,14 +189,17 @@ impl Ride<'_> {
         self.step(fatal, numbers, call)
     }
 
-    /// Gives a new tracker the points where they were seen last.
+    /// Gives a new tracker the points where they were last; those that had left the picture are gone.
     fn go_on_from(&mut self, seen_in: Option<u32>, call: &CallContext<'_>) -> Result<(), WorkbenchError> {
         // Its own points of before are features like any other now.
         self.born.clear();
         if let Some(seen_in) = seen_in {
             let picture = self.media.frame(seen_in)?;
-            let seen: Vec<Point> = self.board.seen().collect();
-            self.tracker.seed(&seen, call)?;
+            let clip = self.media.clip();
+            let is_there =
+                |p: &Point| is_inside(&Seed { frame: seen_in, track: TrackId(p.id), x: p.x, y: p.y }, clip);
+            let live: Vec<Point> = self.board.live().filter(is_there).collect();
+            self.tracker.seed(&live, call)?;
             // Where they are there is known already.
             self.tracker.push(&view(self.media, &picture, seen_in), call)?;
         }

@@ -66,9 +66,16 @@ impl Ride<'_> {
         let Err(WorkbenchError::Plugin(error)) = &*outcome else { return Ok(None) };
         let Some(before) = self.before.take_if(|_| !is_stop(error)) else { return Ok(None) };
         let frame = self.restore(before);
-        relay.given_up(self.board.end, error)?;
+        relay.given_up(self.board.end, &error.to_string())?;
         *outcome = Ok(());
         Ok(Some(frame))
+    }
+
+    /// Gives a trial up that was stopped: only what the tracker before has done is kept.
+    pub(super) fn stop(&mut self, relay: Option<&mut dyn Relay>) -> Result<(), WorkbenchError> {
+        let Some((before, relay)) = self.before.take().zip(relay) else { return Ok(()) };
+        self.restore(before);
+        relay.given_up(self.board.end, "the run was stopped while it was on trial")
     }
 
     /// Ends the trial of a tracker that has done its frames, this one the last.

@@ -41,6 +41,11 @@ impl Kept {
         if self.frames.len() == CHUNK { self.flush() } else { Ok(()) }
     }
 
+    /// Of the last frames those from this one on.
+    fn recent(&self, from: u32) -> Vec<(u32, Rows)> {
+        self.recent.iter().filter(|(frame, _)| *frame >= from).cloned().collect()
+    }
+
     fn flush(&mut self) -> Result<(), WorkbenchError> {
         self.writer.append(self.first_frame, &self.frames)?;
         self.first_frame += u32::try_from(self.frames.len()).unwrap_or(u32::MAX);
@@ -86,6 +91,7 @@ pub(super) fn track(
         before: None,
         failed: BTreeSet::new(),
         stretch,
+        since: 0,
         seam: 0,
         beside: None,
         said: Vec::new(),
@@ -97,8 +103,17 @@ pub(super) fn track(
     });
     let Shift { beside, said, .. } = shift;
     kept.borrow_mut().flush()?;
+    let mut driven = match driven {
+        Ok(driven) => driven,
+        Err(error) => {
+            // Nobody waits for what is beside a run that has failed.
+            if let Some(beside) = beside {
+                beside.give_up();
+            }
+            return Err(error);
+        }
+    };
     let beside = beside.and_then(|beside| beside.end(n_frames, progress));
-    let mut driven = driven?;
     driven.warnings.extend(said);
     Ok(Tracked { driven, beside })
 }
@@ -120,6 +135,8 @@ struct Shift<'a> {
     failed: BTreeSet<String>,
     /// The frames before the last seam.
     stretch: Stretch,
+    /// The first frame of the build before it.
+    since: u32,
     seam: u32,
     beside: Option<Beside>,
     /// What whoever reads the run's end should know.
@@ -155,6 +172,9 @@ impl Relay for Shift<'_> {
     fn again(&mut self, seam: &Seam, death: Death) -> Result<Tracker, WorkbenchError> {
         let (tracker, made) = self.another()?;
         let build = (!made.is(&self.made)).then(|| made.build());
+        if build.is_some() {
+            self.since = seam.frame;
+        }
         if death == Death::First || build.is_some() {
             self.write(&Seam { build, ..seam.clone() })?;
         }
@@ -184,12 +204,12 @@ impl Relay for Shift<'_> {
         self.write(&Seam { frame, why: "was rebuilt".to_owned(), build: Some(next.build()) })?;
         self.progress.say(&format!("{} tracks from frame {frame} on", next.build()));
         self.before = Some(std::mem::replace(&mut self.made, next));
-        self.stretch.rows = self.kept.borrow().recent.iter().cloned().collect();
+        self.stretch.rows = self.kept.borrow().recent(self.since);
         self.seam = frame;
         Ok(())
     }
 
-    fn given_up(&mut self, frame: u32, why: &HostError) -> Result<(), WorkbenchError> {
+    fn given_up(&mut self, frame: u32, why: &str) -> Result<(), WorkbenchError> {
         let Some(before) = self.before.take() else { return Ok(()) };
         let failed = std::mem::replace(&mut self.made, before);
         let why = format!("was given up: {why}");
@@ -202,6 +222,7 @@ impl Relay for Shift<'_> {
 
     fn proved(&mut self) {
         self.before = None;
+        self.since = self.seam;
         if let Some(earlier) = self.beside.take() {
             earlier.give_up();
         }

@@ -1,16 +1,18 @@
 //! Going on with a run that has ended early: a new run begins where it saw the features last.
 
+use std::path::absolute;
 use std::sync::Arc;
 
 use honami_host::{Kind, Values};
+use honami_model::clip::Clip;
 use honami_model::document::{RunId, ShownRun};
 use honami_model::edit::{Edit, Transaction};
-use honami_model::track::{TrackId, TrackSet};
+use honami_model::track::{Span, Status, TrackId, TrackSet};
 use honami_store::{Project, RunInfo, RunState, Seam, StoreError};
 use serde::{Deserialize, Serialize};
 
 use super::{Area, PointSource, TrackJob, TrackRequest, begin, mask};
-use crate::drive::{Detect, Seed};
+use crate::drive::{Detect, Seed, check_seeds, is_inside};
 use crate::error::WorkbenchError;
 use crate::session::Session;
 
@@ -31,11 +33,16 @@ pub(super) struct Asked {
 impl Asked {
     /// Of a request with the features that came of it.
     pub(super) fn of(request: &TrackRequest, seeds: &[Seed], detect: Option<&Detect>) -> Self {
+        // What the command line names is another file from another folder.
+        let area = match &request.area {
+            Area::Mask(path) => Area::Mask(absolute(path).unwrap_or_else(|_| path.clone())),
+            area => area.clone(),
+        };
         Self {
             seeds: seeds.iter().map(|seed| (seed.frame, seed.track.0, seed.x, seed.y)).collect(),
             found_from: detect.map(|detect| detect.since),
             every: request.every,
-            area: request.area.clone(),
+            area,
             resumes: None,
         }
     }
@@ -55,7 +62,8 @@ impl Asked {
     }
 }
 
-/// The newest run that has ended early and that no other goes on with; `None` where all are through.
+/// The newest run that has ended early, that no other goes on with, and whose tracks newer ones have not replaced; `None`
+/// where all are through.
 ///
 /// # Errors
 /// What the project met.
@@ -63,12 +71,19 @@ pub fn unfinished(project: &Project) -> Result<Option<RunId>, WorkbenchError> {
     let mut taken_up = Vec::new();
     for run in project.runs()?.iter().rev() {
         let Some(asked) = Asked::read(project, run.id)? else { continue };
-        if is_early(run) && !taken_up.contains(&run.id.0) {
+        if is_early(run) && !taken_up.contains(&run.id.0) && !is_replaced(project, run) {
             return Ok(Some(run.id));
         }
         taken_up.extend(asked.resumes);
     }
     Ok(None)
+}
+
+/// Whether newer runs show all of its tracks; of one that has found none, whether there are any.
+fn is_replaced(project: &Project, run: &RunInfo) -> bool {
+    let newer: Vec<&ShownRun> = project.document().runs().iter().filter(|shown| shown.run > run.id).collect();
+    let mut tracks = run.tracks.iter().chain(run.head.tracks.iter());
+    !newer.is_empty() && tracks.all(|track| newer.iter().any(|shown| shown.tracks.contains(track)))
 }
 
 fn is_early(run: &RunInfo) -> bool {
@@ -79,15 +94,18 @@ fn is_early(run: &RunInfo) -> bool {
 /// feature, to the end that it was asked for.
 ///
 /// # Errors
-/// [`WorkbenchError::NothingToResume`], when the run is through or was not tracked here; as [`prepare`](super::prepare).
+/// [`WorkbenchError::NothingToResume`], when the run is through; [`WorkbenchError::RequestLost`], when it is not known what
+/// it was asked for; as [`prepare`](super::prepare).
 pub fn resume(session: &mut Session, run: RunId) -> Result<TrackJob, WorkbenchError> {
     let info = session.project.run(run)?;
-    let asked = Asked::read(&session.project, run)?.filter(|_| is_early(&info));
-    let asked = asked.ok_or(WorkbenchError::NothingToResume { run: Some(run) })?;
+    if !is_early(&info) {
+        return Err(WorkbenchError::NothingToResume { run: Some(run) });
+    }
+    let asked = Asked::read(&session.project, run)?.ok_or(WorkbenchError::RequestLost { run })?;
     let registry = Arc::clone(&session.registry);
     let made = &info.head.provenance;
     let plugin = registry.find(Kind::Tracker, &made.plugin_id)?;
-    let last = seen_last(&session.project, run)?;
+    let last = seen_last(&session.project, run, session.media.clip())?;
     let start = last.first().map_or(info.head.frames.start, |seed| seed.frame);
     let later = asked.seeds().filter(|seed| last.is_empty() || seed.frame > start);
     let seeds: Vec<Seed> = last.iter().copied().chain(later).collect();
@@ -98,6 +116,11 @@ pub fn resume(session: &mut Session, run: RunId) -> Result<TrackJob, WorkbenchEr
         }
         None => None,
     };
+    // It comes from a file, which others may have written.
+    super::check_frames(&(start..info.head.frames.end), session.media.clip())?;
+    if detect.is_none() || !seeds.is_empty() {
+        check_seeds(&seeds, session.media.clip())?;
+    }
     let request = TrackRequest {
         plugin: made.plugin_id.clone(),
         params: made.params.clone().into_iter().collect::<Values>(),
@@ -114,23 +137,20 @@ pub fn resume(session: &mut Session, run: RunId) -> Result<TrackJob, WorkbenchEr
     Ok(job)
 }
 
-/// The features that a run saw in the last frame in which it saw any.
-fn seen_last(project: &Project, run: RunId) -> Result<Vec<Seed>, StoreError> {
-    let mut last: Vec<Seed> = Vec::new();
-    for (track, span) in project.run_tracks(run)? {
-        let seen = span.frames().zip(&span.samples).rfind(|(_, sample)| sample.status.is_seen());
-        let Some((frame, sample)) = seen else { continue };
-        if last.first().is_some_and(|other| other.frame < frame) {
-            last.clear();
-        }
-        if last.first().is_none_or(|other| other.frame == frame) {
-            last.push(Seed { frame, track, x: sample.x, y: sample.y });
-        }
-    }
-    // A track may have several spans, of which the last counts.
-    last.sort_by_key(|seed| seed.track);
-    last.dedup_by_key(|seed| seed.track);
-    Ok(last)
+/// The features that a run saw in the last frame in which it saw any, and those that were hidden there, where it took them
+/// to be. What had left the picture is not among them.
+fn seen_last(project: &Project, run: RunId, clip: &Clip) -> Result<Vec<Seed>, StoreError> {
+    let spans = project.run_tracks(run)?;
+    let seen = spans.iter().flat_map(|(_, span)| span.frames().zip(&span.samples));
+    let seen = seen.filter(|(_, sample)| sample.status.is_seen());
+    let Some(frame) = seen.map(|(frame, _)| frame).max() else { return Ok(Vec::new()) };
+    let seed = |(track, span): &(TrackId, Span)| {
+        let sample = span.get(frame)?;
+        let is_live = sample.status.is_seen() || sample.status == Status::Occluded;
+        let seed = Seed { frame, track: *track, x: sample.x, y: sample.y };
+        (is_live && is_inside(&seed, clip)).then_some(seed)
+    };
+    Ok(spans.iter().filter_map(seed).collect())
 }
 
 /// Shows a run, and below it the one that it goes on with, where that is not shown yet.
@@ -147,3 +167,6 @@ pub(super) fn shown(
     let below = Edit::ShowRun { run: before, tracks: project.run(before)?.tracks, above: None };
     Ok(Transaction::new(shown.label, [vec![below], shown.edits].concat()))
 }
+
+#[cfg(test)]
+mod tests;
