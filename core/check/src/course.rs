@@ -44,7 +44,9 @@ pub(crate) fn file_missed(subject: &Subject) -> Result<Option<String>, Fault> {
     let path = subject.info.params.iter().find(|param| is_open(&param.kind));
     let Some(path) = path.filter(|_| subject.info.kind == Kind::Tracker) else { return Ok(None) };
     let stream = Clip::new([64, 48], 1, |_, _| 0.0).stream();
-    Ok(match tracker(subject)?.begin(stream, &CallContext::silent()) {
+    // In a process of its own: this one may start others no more once something of the plugin has run in it.
+    let mut tracker = subject.tracker(Hosting::Isolated, &Values::default())?;
+    Ok(match tracker.begin(stream, &CallContext::silent()) {
         Err(HostError::Failed { text, .. }) => Some(format!("it needs a file for {} ({text})", path.id)),
         Err(error) => return Err(error.into()),
         Ok(()) => None,

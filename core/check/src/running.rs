@@ -123,7 +123,11 @@ fn isolated(subject: &Subject) -> Result<Verdict, Fault> {
     if subject.info.is_program() {
         return Ok(Verdict::Beside("it is a program, which always has one".into()));
     }
-    same(subject, |subject, task| Work::start(subject, Hosting::Isolated, task)?.finish())
+    alike(subject, |subject, task| {
+        // First, while this process may still start others.
+        let there = Work::start(subject, Hosting::Isolated, task)?.finish()?;
+        Ok(vec![[alone(subject, task)?, there]])
+    })
 }
 
 fn again(subject: &Subject, task: &Task) -> Result<Outcome, HostError> {

@@ -92,11 +92,13 @@ impl Scene {
 
 fn goes_on(subject: &Subject, scene: &Scene) -> Result<Verdict, Fault> {
     let cx = CallContext::silent();
+    // First, while this process may still start others.
+    let there = scene.begun(subject, Hosting::Isolated);
     let (mut tracker, _) = scene.half(subject)?;
     let saved = tracker.save(&cx)?;
     let whole = scene.rest(&mut tracker)?;
-    for (hosting, place) in [(HERE, "here"), (Hosting::Isolated, "in a process of its own")] {
-        let mut other = scene.begun(subject, hosting)?;
+    for (other, place) in [(scene.begun(subject, HERE), "here"), (there, "in a process of its own")] {
+        let mut other = other?;
         other.load(&saved, &cx).map_err(at(place))?;
         let rest = scene.rest(&mut other).map_err(at(place))?;
         if let Some(what) = difference(&whole, &rest).filter(|_| subject.info.caps.deterministic) {

@@ -2,7 +2,7 @@
 
 use crate::Fault;
 use honami_host::{
-    CallContext, Clusterer, Host, HostError, Hosting, Kind, Origin, PluginInfo, Tracker, Values,
+    CallContext, Clusterer, Host, HostError, Hosting, Kind, Origin, PluginInfo, Tracker, Values, shut_in,
 };
 use rand_pcg::Pcg64;
 use std::path::{Path, PathBuf};
@@ -45,8 +45,7 @@ impl Subject {
     /// # Errors
     /// What keeps it from starting.
     pub fn origin(&self, hosting: Hosting) -> Result<Origin, Fault> {
-        let (host, cx, values) =
-            (self.host.clone().hosting(hosting), CallContext::silent(), Values::default());
+        let (host, cx, values) = (self.host(hosting)?, CallContext::silent(), Values::default());
         Ok(match self.info.kind {
             Kind::Tracker => host.tracker(&self.info, &values, &cx)?.1,
             Kind::Clusterer => host.clusterer(&self.info, &values, &cx)?.1,
@@ -60,7 +59,7 @@ impl Subject {
     /// # Errors
     /// What keeps it from starting.
     pub fn tracker(&self, hosting: Hosting, values: &Values) -> Result<Tracker, HostError> {
-        Ok(self.host.clone().hosting(hosting).tracker(&self.info, values, &CallContext::silent())?.0)
+        Ok(self.host(hosting)?.tracker(&self.info, values, &CallContext::silent())?.0)
     }
 
     /// A clusterer at work with these values, where the others have their defaults.
@@ -68,7 +67,19 @@ impl Subject {
     /// # Errors
     /// What keeps it from starting.
     pub fn clusterer(&self, hosting: Hosting, values: &Values) -> Result<Clusterer, HostError> {
-        Ok(self.host.clone().hosting(hosting).clusterer(&self.info, values, &CallContext::silent())?.0)
+        Ok(self.host(hosting)?.clusterer(&self.info, values, &CallContext::silent())?.0)
+    }
+
+    /// Who starts it there. Before anything of it runs in this process the process is shut in, for good: a check that
+    /// starts it in a process of its own, too, does that first.
+    fn host(&self, hosting: Hosting) -> Result<Host, HostError> {
+        static SHUT_IN: OnceLock<()> = OnceLock::new();
+        if hosting == Hosting::InProcess && !self.info.is_program() && SHUT_IN.get().is_none() {
+            let copy = self.host.copy_of(&self.info)?;
+            // How much of it the kernel could do is said by the check that starts it as honami does.
+            SHUT_IN.get_or_init(|| drop(shut_in(&copy, std::slice::from_ref(&self.info.library))));
+        }
+        Ok(self.host.clone().hosting(hosting))
     }
 
     /// Chance for one check: another stream for each id, the same for the same seed.

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -14,6 +15,7 @@ enum fault {
   /* parameters */ NAN_AT_THE_END, INACTIVE, CHOICE, IN_BETWEEN, SECOND,
   /* frames */ READS_PAST, READS_BEFORE, READS_GAPS, DIES_OF_SMALL, DIES_OF_BLACK, DIES_OF_LONG, DIES_OF_LATE,
   /* truth */ STAYS, DRIFTS, FORGETS, KEEPS_RETIRED, TRACKS_NOTHING,
+  /* everywhere */ REACHES_OUT,
   /* running */ CLOCK, THREADS, ELSEWHERE, STATE, SHARED, SHARED_SMALL, FIRST_BESIDE, FALLS, DEAF, LEAKS_FILES, LEAKS_MEMORY
 };
 
@@ -67,6 +69,7 @@ static honami_code set_params(honami_instance *instance, const honami_call *call
 }
 
 static honami_code begin(honami_instance *instance, const honami_call *call, const honami_stream_info *stream) {
+  if (FAULT == REACHES_OUT && socket(AF_UNIX, SOCK_STREAM, 0) >= 0) abort();
   bad *self = of(instance);
   free(self->before);
   self->before = (uint8_t *)malloc((size_t)stream->width * stream->height);

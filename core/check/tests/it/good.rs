@@ -28,3 +28,14 @@ fn what_the_bad_trackers_and_clusterers_are_made_from_passes_all_that_is_asked_o
         assert!(failed.is_empty(), "{name}: {failed:?}");
     }
 }
+
+#[test]
+fn no_check_lets_a_library_reach_out() {
+    if !has_cc() {
+        return;
+    }
+    // It dies wherever it gets a socket.
+    let library = compile("tests/bad/tracker.c", "reaches-out", &["-DFAULT=REACHES_OUT", "-lm"]);
+    let failed = failed(&check(&library, |check| (4..=9).contains(&check.level)));
+    assert!(failed.is_empty(), "{failed:?}");
+}
