@@ -459,7 +459,12 @@ impl World {
 
     fn start(&mut self, work: Work, plugin: &str, keeps_frames: bool, since: Duration) -> Facts {
         let (plugin, what) = (plugin.to_owned(), "starting".to_owned());
-        let job = Job { plugin, what, done: (0, 0), since, keeps_frames, is_stopping: false, quiet: None };
+        let first = match &work {
+            Work::Track(job) => u64::from(job.frames().start),
+            _ => 0,
+        };
+        let (done, is_stopping) = ((0, 0), false);
+        let job = Job { plugin, what, done, first, since, keeps_frames, is_stopping, quiet: None };
         match Running::start(work, self.waker.clone()) {
             Ok(running) => {
                 self.running = Some((running, job.clone()));

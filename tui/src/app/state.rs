@@ -228,6 +228,8 @@ pub struct Job {
     pub what: String,
     /// Steps done, and in all (0 while unknown).
     pub done: (u64, u64),
+    /// The frame of the clip that is its first step, where its steps are frames; else 0.
+    pub first: u64,
     /// When it began.
     pub since: Duration,
     /// What stopping it keeps: the frames so far, or nothing.

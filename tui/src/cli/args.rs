@@ -172,8 +172,8 @@ pub(super) struct Track {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub(super) every: Option<u32>,
     /// Go on with a run that was stopped or that failed, where it saw the features last, with its tracker as it is now
-    /// (default: the newest such run).
-    #[arg(long, value_name = "RUN", num_args = 0..=1, conflicts_with_all = ["with", "set", "detect", "points", "mask", "region", "frames", "every"])]
+    /// (default: the newest such run that no newer one has replaced).
+    #[arg(long, value_name = "RUN", num_args = 0..=1, conflicts_with_all = ["with", "set", "detect", "points", "mask", "region", "frames", "every", "watch"])]
     pub(super) resume: Option<Option<u32>>,
     /// Stay when all is tracked, and track again with every rebuilt file of the plugin, until Ctrl-C.
     #[arg(long)]

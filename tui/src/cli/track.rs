@@ -5,7 +5,7 @@ use std::path::Path;
 use honami_model::document::RunId;
 use honami_workbench::WorkbenchError;
 use honami_workbench::compare::read_points;
-use honami_workbench::plugins::{Kind, Registry, Values};
+use honami_workbench::plugins::{HostError, Kind, Registry, Values};
 use honami_workbench::progress::Progress;
 use honami_workbench::rebuilt::Difference;
 use honami_workbench::session::Session;
@@ -80,14 +80,37 @@ pub(super) fn run(
 fn end(session: &mut Session, job: TrackJob, progress: &dyn Progress) -> anyhow::Result<TrackOutcome> {
     let done = job.run(progress)?;
     let outcome = track::finish(session, done)?;
-    match outcome.error {
-        Some(_) => anyhow::bail!(
-            "{}; `honami track {} --resume` goes on from there",
+    match &outcome.error {
+        Some(error) => anyhow::bail!(
+            "{}; `{}` goes on from frame {}",
             outcome.line,
-            session.project.path().display()
+            line_to_resume(session, outcome.run, error),
+            outcome.unseen_from
         ),
         None => Ok(outcome),
     }
+}
+
+/// What is typed to go on with a run: its plugin is let go first where it is held, and named again where it was.
+fn line_to_resume(session: &Session, run: RunId, error: &WorkbenchError) -> String {
+    let mut line = String::new();
+    if let WorkbenchError::Plugin(HostError::Quarantined { library, .. }) = error {
+        line = format!("honami plugin retry {} && ", quoted(library));
+    }
+    line += &format!("honami track {} --resume {run}", quoted(session.project.path()));
+    for (option, paths) in [("plugin", &session.options.plugin_paths), ("dev", &session.options.dev)] {
+        for path in paths {
+            line += &format!(" --{option} {}", quoted(path));
+        }
+    }
+    line
+}
+
+/// A path as a shell takes it.
+fn quoted(path: &Path) -> String {
+    let text = path.display().to_string();
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "/._-+,:@%".contains(c);
+    if text.chars().all(is_plain) { text } else { format!("'{}'", text.replace('\'', r"'\''")) }
 }
 
 fn points(args: &Track, session: &Session) -> anyhow::Result<PointSource> {
@@ -169,3 +192,6 @@ pub(super) fn difference(found: &Difference) -> serde_json::Value {
         "unseen": found.n_unseen,
     })
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,7 +1,7 @@
 //! What others print while the terminal is ours: it comes through a pipe, and goes to a log file and to whoever asks.
 
 use std::fs::File;
-use std::io::{Read as _, Write as _};
+use std::io::{ErrorKind, Read as _, Write as _};
 use std::os::fd::OwnedFd;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::time::Duration;
@@ -58,7 +58,14 @@ fn read(mut pipe: File, mut log: File, said: &SyncSender<String>, waker: &Waker)
         said.try_send(String::from_utf8_lossy(line).into_owned()).unwrap_or_default();
         line.clear();
     };
-    while let Ok(n @ 1..) = pipe.read(&mut piece) {
+    loop {
+        let n = match pipe.read(&mut piece) {
+            Ok(0) => break,
+            Ok(n) => n,
+            // A signal has come; whoever prints into a pipe without a reader would be ended by it.
+            Err(error) if error.kind() == ErrorKind::Interrupted => continue,
+            Err(_) => break,
+        };
         if n_logged > LOG_MAX && log.set_len(0).is_ok() {
             n_logged = 0;
         }

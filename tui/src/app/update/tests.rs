@@ -40,6 +40,7 @@ pub(super) fn start(words: &str) -> State {
                     plugin,
                     what,
                     done,
+                    first: 0,
                     since,
                     keeps_frames: true,
                     is_stopping: false,

@@ -575,8 +575,8 @@ fn recovery_line(recovery: &Recovery, state: &State) -> Line<'static> {
 /// `my-flow, frame 212/378: no sign of life for 12 s   W waits   I ends it   Esc stops`.
 fn quiet_words(job: &Job, quiet: &Quiet, state: &State) -> String {
     let Quiet { plugin, seconds, at, is_asked } = quiet;
-    let (done, total) = job.done;
-    let mut words = format!("{plugin}, {} {done}/{total}: no sign of life for {seconds} s", job.what);
+    let [now, end] = [job.done.0, job.done.1].map(|n| job.first + n);
+    let mut words = format!("{plugin}, {} {now}/{end}: no sign of life for {seconds} s", job.what);
     if !at.is_empty() && !is_asked {
         words.push_str(&format!(" (at: {at})"));
     }
@@ -600,7 +600,10 @@ fn job_line(job: &Job, state: &State, width: u16) -> Line<'static> {
     let rest = match job {
         _ if job.is_stopping => "stopping …".to_owned(),
         _ if total == 0 => "Esc stops".to_owned(),
-        _ if job.keeps_frames && done > 0 => format!("{left:.0} s left   Esc stops, keeps 0-{}", done - 1),
+        _ if job.keeps_frames && done > 0 => {
+            let (first, last) = (job.first, job.first + done - 1);
+            format!("{left:.0} s left   Esc stops, keeps {first}-{last}")
+        }
         _ => format!("{left:.0} s left   Esc stops"),
     };
     let count = if total > 0 { format!(" {done}/{total}") } else { String::new() };

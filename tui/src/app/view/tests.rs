@@ -98,6 +98,7 @@ fn job(state: &mut State) {
         plugin,
         what,
         done: (50, 100),
+        first: 0,
         since,
         keeps_frames: true,
         is_stopping: false,

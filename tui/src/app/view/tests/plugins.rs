@@ -22,8 +22,10 @@ fn silent(seconds: u64, is_asked: bool) -> impl FnOnce(&mut State) {
         let (plugin, at) = ("my-flow".to_owned(), "level 2".to_owned());
         let quiet = Some(Quiet { plugin: plugin.clone(), seconds, at, is_asked });
         let (what, since) = ("frame".to_owned(), Duration::ZERO);
+        // The frames 10 to 99 of the clip.
+        let (done, first) = ((30, 90), 10);
         state.job =
-            Some(Job { plugin, what, done: (40, 100), since, keeps_frames: true, is_stopping: false, quiet });
+            Some(Job { plugin, what, done, first, since, keeps_frames: true, is_stopping: false, quiet });
     }
 }
 
