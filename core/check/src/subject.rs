@@ -73,11 +73,11 @@ impl Subject {
     /// Who starts it there. Before anything of it runs in this process the process is shut in, for good: a check that
     /// starts it in a process of its own, too, does that first.
     fn host(&self, hosting: Hosting) -> Result<Host, HostError> {
-        static SHUT_IN: OnceLock<()> = OnceLock::new();
+        static SHUT_IN: OnceLock<&str> = OnceLock::new();
         if hosting == Hosting::InProcess && !self.info.is_program() && SHUT_IN.get().is_none() {
             let copy = self.host.copy_of(&self.info)?;
             // How much of it the kernel could do is said by the check that starts it as honami does.
-            SHUT_IN.get_or_init(|| drop(shut_in(&copy, std::slice::from_ref(&self.info.library))));
+            SHUT_IN.get_or_init(|| shut_in(&copy, std::slice::from_ref(&self.info.library)));
         }
         Ok(self.host.clone().hosting(hosting))
     }
