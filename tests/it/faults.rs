@@ -216,7 +216,8 @@ fn what_becomes_of_a_file_during_a_run_is_met_when_the_plugin_starts_again() {
         // The new one goes on where the old one was: no frame is lost.
         (Act::Replaced, Signal::KILL, "started again at frame 2: it died of SIGKILL", 0, "11111111"),
         (Act::Overwritten, Signal::KILL, "started again at frame 2: it died of SIGKILL", 0, "11111111"),
-        (Act::Spoilt, Signal::KILL, "failed at frame 2, 2 tracks up to there kept", 1, "11"),
+        // The old one goes on, and waits there again until it is ended.
+        (Act::Spoilt, Signal::KILL, "started again at frame 2: it died of SIGKILL", 0, "11011111"),
     ] {
         let bench = Bench::new();
         project(&bench);

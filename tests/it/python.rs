@@ -70,7 +70,7 @@ fn a_program_is_allowed_with_its_files_and_other_parameters_want_another_manifes
 fn what_python_raises_is_told_in_its_words() {
     for (push, wanted) in [
         ("raise honami.Error('too dark for me')", "too dark for me (unusable data)"),
-        ("return 1 / 0", "ZeroDivisionError: division by zero, template.py line 28 (a fault in the plugin)"),
+        ("return 1 / 0", "ZeroDivisionError: division by zero, template.py line LINE (a fault in the plugin)"),
         ("return honami.Points([1, 2], [0], [0], [1])", "columns of honami.points/1 have [1, 2] rows"),
         ("open('/etc/passwd')", "PermissionError: [Errno 13] Permission denied: '/etc/passwd'"),
         (
@@ -89,6 +89,9 @@ fn what_python_raises_is_told_in_its_words() {
         let _said = bench.text("new p.honami clip.y4m");
         let ran = bench.line("track p.honami --plugin template.py --with template --points points.csv");
         let all = format!("{}{}", ran.stdout, ran.stderr);
+        let text = fs::read_to_string(bench.path("template.py")).unwrap();
+        let line = 1 + text.lines().position(|line| line.trim() == push).unwrap();
+        let wanted = &wanted.replace("LINE", &line.to_string());
         let held = wanted.contains("status 3") && all.contains("ended its process with status 3");
         assert!(ran.code == Some(1) && (held || all.contains(wanted)), "{push}: {ran:?}");
     }

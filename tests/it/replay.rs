@@ -39,7 +39,7 @@ fn a_session_is_done_again_and_says_the_same() {
     assert_eq!((&first["difference"], &first["done"]), (&json!(null), &json!(9)), "{first}");
     let said: Vec<&str> =
         first["said"].as_array().unwrap().iter().map(|s| s["text"].as_str().unwrap()).collect();
-    for (said, words) in said.iter().zip(["track 3: ", "track 5", "anchored", "undone: "]) {
+    for (said, words) in said.iter().zip(["track 3: ", "track 5", "klt: ", "undone: "]) {
         assert!(said.contains(words), "{words} is not in {said}");
     }
     assert_eq!(said.len(), 4, "{said:?}");
