@@ -70,7 +70,10 @@ fn a_program_is_allowed_with_its_files_and_other_parameters_want_another_manifes
 fn what_python_raises_is_told_in_its_words() {
     for (push, wanted) in [
         ("raise honami.Error('too dark for me')", "too dark for me (unusable data)"),
-        ("return 1 / 0", "ZeroDivisionError: division by zero, template.py line LINE (a fault in the plugin)"),
+        (
+            "return 1 / 0",
+            "ZeroDivisionError: division by zero, template.py line LINE (a fault in the plugin)",
+        ),
         ("return honami.Points([1, 2], [0], [0], [1])", "columns of honami.points/1 have [1, 2] rows"),
         ("open('/etc/passwd')", "PermissionError: [Errno 13] Permission denied: '/etc/passwd'"),
         (
