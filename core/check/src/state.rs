@@ -67,8 +67,8 @@ impl Scene {
     }
 
     /// A tracker that has seen the first frames, with what it said of them.
-    fn half(&self, subject: &Subject) -> Result<(Tracker, Vec<Points>), HostError> {
-        let mut tracker = self.begun(subject, HERE)?;
+    fn half(&self, subject: &Subject, hosting: Hosting) -> Result<(Tracker, Vec<Points>), HostError> {
+        let mut tracker = self.begun(subject, hosting)?;
         tracker.seed(&self.seeds, &CallContext::silent())?;
         let all = self.push(&mut tracker, 0..SAVED)?;
         Ok((tracker, all))
@@ -92,26 +92,33 @@ impl Scene {
 
 fn goes_on(subject: &Subject, scene: &Scene) -> Result<Verdict, Fault> {
     let cx = CallContext::silent();
-    // First, while this process may still start others.
-    let there = scene.begun(subject, Hosting::Isolated);
-    let (mut tracker, _) = scene.half(subject)?;
-    let saved = tracker.save(&cx)?;
-    let whole = scene.rest(&mut tracker)?;
-    for (other, place) in [(scene.begun(subject, HERE), "here"), (there, "in a process of its own")] {
-        let mut other = other?;
+    let (mut wholes, mut n_bytes) = (Vec::new(), 0);
+    // What works in a process of its own comes first, and is gone before this one is shut in: then it can end no other.
+    for (hosting, place) in [(Hosting::Isolated, "in a process of its own"), (HERE, "here")] {
+        let (mut tracker, _) = scene.half(subject, hosting)?;
+        let saved = tracker.save(&cx).map_err(at(place))?;
+        let whole = scene.rest(&mut tracker).map_err(at(place))?;
+        let mut other = scene.begun(subject, hosting)?;
         other.load(&saved, &cx).map_err(at(place))?;
         let rest = scene.rest(&mut other).map_err(at(place))?;
-        if let Some(what) = difference(&whole, &rest).filter(|_| subject.info.caps.deterministic) {
-            return Err(Fault(format!("without a break, and loaded {place}: {what}")));
+        for (wanted, how) in
+            [(Some(&whole), "without a break, and loaded"), (wholes.first(), "elsewhere, and")]
+        {
+            let found = wanted.and_then(|wanted| difference(wanted, &rest));
+            if let Some(what) = found.filter(|_| subject.info.caps.deterministic) {
+                return Err(Fault(format!("{how} {place}: {what}")));
+            }
         }
+        wholes.push(whole);
+        n_bytes = saved.bytes.len();
     }
-    Ok(Verdict::Holds(format!("{} bytes", saved.bytes.len())))
+    Ok(Verdict::Holds(format!("{n_bytes} bytes")))
 }
 
 fn aside(subject: &Subject, scene: &Scene) -> Result<Verdict, Fault> {
     let cx = CallContext::silent();
-    let (mut alone, _) = scene.half(subject)?;
-    let (mut tracker, _) = scene.half(subject)?;
+    let (mut alone, _) = scene.half(subject, HERE)?;
+    let (mut tracker, _) = scene.half(subject, HERE)?;
     let [once, twice] = [tracker.save(&cx)?, tracker.save(&cx)?];
     if once.bytes != twice.bytes {
         let place = once.bytes.iter().zip(&twice.bytes).position(|(a, b)| a != b);
@@ -134,7 +141,7 @@ const N_CHANGED: usize = 24;
 
 fn damaged(subject: &Subject, scene: &Scene) -> Result<Verdict, Fault> {
     let mut chance = subject.chance("state.damaged");
-    let saved = scene.half(subject)?.0.save(&CallContext::silent())?;
+    let saved = scene.half(subject, HERE)?.0.save(&CallContext::silent())?;
     let len = saved.bytes.len();
     let with = |bytes: Vec<u8>| {
         let mut other = saved.clone();
