@@ -15,7 +15,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("honami-plugin", &["honami-abi"]),
     ("honami-host", &["honami-abi", "honami-model"]),
     ("honami-plughost", &["honami-host"]),
-    ("honami-check", &["honami-abi", "honami-host", "honami-model", "honami-synth"]),
+    ("honami-check", &["honami-abi", "honami-host", "honami-model"]),
     ("honami-model", &[]),
     ("honami-media", &["honami-model"]),
     ("honami-store", &["honami-model"]),

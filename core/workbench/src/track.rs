@@ -126,7 +126,7 @@ pub struct TrackOutcome {
     pub ends: Ends,
     /// Frames tracked.
     pub frames: Range<u32>,
-    /// The frame after the last in which a feature was seen: [`resume`] begins there.
+    /// The frame after the last in which a feature was seen: [`resume()`] begins there.
     pub unseen_from: u32,
     /// Whether it ended before the frames that were asked for.
     pub stopped: bool,

@@ -45,6 +45,7 @@ impl Held {
             if now.threads <= before.threads {
                 break;
             }
+            // A thread that was joined may still be in the list of the kernel.
             std::thread::sleep(Duration::from_millis(10));
             now = Self::now()?;
         }
