@@ -22,6 +22,7 @@ mod replay;
 mod retrack;
 mod schema;
 mod sdk;
+mod settings;
 mod simulated;
 mod stopped;
 mod tidy;

@@ -31,6 +31,7 @@ use honami_workbench::session::{Session, SessionOptions};
 use honami_workbench::store::{Access, Project};
 
 use self::args::{Cli, Command, Common};
+use crate::app::config::Config;
 use crate::app::opening::where_is_the_clip;
 use crate::app::{Gives, Offer, Offers, Plan};
 
@@ -224,14 +225,26 @@ fn offers(common: &Common) -> Offers {
 }
 
 fn options(common: &Common) -> SessionOptions {
+    options_of(&Config::load(), common)
+}
+
+fn options_of(config: &Config, common: &Common) -> SessionOptions {
     let (plugin_paths, dev) = (common.plugins.clone(), common.dev.clone());
-    SessionOptions { plugin_paths, dev, read_only: false }
+    SessionOptions { plugin_paths, dev, read_only: false, host: config.plugins.host() }
+}
+
+/// For a command that starts plugins: what is wrong with what was settled is said, as the terminal UI says it.
+fn told_options(common: &Common) -> SessionOptions {
+    let config = Config::load();
+    config.complaint().iter().for_each(|complaint| report::say(complaint));
+    options_of(&config, common)
 }
 
 /// Opens a project for a command that writes to it.
 fn session(path: &Path, common: &Common) -> anyhow::Result<Session> {
     there(path)?;
-    let session = Session::open(path, &options(common)).map_err(|error| where_is_the_clip(error, path))?;
+    let session =
+        Session::open(path, &told_options(common)).map_err(|error| where_is_the_clip(error, path))?;
     session.notes.iter().for_each(|note| report::say(note));
     Ok(session)
 }

@@ -13,6 +13,7 @@ use crate::reply::Reply;
 use crate::tracker::Tracker;
 use crate::values::{Value, Values};
 use crate::{in_process, isolated, script, store};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Where a plugin works.
@@ -44,6 +45,8 @@ pub struct Origin {
 pub struct Host {
     store: PathBuf,
     hosting: Option<Hosting>,
+    /// Where plugins work by a user's wish, by id or short name.
+    settled: BTreeMap<String, Hosting>,
     limits: Limits,
     has_quarantine: bool,
 }
@@ -68,7 +71,8 @@ impl Host {
     /// With a store of the caller's; the folder is made when it is first needed.
     #[must_use]
     pub fn with_store(store: PathBuf) -> Self {
-        Self { store, hosting: None, limits: Limits::default(), has_quarantine: true }
+        let (settled, limits) = (BTreeMap::new(), Limits::default());
+        Self { store, hosting: None, settled, limits, has_quarantine: true }
     }
 
     /// Lets all plugins work there; else shipped ones work in this process and others in their own.
@@ -81,6 +85,15 @@ impl Host {
     #[must_use]
     pub fn limits(self, limits: Limits) -> Self {
         Self { limits, ..self }
+    }
+
+    /// As a user has settled it: what plugins may take, and where those work that are named by id or short name. What the
+    /// environment says stands over it.
+    #[must_use]
+    pub fn settled(self, limits: Limits, settled: BTreeMap<String, Hosting>) -> Self {
+        // A process takes it from the environment by itself.
+        let memory_bytes = limits.memory_bytes.filter(|_| std::env::var_os(isolated::MEMORY).is_none());
+        Self { settled, limits: Limits { memory_bytes, ..limits }, ..self }
     }
 
     /// Counts no deaths, and starts what has died too often: for who wants to see why.
@@ -220,17 +233,6 @@ impl Host {
         &self.store
     }
 
-    /// Where a plugin works.
-    pub(crate) fn hosting_of(&self, info: &PluginInfo) -> Hosting {
-        let usual = if info.trust == Trust::Shipped && info.exec.is_empty() {
-            Hosting::InProcess
-        } else {
-            Hosting::Isolated
-        };
-        // A program has a process of its own by its nature.
-        self.hosting.filter(|_| info.exec.is_empty()).unwrap_or(usual)
-    }
-
     /// Makes an instance where it is to work; with the hash of its library and how far it is kept apart.
     fn instance(
         &self,
@@ -263,6 +265,17 @@ impl Host {
                 Ok((instance, copy.sha256, sandbox))
             }
         }
+    }
+
+    /// Where a plugin is to work.
+    pub(crate) fn hosting_of(&self, info: &PluginInfo) -> Hosting {
+        // A program has a process of its own by its nature.
+        if info.is_program() {
+            return Hosting::Isolated;
+        }
+        let usual = if info.trust == Trust::Shipped { Hosting::InProcess } else { Hosting::Isolated };
+        let settled = || self.settled.get(&info.id).or_else(|| self.settled.get(&info.short_name));
+        self.hosting.or_else(|| settled().copied()).unwrap_or(usual)
     }
 
     /// Where the deaths of a library are counted, if they are.

@@ -91,7 +91,7 @@ pub fn prepare(session: &Session, request: &ClusterRequest) -> Result<ClusterJob
         return Err(WorkbenchError::Groups { groups, n_tracks });
     }
     let (clusterer, origin) =
-        honami_host::Host::new().clusterer(plugin, &request.params, &CallContext::silent())?;
+        session.options.host.clusterer(plugin, &request.params, &CallContext::silent())?;
     let provenance = stamp(session.project.revision(), "cluster", plugin, &request.params, origin);
     let plugin = plugin.short_name.clone();
     Ok(ClusterJob { clusterer, tracks, provenance, groups: request.groups, plugin })

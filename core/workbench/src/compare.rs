@@ -118,6 +118,7 @@ pub struct Question {
 pub fn compare(
     media: &Media,
     registry: &Registry,
+    host: &Host,
     contestants: &[Contestant],
     mut question: Question,
     progress: &dyn Progress,
@@ -132,7 +133,7 @@ pub fn compare(
     if let Some(truth) = &mut question.truth {
         truth::cut(truth, question.frames.end);
     }
-    let bench = Bench { media, question: &question, progress, turn: String::new() };
+    let bench = Bench { media, host, question: &question, progress, turn: String::new() };
     // First, for it costs nothing and finds a truth that tells nothing.
     let still = bench.still()?;
     meter::warm(media, question.frames.clone(), progress)?;
@@ -160,6 +161,7 @@ pub fn compare(
 /// What all contestants meet.
 struct Bench<'a> {
     media: &'a Media,
+    host: &'a Host,
     question: &'a Question,
     progress: &'a dyn Progress,
     /// Whose turn it is: `klt 2 of 3`.
@@ -193,7 +195,7 @@ impl Bench<'_> {
     fn tracker(&self, registry: &Registry, name: &str, params: &Values) -> Result<Row, WorkbenchError> {
         let plugin = registry.find(Kind::Tracker, name)?;
         let memory = Memory::begin();
-        let (mut tracker, _) = Host::new().tracker(plugin, params, &CallContext::silent())?;
+        let (mut tracker, _) = self.host.tracker(plugin, params, &CallContext::silent())?;
         let (spans, time) = self.follow(&mut tracker)?;
         let peak_bytes = memory.and_then(Memory::peak_bytes);
         let row = Row { time, peak_bytes, ..self.judge(name, &spans)? };

@@ -18,6 +18,7 @@ pub struct DenseMeter {
     media: Arc<Media>,
     plugin: PluginInfo,
     values: Values,
+    host: Host,
     tracker: Option<Tracker>,
 }
 
@@ -35,7 +36,8 @@ pub fn prepare(session: &Session, track: Option<TrackId>) -> Result<DenseMeter, 
     if session.media.clip().n_frames() < 2 {
         return Err(WorkbenchError::OneFrame);
     }
-    Ok(DenseMeter { media: Arc::clone(&session.media), plugin, values, tracker: None })
+    let (media, host) = (Arc::clone(&session.media), session.options.host.clone());
+    Ok(DenseMeter { media, plugin, values, host, tracker: None })
 }
 
 impl DenseMeter {
@@ -59,7 +61,7 @@ impl DenseMeter {
         let cx = CallContext::silent();
         let tracker = match &mut self.tracker {
             Some(tracker) => tracker,
-            none => none.insert(Host::new().tracker(&self.plugin, &self.values, &cx)?.0),
+            none => none.insert(self.host.tracker(&self.plugin, &self.values, &cx)?.0),
         };
         let field = tracker.field(&from, &to, threads(), &cx)?;
         // The times of two frames differ; backward in time both lengths turn their sign.

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use honami_host::{Registry, SearchPath};
+use honami_host::{Host, Registry, SearchPath};
 use honami_media::{Media, OpenOptions, Step};
 use honami_model::edit::Transaction;
 use honami_store::{Access, ClipRecord, Project, StoreError};
@@ -20,6 +20,8 @@ pub struct SessionOptions {
     pub dev: Vec<PathBuf>,
     /// Only look: never lock the project.
     pub read_only: bool,
+    /// How plugins are started.
+    pub host: Host,
 }
 
 impl SessionOptions {

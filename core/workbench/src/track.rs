@@ -189,7 +189,7 @@ fn begin(
     detect: Option<Detect>,
     asked: &Asked,
 ) -> Result<TrackJob, WorkbenchError> {
-    let (host, params) = (Host::new(), request.params.clone());
+    let (host, params) = (session.options.host.clone(), request.params.clone());
     let (tracker, made) = Made::start(&host, plugin.clone(), params, &CallContext::silent())?;
     let revision = session.project.revision();
     let head = RunHead {

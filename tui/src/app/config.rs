@@ -1,6 +1,8 @@
-//! What a user has settled: keys, theme and mouse, in `$XDG_CONFIG_HOME/honami/config.toml`.
+//! What a user has settled: keys, theme, mouse and plugins, in `$XDG_CONFIG_HOME/honami/config.toml`.
 //!
 //! What is changed on screen and not settled there is kept in `$XDG_STATE_HOME/honami/choices.toml`.
+
+mod plugins;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,6 +10,10 @@ use std::path::{Path, PathBuf};
 use super::keymap::KeyMap;
 use super::state::State;
 use super::view::theme::Theme;
+use plugins::Plugins;
+
+/// What can be settled.
+const NAMES: [&str; 5] = ["keys", "theme", "themes", "mouse", "plugins"];
 
 /// What the terminal UI begins with.
 #[derive(Clone, Debug)]
@@ -20,6 +26,8 @@ pub struct Config {
     pub theme: usize,
     /// Whether the mouse is ours.
     pub mouse: bool,
+    /// How plugins are started.
+    pub plugins: Plugins,
     /// What is wrong with what was settled, one line each.
     pub wrong: Vec<String>,
     /// Whether theme and mouse were settled, so that no choice on screen outlasts the session.
@@ -66,14 +74,15 @@ impl Config {
             wrong.push(format!("it is no TOML: {}", error.message()));
             toml::Table::new()
         });
-        for name in table.keys().filter(|name| !["keys", "theme", "themes", "mouse"].contains(&name.as_str()))
-        {
-            wrong.push(format!("{name} is not known; there are keys, theme, themes, mouse"));
+        for name in table.keys().filter(|name| !NAMES.contains(&name.as_str())) {
+            wrong.push(format!("{name} is not known; there are {}", NAMES.join(", ")));
         }
         let none = toml::Table::new();
         let part = |name: &str| table.get(name).and_then(toml::Value::as_table).unwrap_or(&none);
         let (keys, wrong_keys) = KeyMap::with(part("keys"));
         wrong.extend(wrong_keys);
+        let (plugins, wrong_plugins) = Plugins::of(table.get("plugins"));
+        wrong.extend(wrong_plugins);
         let mut themes = Theme::all();
         for (name, wanted) in part("themes") {
             let wanted = wanted.as_table().unwrap_or(&none);
@@ -94,7 +103,7 @@ impl Config {
             wrong.push(format!("there is no theme {named}; there are {}", known.join(", ")));
         }
         let mouse = table.get("mouse").or(chosen.get("mouse")).and_then(toml::Value::as_bool).unwrap_or(true);
-        Self { keys, themes, theme: theme.unwrap_or(0), mouse, wrong, settled }
+        Self { keys, themes, theme: theme.unwrap_or(0), mouse, plugins, wrong, settled }
     }
 
     /// Takes the settings into a state.

@@ -15,7 +15,7 @@ use honami_model::track::TrackId;
 use honami_workbench::WorkbenchError;
 use honami_workbench::cluster::{self, ClusterRequest};
 use honami_workbench::offer::{Granted, Wish};
-use honami_workbench::plugins::{Host, Kind, PluginInfo};
+use honami_workbench::plugins::{Kind, PluginInfo};
 use honami_workbench::retrack::{self, Way};
 use honami_workbench::session::Session;
 use honami_workbench::store::{Project, StoreError};
@@ -406,7 +406,7 @@ impl World {
     /// Lets a plugin start again that has failed too often.
     fn release(&mut self, id: &str) -> Facts {
         if let Some(plugin) = self.session.registry.plugins().iter().find(|plugin| plugin.id == id) {
-            Host::new().retry(plugin)?;
+            self.session.options.host.retry(plugin)?;
         }
         Ok(Vec::new())
     }

@@ -9,11 +9,11 @@ use honami_workbench::compare::{self, Comparison, Contestant, KeyPaths, Question
 use honami_workbench::drive::Seed;
 use honami_workbench::export;
 use honami_workbench::media::{self, Media, OpenOptions};
-use honami_workbench::plugins::{Kind, Param, Registry, Values};
+use honami_workbench::plugins::{Host, Kind, Param, Registry, Values};
 use honami_workbench::session::{Session, SessionOptions};
 
 use super::args::{Common, Compare};
-use super::{Answer, options, report, track, want};
+use super::{Answer, report, told_options, track, want};
 
 mod entry;
 mod svg;
@@ -26,11 +26,13 @@ pub(super) fn compare(args: &Compare, common: &Common) -> anyhow::Result<Answer>
     if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
         anyhow::bail!("--svg: there is no folder {}", folder.display());
     }
-    let (media, registry) = (Arc::clone(&opened.media), Arc::clone(&opened.registry));
+    let (media, registry, host) =
+        (Arc::clone(&opened.media), Arc::clone(&opened.registry), opened.host.clone());
     let contestants = contestants(args, &registry)?;
     let Asked { question, n_unseen } = ask(args, opened, &contestants)?;
     let frames = question.frames.clone();
-    let found = compare::compare(&media, &registry, &contestants, question, &report::Bar::with(common))?;
+    let found =
+        compare::compare(&media, &registry, &host, &contestants, question, &report::Bar::with(common))?;
     let head = head(&found, &frames, n_unseen);
     if let Some(path) = &args.svg {
         let name = args.clip[0].file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -65,6 +67,7 @@ fn head(found: &Comparison, frames: &Range<u32>, n_unseen: usize) -> String {
 struct Opened {
     media: Arc<Media>,
     registry: Arc<Registry>,
+    host: Host,
     /// The project's own points; none of a clip.
     points: Vec<Seed>,
     keys: KeyPaths,
@@ -79,19 +82,21 @@ fn open(args: &Compare, common: &Common) -> anyhow::Result<Opened> {
         let options = OpenOptions { fps: args.fps, ..OpenOptions::default() };
         return Ok(of_clip(media::open(clip, &options)?, common));
     }
-    let session = Session::open(clip, &SessionOptions { read_only: true, ..options(common) })?;
+    let session = Session::open(clip, &SessionOptions { read_only: true, ..told_options(common) })?;
     let mut points = Vec::new();
     for (id, span) in session.project.shown_all()? {
         let seen = span.frames().zip(&span.samples).find(|(_, sample)| sample.status.is_seen());
         points.extend(seen.map(|(frame, sample)| Seed { frame, track: id, x: sample.x, y: sample.y }));
     }
     let keys = compare::key_paths(&session)?;
-    Ok(Opened { media: session.media, registry: session.registry, points, keys })
+    let Session { media, registry, options, .. } = session;
+    Ok(Opened { media, registry, host: options.host, points, keys })
 }
 
 fn of_clip(media: Media, common: &Common) -> Opened {
-    let registry = Arc::new(super::options(common).registry());
-    Opened { media: Arc::new(media), registry, points: Vec::new(), keys: KeyPaths::new() }
+    let options = told_options(common);
+    let (media, registry) = (Arc::new(media), Arc::new(options.registry()));
+    Opened { media, registry, host: options.host, points: Vec::new(), keys: KeyPaths::new() }
 }
 
 fn contestants(args: &Compare, registry: &Registry) -> anyhow::Result<Vec<Contestant>> {
@@ -118,7 +123,7 @@ struct Asked {
 
 /// The points, and what is known of where they go.
 fn ask(args: &Compare, opened: Opened, contestants: &[Contestant]) -> anyhow::Result<Asked> {
-    let Opened { media, registry, points: own, keys } = opened;
+    let Opened { media, registry, host, points: own, keys } = opened;
     let clip = media.clip();
     let n_frames = clip.n_frames();
     let frames = args.frames.map_or(0..n_frames, |range| range.start..range.end.unwrap_or(n_frames));
@@ -140,7 +145,7 @@ fn ask(args: &Compare, opened: Opened, contestants: &[Contestant]) -> anyhow::Re
         }
         (None, None) if own.is_empty() => {
             let trackers: Vec<(&str, &Values)> = contestants.iter().filter_map(tracker).collect();
-            compare::detect(&media, &registry, &trackers, frames.start)?
+            compare::detect(&media, &registry, &host, &trackers, frames.start)?
         }
         (None, None) => own,
     };

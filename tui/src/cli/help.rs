@@ -34,7 +34,8 @@ pub(super) fn manual(folder: &Path) -> anyhow::Result<Answer> {
 
 /// What this machine has.
 pub(super) fn doctor(common: &Common) -> Answer {
-    let findings = doctor::examine(&super::options(common).registry());
+    let registry = super::options(common).registry();
+    let findings = doctor::examine(&registry);
     let mut rows = Vec::new();
     for finding in &findings {
         let mark = if finding.there { "ok" } else { "--" };
@@ -44,7 +45,8 @@ pub(super) fn doctor(common: &Common) -> Answer {
         };
         rows.push(vec![mark.to_owned(), finding.what.to_owned(), advice]);
     }
-    let config = Config::load();
+    let mut config = Config::load();
+    config.wrong.extend(config.plugins.strangers(&registry));
     let (mark, said) = match config.complaint() {
         None => ("ok", "config.toml is understood, or not there".to_owned()),
         Some(complaint) => ("--", complaint),

@@ -46,6 +46,7 @@ pub fn points_of(truth: &Truth) -> Vec<Seed> {
 pub fn detect(
     media: &Media,
     registry: &Registry,
+    host: &Host,
     trackers: &[(&str, &Values)],
     frame: u32,
 ) -> Result<Vec<Seed>, WorkbenchError> {
@@ -61,7 +62,7 @@ pub fn detect(
         .find(|(plugin, _)| plugin.offers(DETECT))
         .ok_or(WorkbenchError::CannotDetect { plugin: first })?;
     let cx = CallContext::silent();
-    let (mut tracker, _) = Host::new().tracker(plugin, params, &cx)?;
+    let (mut tracker, _) = host.tracker(plugin, params, &cx)?;
     let picture = media.frame(frame)?;
     let wanted = DetectRequest {
         frame: view(media, &picture, frame),

@@ -40,7 +40,7 @@ impl Direction {
         let frames = || passes.iter().flat_map(|pass| [pass.from, pass.frames.start, pass.frames.end - 1]);
         let (Some(first), Some(last)) = (frames().min(), frames().max()) else { return Ok(None) };
         let plugin = study.registry.find(Kind::Tracker, plugin)?;
-        let (tracker, origin) = honami_host::Host::new().tracker(plugin, values, &CallContext::silent())?;
+        let (tracker, origin) = study.host.tracker(plugin, values, &CallContext::silent())?;
         let from: Vec<String> = passes.iter().map(|pass| pass.from.to_string()).collect();
         let what = format!("retrack {word} from {}", from.join(", "));
         let provenance = stamp(study.revision, &what, plugin, values, origin);

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
 
-use honami_host::{Registry, Values};
+use honami_host::{Host, Registry, Values};
 use honami_media::Media;
 use honami_model::clip::FrameTimes;
 use honami_model::correct::Correction;
@@ -29,6 +29,7 @@ use crate::session::Session;
 pub struct Study {
     pub(super) media: Arc<Media>,
     pub(super) registry: Arc<Registry>,
+    pub(super) host: Host,
     pub(crate) ground: Ground,
     pub(super) revision: EntryId,
     /// The tracker that made it, and its parameters; `None` where there is no tracker at all.
@@ -43,6 +44,7 @@ pub fn study(session: &Session, track: TrackId) -> Result<Study, WorkbenchError>
     Ok(Study {
         media: Arc::clone(&session.media),
         registry: Arc::clone(&session.registry),
+        host: session.options.host.clone(),
         ground: Ground::of(&session.project, track)?,
         revision: session.project.revision(),
         usual: direction::usual(session, Some(track))?,

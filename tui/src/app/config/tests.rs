@@ -23,7 +23,7 @@ fn what_is_settled_stands_over_what_was_chosen() {
 fn what_is_wrong_is_said_and_the_rest_holds() {
     for (text, expect) in [
         ("theme = \"noon\"", "there is no theme noon; there are dark, light, contrast"),
-        ("colour = 3", "colour is not known; there are keys, theme, themes, mouse"),
+        ("colour = 3", "colour is not known; there are keys, theme, themes, mouse, plugins"),
         ("[themes.mine]\nhat = \"blue\"", "themes.mine: hat is no role; there are accent, "),
         ("[themes.mine]\ndim = \"muddy\"", "themes.mine.dim: a colour is wanted"),
         ("[keys]\nundoo = \"u\"", "there is no action undoo"),
