@@ -291,6 +291,7 @@ fn plugins_say_what_they_are_and_take() {
             assert!(text.contains(param["id"].as_str().unwrap()), "{param} is not in:\n{text}");
         }
         assert!(bench.text("plugin list").contains(name));
+        assert_eq!((&info["hosting"], &info["sandbox"]), (&"in-process".into(), &"none".into()));
     }
 }
 

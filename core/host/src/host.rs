@@ -25,6 +25,17 @@ pub enum Hosting {
     Isolated,
 }
 
+impl Hosting {
+    /// What `$HONAMI_HOSTING` calls it.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::InProcess => "in-process",
+            Self::Isolated => "isolated",
+        }
+    }
+}
+
 /// Where a result came from: what to write beside it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Origin {
@@ -63,8 +74,9 @@ impl Host {
     #[must_use]
     pub fn new() -> Self {
         // What is misspelt is safe.
-        let hosting = std::env::var_os("HONAMI_HOSTING")
-            .map(|word| if word == "in-process" { Hosting::InProcess } else { Hosting::Isolated });
+        let hosting = std::env::var_os("HONAMI_HOSTING").map(|word| {
+            if word == Hosting::InProcess.word() { Hosting::InProcess } else { Hosting::Isolated }
+        });
         Self { hosting, ..Self::with_store(store::folder_of_user()) }
     }
 

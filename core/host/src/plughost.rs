@@ -18,7 +18,7 @@ use crate::wire::memory::{Inbox, Output};
 use crate::wire::{self, Answer, Ask, Columns, Refusal, Tell};
 use ear::Ear;
 use sandbox::Programs;
-pub(crate) use sandbox::ROOM;
+pub(crate) use sandbox::{ROOM, foresee};
 use std::ffi::OsString;
 use std::io;
 use std::path::{Path, PathBuf};

@@ -653,5 +653,6 @@ fn plugin(info: &PluginInfo) -> Option<Plugin> {
         version: info.version.clone(),
         params: info.params.clone(),
         can_detect: info.offers("honami.detect/1"),
+        apart: Host::new().prospect(info),
     })
 }

@@ -13,7 +13,7 @@ use honami_model::history::{Entry, EntryId};
 use honami_model::over::{Laid, Over};
 use honami_model::track::{Quality, Sample, Source, Span, Status, TrackId};
 use honami_workbench::offer::{Errors, Wish};
-use honami_workbench::plugins::{Level, Param};
+use honami_workbench::plugins::{Hosting, Level, Param, Prospect};
 use honami_workbench::review::{Evidence, Kind, Review, Subject};
 use honami_workbench::versus::{Compared, Entrant, Paired, disagreement};
 use ratatui::layout::Rect;
@@ -273,6 +273,22 @@ pub(super) fn groups(k: u32) -> Groups {
     )
 }
 
+/// Nothing that is shut in, for this reason.
+fn apart(hosting: Hosting, why: &str) -> Prospect {
+    Prospect { hosting, sandbox: "none", why: why.to_owned(), is_bare: false }
+}
+
+/// The first tracker works in honami itself, though it did not come with it.
+pub(super) fn bare(state: &mut State) {
+    state.plugins[0].apart.is_bare = true;
+}
+
+/// The first tracker works in a process of its own, shut in as far as a kernel without landlock can.
+pub(super) fn shut_in(state: &mut State) {
+    let why = "this kernel has no landlock, which keeps files from it";
+    state.plugins[0].apart = Prospect { sandbox: "partial", ..apart(Hosting::Isolated, why) };
+}
+
 fn plugins() -> Vec<Plugin> {
     let params = |json: &str| serde_json::from_str::<Vec<Param>>(json).expect("a schema");
     let plugin = |task, name: &str, params, can_detect| Plugin {
@@ -281,6 +297,7 @@ fn plugins() -> Vec<Plugin> {
         version: "0.1.0".to_owned(),
         params,
         can_detect,
+        apart: apart(Hosting::InProcess, "it works in honami itself: whatever ends it ends both"),
     };
     let klt = r#"[
         {"id":"radius","label":"window radius","doc":"half side of the window","unit":"px","type":"int",

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use honami_workbench::plugins::{Entry, Numeric, Param, ParamKind, Value, Values};
+use honami_workbench::plugins::{Entry, Numeric, Param, ParamKind, Prospect, Value, Values};
 
 /// What a plugin does for the terminal UI.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,6 +37,8 @@ pub struct Plugin {
     pub params: Vec<Param>,
     /// Whether it can find features by itself.
     pub can_detect: bool,
+    /// Where it will work, and how far it will be shut in there.
+    pub apart: Prospect,
 }
 
 /// Where a tracker's features come from: id of a parameter of ours.

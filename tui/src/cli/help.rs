@@ -1,5 +1,6 @@
 //! Commands about honami itself: plugins, doctor, completions, manual.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::os::unix::fs::MetadataExt as _;
 use std::path::{Path, PathBuf};
@@ -8,7 +9,9 @@ use anyhow::Context as _;
 use clap::CommandFactory as _;
 use honami_workbench::check::Ledger;
 use honami_workbench::doctor;
-use honami_workbench::plugins::{Host, Param, PluginInfo, Registry, SearchPath, Trust, TrustBook};
+use honami_workbench::plugins::{
+    Host, Hosting, Param, PluginInfo, Prospect, Registry, SearchPath, Trust, TrustBook,
+};
 use serde_json::json;
 
 use super::args::{Cli, Common, Plugin};
@@ -146,11 +149,14 @@ pub(super) fn machine() -> String {
 }
 
 fn list(registry: &Registry) -> Answer {
-    let head = ["name", "kind", "version", "", "", "what it is"].map(str::to_owned).to_vec();
-    let levels = Ledger::beside(&Host::new()).levels(registry.plugins());
+    let head = ["name", "kind", "version", "", "", "", "what it is"].map(str::to_owned).to_vec();
+    let host = Host::new();
+    let levels = Ledger::beside(&host).levels(registry.plugins());
     let row = |(plugin, level): (&PluginInfo, &Option<u8>)| {
-        let (kind, checked) = (plugin.kind.to_string(), checked(*level));
-        let cells = [&plugin.short_name, &kind, &plugin.version, trust(plugin), &checked, &plugin.name];
+        let (kind, checked, apart) =
+            (plugin.kind.to_string(), checked(*level), apart(&host.prospect(plugin)));
+        let cells =
+            [&plugin.short_name, &kind, &plugin.version, trust(plugin), &apart, &checked, &plugin.name];
         cells.map(ToString::to_string).to_vec()
     };
     let rows = registry.plugins().iter().zip(&levels).map(row);
@@ -163,6 +169,9 @@ fn list(registry: &Registry) -> Answer {
         if let Trust::No(why) = &plugin.trust {
             text += &format!("\n{}: {why}", plugin.short_name);
         }
+    }
+    for (why, names) in not_full(&host, registry) {
+        text += &format!("\n{}: {why}", names.join(", "));
     }
     for problem in registry.problems() {
         text += &format!("\n{problem}");
@@ -190,6 +199,27 @@ fn checked(level: Option<u8>) -> String {
     level.map_or_else(String::new, |level| format!("checked {level}"))
 }
 
+/// Where it will work and how far it will be shut in there, in a cell.
+fn apart(prospect: &Prospect) -> String {
+    match prospect.hosting {
+        Hosting::InProcess if prospect.is_bare => "⚠ in-process".to_owned(),
+        Hosting::InProcess => "in-process".to_owned(),
+        Hosting::Isolated => format!("sandbox {}", prospect.sandbox),
+    }
+}
+
+/// Why plugins that did not come with honami are not shut in fully, each reason with their names.
+fn not_full<'r>(host: &Host, registry: &'r Registry) -> BTreeMap<String, Vec<&'r str>> {
+    let mut reasons = BTreeMap::<String, Vec<&str>>::new();
+    for plugin in registry.plugins() {
+        let told = host.prospect(plugin);
+        if told.sandbox != "full" && (told.is_bare || told.hosting == Hosting::Isolated) {
+            reasons.entry(format!("{}: {}", apart(&told), told.why)).or_default().push(&plugin.short_name);
+        }
+    }
+    reasons
+}
+
 fn described((plugin, level): (&PluginInfo, Option<u8>)) -> serde_json::Value {
     let mut json = describe(plugin);
     json["checked"] = level.into();
@@ -197,6 +227,7 @@ fn described((plugin, level): (&PluginInfo, Option<u8>)) -> serde_json::Value {
 }
 
 fn describe(plugin: &PluginInfo) -> serde_json::Value {
+    let told = Host::new().prospect(plugin);
     json!({
         "id": plugin.id,
         "short_name": plugin.short_name,
@@ -207,6 +238,9 @@ fn describe(plugin: &PluginInfo) -> serde_json::Value {
         "abi": [plugin.abi.0, plugin.abi.1],
         "library": plugin.library,
         "trust": trust(plugin),
+        "hosting": told.hosting.word(),
+        "sandbox": told.sandbox,
+        "sandbox_why": (!told.why.is_empty()).then_some(told.why),
         "interfaces": plugin.interfaces,
         "params": plugin.params,
         "cite": plugin.cite,
@@ -227,6 +261,9 @@ fn info(plugin: &PluginInfo) -> anyhow::Result<Answer> {
     for source in &plugin.cite {
         text += &format!("from {source}\n");
     }
+    let told = Host::new().prospect(plugin);
+    let why = if told.why.is_empty() { String::new() } else { format!(": {}", told.why) };
+    text += &format!("here {}{why}\n", apart(&told));
     text += &may(plugin);
     text += "\n";
     let head = ["parameter", "default", "takes", ""].map(str::to_owned).to_vec();

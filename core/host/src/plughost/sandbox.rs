@@ -4,16 +4,20 @@
 //! with it (landlock). No sockets, no other programs, no look into other processes (`calls.rs`).
 
 mod calls;
+mod probe;
 
 use landlock::{
     ABI, Access as _, AccessFs, AccessNet, BitFlags, CompatLevel, Compatible as _, Ruleset, RulesetAttr as _,
     RulesetCreatedAttr as _, RulesetStatus, Scope, path_beneath_rules,
 };
+pub(crate) use probe::foresee;
 use rustix::process::{Resource, Rlimit, setrlimit};
 use std::path::{Path, PathBuf};
 
 /// Environment variable with the folder of its own.
 pub(crate) const ROOM: &str = "TMPDIR";
+/// The rights that files, ports and other processes are kept from by.
+const RIGHTS: ABI = ABI::V6;
 /// So many files it may hold open: a library that forgets to close is told early.
 const OPEN_FILES: u64 = 1024;
 
@@ -47,14 +51,14 @@ pub(super) enum Programs {
 
 /// How much of it this system could do, in a word for the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Level {
+pub(crate) enum Level {
     Full,
     Partial,
     None,
 }
 
 impl Level {
-    pub(super) fn word(self) -> &'static str {
+    pub(crate) fn word(self) -> &'static str {
         match self {
             Self::Full => "full",
             Self::Partial => "partial",
@@ -88,9 +92,14 @@ pub(super) fn limit(memory_bytes: Option<u64>) {
 pub(super) fn enter(library: &Path, read: &[PathBuf], programs: &Programs) -> Level {
     let files = files(library, read, programs).unwrap_or(RulesetStatus::NotEnforced);
     let calls = calls::refuse(programs);
-    match (files, calls) {
-        (RulesetStatus::FullyEnforced, Ok(())) if *programs == Programs::Refused => Level::Full,
-        (RulesetStatus::NotEnforced, Err(_)) => Level::None,
+    level(files, calls.is_ok(), *programs == Programs::Refused)
+}
+
+/// The level that comes of what is kept of files, and of whether calls and programs are refused.
+fn level(files: RulesetStatus, calls_refused: bool, programs_refused: bool) -> Level {
+    match (files, calls_refused) {
+        (RulesetStatus::FullyEnforced, true) if programs_refused => Level::Full,
+        (RulesetStatus::NotEnforced, false) => Level::None,
         _ => Level::Partial,
     }
 }
@@ -100,7 +109,6 @@ fn files(
     read: &[PathBuf],
     programs: &Programs,
 ) -> Result<RulesetStatus, landlock::RulesetError> {
-    let abi = ABI::V6;
     let paths = SYSTEM.iter().map(Path::new).chain([library]).chain(read.iter().map(PathBuf::as_path));
     let paths = paths.filter(|path| path.exists());
     // The host has made one, and removes it.
@@ -112,13 +120,13 @@ fn files(
     let these = these.iter().filter(|path| path.exists());
     let status = Ruleset::default()
         .set_compatibility(CompatLevel::BestEffort)
-        .handle_access(AccessFs::from_all(abi))?
-        .handle_access(AccessNet::from_all(abi))?
-        .scope(Scope::from_all(abi))?
+        .handle_access(AccessFs::from_all(RIGHTS))?
+        .handle_access(AccessNet::from_all(RIGHTS))?
+        .scope(Scope::from_all(RIGHTS))?
         .create()?
-        .add_rules(path_beneath_rules(paths, AccessFs::from_read(abi) & !others))?
-        .add_rules(path_beneath_rules(own, AccessFs::from_all(abi) & !others))?
-        .add_rules(path_beneath_rules(these, AccessFs::from_read(abi)))?
+        .add_rules(path_beneath_rules(paths, AccessFs::from_read(RIGHTS) & !others))?
+        .add_rules(path_beneath_rules(own, AccessFs::from_all(RIGHTS) & !others))?
+        .add_rules(path_beneath_rules(these, AccessFs::from_read(RIGHTS)))?
         .restrict_self()?;
     Ok(status.ruleset)
 }

@@ -50,6 +50,18 @@ fn in_frame_2(fault: &str, host: &Host) -> (Result<Vec<Points>, HostError>, Stri
     (last, log.into_inner().unwrap())
 }
 
+#[test]
+fn what_a_start_will_come_to_is_what_it_comes_to() {
+    let drift = of_zoo(Kind::Tracker, "drift");
+    for host in [host(), isolating()] {
+        let told = host.prospect(&drift);
+        let (_, origin) = host.tracker(&drift, &Values::default(), &CallContext::silent()).unwrap();
+        let came = if origin.sandbox == "in process" { "none" } else { &origin.sandbox };
+        assert_eq!((told.sandbox, told.why.is_empty()), (came, came == "full"), "{told:?}");
+        assert_eq!(told.is_bare, origin.sandbox == "in process");
+    }
+}
+
 /// Whether this kernel keeps files away from a process that has given them up; says so if not.
 fn is_shut_in() -> bool {
     let info = of_zoo(Kind::Tracker, "drift");

@@ -4,7 +4,7 @@ use ratatui::layout::Rect;
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
 
-use honami_workbench::plugins::{Numeric, Param, ParamKind, Value};
+use honami_workbench::plugins::{Hosting, Numeric, Param, ParamKind, Prospect, Value};
 
 use super::lines::wrapped;
 use super::{padded, panel, put, style, width};
@@ -34,9 +34,9 @@ pub(super) fn draw(form: &Form, area: Rect, frame: &mut Frame) {
     let label_width = labels.map(width).max().unwrap_or(0).clamp(LABEL.0, LABEL.1);
     for (y, (i, row)) in (1..).zip(rows.iter().enumerate().skip(first).take(n_listed)) {
         let mut line = row_line(form, row, i == form.at, label_width);
-        // A slider is seen whole or not at all.
-        if line.width() > usize::from(inside.width) && line.spans.len() > 2 {
-            line.spans.truncate(2);
+        // A slider is seen whole or not at all, and so is what is said of a plugin.
+        while line.width() > usize::from(inside.width) && line.spans.len() > 2 {
+            line.spans.pop();
         }
         put(frame, inside, y, &line);
     }
@@ -49,8 +49,19 @@ fn doc(row: &Row<'_>) -> Option<String> {
     match row {
         Row::Param(param, _) if param.doc.is_empty() => Some(param.wanted()),
         Row::Param(param, _) => Some(format!("{} ({})", param.doc.trim_end_matches('.'), param.wanted())),
-        Row::Plugin(_) => Some("h l choose another plugin".to_owned()),
+        Row::Plugin(plugin) => Some(of_plugin(&plugin.apart)),
         Row::Fold(_) => Some("h l unfold and fold".to_owned()),
+    }
+}
+
+fn of_plugin(apart: &Prospect) -> String {
+    let choose = "h l choose another plugin";
+    match apart.hosting {
+        Hosting::InProcess if apart.is_bare => format!("⚠ in-process: {} · {choose}", apart.why),
+        Hosting::Isolated if !apart.why.is_empty() => {
+            format!("sandbox {}: {} · {choose}", apart.sandbox, apart.why)
+        }
+        _ => choose.to_owned(),
     }
 }
 
@@ -73,11 +84,19 @@ fn row_line(form: &Form, row: &Row<'_>, is_here: bool, label_width: usize) -> Li
             } else {
                 String::new()
             };
-            Line::from(vec![
-                label(task),
-                Span::styled(format!("{} {}", plugin.name, plugin.version), style::BOLD),
-                Span::styled(others, style::DIM),
-            ])
+            let mut spans =
+                vec![label(task), Span::styled(format!("{} {}", plugin.name, plugin.version), style::BOLD)];
+            match plugin.apart.hosting {
+                Hosting::InProcess if plugin.apart.is_bare => {
+                    spans.extend([" ⚠", " in-process"].map(|part| Span::styled(part, style::ERROR)));
+                }
+                Hosting::InProcess => {}
+                Hosting::Isolated => {
+                    spans.push(Span::styled(format!("   sandbox {}", plugin.apart.sandbox), style::DIM));
+                }
+            }
+            spans.push(Span::styled(others, style::DIM));
+            Line::from(spans)
         }
         Row::Fold(n) => {
             Line::from(vec![label(&format!("advanced {} {n}", if form.unfolded { "▾" } else { "▸" }))])

@@ -136,6 +136,8 @@ fn screens() {
     check("place_80x24", small, "a", |_| {});
     check("form_80x24", small, "t r j j j", |_| {});
     check("form_120x40", large, "t r j j j", |_| {});
+    check("form_bare_80x24", small, "t r", fixture::bare);
+    check("form_shut_in_80x24", small, "t r", fixture::shut_in);
     check("features_80x24", small, "t r j h", |_| {});
     check("doubt_80x24", small, "S Tab w", |_| {});
     check("crowded_80x24", small, "", fixture::crowd);

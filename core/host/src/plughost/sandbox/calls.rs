@@ -3,7 +3,7 @@
 use super::Programs;
 use seccompiler::{
     BpfProgram, SeccompAction, SeccompCmpArgLen, SeccompCmpOp, SeccompCondition, SeccompFilter, SeccompRule,
-    apply_filter, sock_filter,
+    TargetArch, apply_filter, sock_filter,
 };
 use std::collections::BTreeMap;
 
@@ -47,6 +47,11 @@ const WORLDS: [libc::c_int; 7] = [
 
 /// The kernel's calls once more under other numbers begin here (x32).
 const OTHER_NUMBERS: u32 = 0x4000_0000;
+
+/// Whether there are filters for this processor.
+pub(super) fn is_known_here() -> bool {
+    TargetArch::try_from(std::env::consts::ARCH).is_ok()
+}
 
 /// Refuses them from now on, to this thread and those it starts.
 pub(super) fn refuse(programs: &Programs) -> Result<(), Box<dyn std::error::Error>> {

@@ -16,6 +16,7 @@ fn screens_of_other_sizes() {
     check("slide_40x12", low, "T 2 l L", |_| {});
     check("range_40x12", low, "y j y r 1 9 l", |_| {});
     check("form_40x12", low, "t r j j", |_| {});
+    check("form_bare_40x12", low, "t r", fixture::bare);
     check("typing_40x12", low, "t r j j 2 5", |_| {});
     check("help_40x12", low, "?", |_| {});
     check("palette_40x12", low, ": f r a m e", |_| {});
