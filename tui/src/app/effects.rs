@@ -15,7 +15,7 @@ use honami_model::track::TrackId;
 use honami_workbench::WorkbenchError;
 use honami_workbench::cluster::{self, ClusterRequest};
 use honami_workbench::offer::{Granted, Wish};
-use honami_workbench::plugins::{Kind, PluginInfo};
+use honami_workbench::plugins::{Host, Kind, PluginInfo};
 use honami_workbench::retrack::{self, Way};
 use honami_workbench::session::Session;
 use honami_workbench::store::{Project, StoreError};
@@ -121,7 +121,8 @@ impl World {
     }
 
     fn plugins(&self) -> Vec<Plugin> {
-        self.session.registry.plugins().iter().filter_map(plugin).collect()
+        let host = &self.session.options.host;
+        self.session.registry.plugins().iter().filter_map(|info| plugin(info, host)).collect()
     }
 
     /// Which project it is, and where its document stands.
@@ -641,7 +642,7 @@ fn failed(error: &WorkbenchError) -> Fact {
 }
 
 /// A plugin as forms know it; `None` for kinds without a form.
-fn plugin(info: &PluginInfo) -> Option<Plugin> {
+fn plugin(info: &PluginInfo, host: &Host) -> Option<Plugin> {
     let task = match info.kind {
         Kind::Tracker => Task::Track,
         Kind::Clusterer => Task::Cluster,
@@ -653,6 +654,6 @@ fn plugin(info: &PluginInfo) -> Option<Plugin> {
         version: info.version.clone(),
         params: info.params.clone(),
         can_detect: info.offers("honami.detect/1"),
-        apart: Host::new().prospect(info),
+        apart: host.prospect(info),
     })
 }

@@ -61,11 +61,15 @@ pub(super) fn doctor(common: &Common) -> Answer {
 
 /// Lists plugins, or describes one.
 pub(super) fn plugin(command: &Plugin, common: &Common) -> anyhow::Result<Outcome> {
-    let registry = super::options(common).registry();
+    let options = match command {
+        Plugin::List | Plugin::Info { .. } => super::told_options(common),
+        _ => super::options(common),
+    };
+    let (registry, host) = (options.registry(), &options.host);
     let answer = match command {
         Plugin::Check(args) => return check::check(args, common).map(Outcome::Exit),
-        Plugin::List => Ok(list(&registry)),
-        Plugin::Info { name } => info(named(&registry, name)?),
+        Plugin::List => Ok(list(&registry, host)),
+        Plugin::Info { name } => info(named(&registry, name)?, host),
         Plugin::New { name, kind, lang, command } => begin::plugin(name, *kind, *lang, command),
         Plugin::Allow { plugin } => allow(&file(&registry, plugin)?),
         Plugin::Deny { plugin } => {
@@ -79,7 +83,7 @@ pub(super) fn plugin(command: &Plugin, common: &Common) -> anyhow::Result<Outcom
             let again = SearchPath { named: vec![library], ..SearchPath::default() };
             let again = Registry::scan_path(&again);
             let plugin = again.plugins().first().with_context(|| format!("{name} is no plugin"))?;
-            let was_held = Host::new().retry(plugin)?;
+            let was_held = host.retry(plugin)?;
             let words = if was_held { "may start again" } else { "was not held: nothing to do" };
             let json = json!({ "plugin": plugin.id, "was_held": was_held });
             Ok(Answer { json, text: format!("{} {words}", plugin.short_name), done: true })
@@ -137,7 +141,8 @@ pub(super) fn named<'r>(registry: &'r Registry, name: &str) -> anyhow::Result<&'
 
 /// The plugins there are, as text.
 pub(super) fn plugins(common: &Common) -> String {
-    list(&super::options(common).registry()).text
+    let options = super::options(common);
+    list(&options.registry(), &options.host).text
 }
 
 /// What this machine has, in a few words.
@@ -148,10 +153,9 @@ pub(super) fn machine() -> String {
     }
 }
 
-fn list(registry: &Registry) -> Answer {
+fn list(registry: &Registry, host: &Host) -> Answer {
     let head = ["name", "kind", "version", "", "", "", "what it is"].map(str::to_owned).to_vec();
-    let host = Host::new();
-    let levels = Ledger::beside(&host).levels(registry.plugins());
+    let levels = Ledger::beside(host).levels(registry.plugins());
     let row = |(plugin, level): (&PluginInfo, &Option<u8>)| {
         let (kind, checked, apart) =
             (plugin.kind.to_string(), checked(*level), apart(&host.prospect(plugin)));
@@ -170,14 +174,14 @@ fn list(registry: &Registry) -> Answer {
             text += &format!("\n{}: {why}", plugin.short_name);
         }
     }
-    for (why, names) in not_full(&host, registry) {
+    for (why, names) in not_full(host, registry) {
         text += &format!("\n{}: {why}", names.join(", "));
     }
     for problem in registry.problems() {
         text += &format!("\n{problem}");
     }
     let json = json!({
-        "plugins": registry.plugins().iter().zip(levels).map(described).collect::<Vec<_>>(),
+        "plugins": registry.plugins().iter().zip(levels).map(|(p, level)| described(p, level, host)).collect::<Vec<_>>(),
         "problems": registry.problems().iter().map(ToString::to_string).collect::<Vec<_>>(),
     });
     Answer { json, text, done: registry.problems().is_empty() }
@@ -220,14 +224,8 @@ fn not_full<'r>(host: &Host, registry: &'r Registry) -> BTreeMap<String, Vec<&'r
     reasons
 }
 
-fn described((plugin, level): (&PluginInfo, Option<u8>)) -> serde_json::Value {
-    let mut json = describe(plugin);
-    json["checked"] = level.into();
-    json
-}
-
-fn describe(plugin: &PluginInfo) -> serde_json::Value {
-    let told = Host::new().prospect(plugin);
+fn described(plugin: &PluginInfo, level: Option<u8>, host: &Host) -> serde_json::Value {
+    let told = host.prospect(plugin);
     json!({
         "id": plugin.id,
         "short_name": plugin.short_name,
@@ -238,6 +236,7 @@ fn describe(plugin: &PluginInfo) -> serde_json::Value {
         "abi": [plugin.abi.0, plugin.abi.1],
         "library": plugin.library,
         "trust": trust(plugin),
+        "checked": level,
         "hosting": told.hosting.word(),
         "sandbox": told.sandbox,
         "sandbox_why": (!told.why.is_empty()).then_some(told.why),
@@ -248,20 +247,20 @@ fn describe(plugin: &PluginInfo) -> serde_json::Value {
     })
 }
 
-fn info(plugin: &PluginInfo) -> anyhow::Result<Answer> {
+fn info(plugin: &PluginInfo, host: &Host) -> anyhow::Result<Answer> {
     let sha256 = plugin.sha256()?;
     let mut text = format!("{} {} · {} · {}\n", plugin.name, plugin.version, plugin.kind, trust(plugin));
     text += &format!(
         "{}\nid {} · ABI {}.{} · {}\n",
         plugin.doc, plugin.id, plugin.abi.0, plugin.abi.1, plugin.license
     );
-    let level = Ledger::beside(&Host::new()).level(plugin);
+    let level = Ledger::beside(host).level(plugin);
     let kept = level.map_or_else(String::new, |level| format!(" · {}", checked(Some(level))));
     text += &format!("{} sha256 {}{kept}\n", plugin.library.display(), &sha256[..16]);
     for source in &plugin.cite {
         text += &format!("from {source}\n");
     }
-    let told = Host::new().prospect(plugin);
+    let told = host.prospect(plugin);
     let why = if told.why.is_empty() { String::new() } else { format!(": {}", told.why) };
     text += &format!("here {}{why}\n", apart(&told));
     text += &may(plugin);
@@ -271,7 +270,7 @@ fn info(plugin: &PluginInfo) -> anyhow::Result<Answer> {
         vec![param.id.clone(), param.default().to_string(), param.wanted(), first_line(&param.doc)]
     };
     text += &report::table(&std::iter::once(head).chain(plugin.params.iter().map(row)).collect::<Vec<_>>());
-    let mut json = described((plugin, level));
+    let mut json = described(plugin, level, host);
     json["sha256"] = sha256.into();
     json["doc"] = plugin.doc.clone().into();
     Ok(Answer { json, text, done: true })

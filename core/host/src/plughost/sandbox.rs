@@ -92,11 +92,11 @@ pub(super) fn limit(memory_bytes: Option<u64>) {
 pub(super) fn enter(library: &Path, read: &[PathBuf], programs: &Programs) -> Level {
     let files = files(library, read, programs).unwrap_or(RulesetStatus::NotEnforced);
     let calls = calls::refuse(programs);
-    level(files, calls.is_ok(), *programs == Programs::Refused)
+    level(&files, calls.is_ok(), *programs == Programs::Refused)
 }
 
 /// The level that comes of what is kept of files, and of whether calls and programs are refused.
-fn level(files: RulesetStatus, calls_refused: bool, programs_refused: bool) -> Level {
+fn level(files: &RulesetStatus, calls_refused: bool, programs_refused: bool) -> Level {
     match (files, calls_refused) {
         (RulesetStatus::FullyEnforced, true) if programs_refused => Level::Full,
         (RulesetStatus::NotEnforced, false) => Level::None,

@@ -6,6 +6,7 @@ use landlock::{
     RulesetError, RulesetStatus, Scope,
 };
 use std::fs;
+use std::sync::OnceLock;
 
 /// What the kernel can answer a filtered call with.
 const ANSWERS: &str = "/proc/sys/kernel/seccomp/actions_avail";
@@ -13,15 +14,17 @@ const ANSWERS: &str = "/proc/sys/kernel/seccomp/actions_avail";
 /// The level that [`super::enter`] would reach here, and what keeps it from being full. `programs` says why other
 /// programs could not be refused, if they could not.
 pub(crate) fn foresee(programs: Option<&str>) -> (Level, String) {
-    let (files, calls) = (files(), are_calls_refused());
+    // A kernel answers the same as long as it runs, and lists of plugins ask for each of them.
+    static ANSWER: OnceLock<(RulesetStatus, bool)> = OnceLock::new();
+    let (files, calls) = ANSWER.get_or_init(|| (files(), are_calls_refused()));
     let of_files = match files {
         RulesetStatus::FullyEnforced => None,
         RulesetStatus::PartiallyEnforced => Some("this kernel's landlock is too old for all of it"),
         RulesetStatus::NotEnforced => Some("this kernel has no landlock, which keeps files from it"),
     };
-    let of_calls = (!calls).then_some("this kernel refuses no calls (seccomp)");
+    let of_calls = (!*calls).then_some("this kernel refuses no calls (seccomp)");
     let why: Vec<&str> = [programs, of_files, of_calls].into_iter().flatten().collect();
-    (level(files, calls, programs.is_none()), why.join("; "))
+    (level(files, *calls, programs.is_none()), why.join("; "))
 }
 
 /// What would be kept of files: rulesets that are made and thrown away bind nobody.
