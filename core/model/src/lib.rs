@@ -14,5 +14,6 @@ pub mod history;
 pub mod judgement;
 pub mod over;
 pub mod picture;
+pub mod plant;
 pub mod provenance;
 pub mod track;

@@ -25,6 +25,7 @@ mod render;
 mod scene;
 mod settings;
 mod texture;
+mod tree;
 mod truth;
 mod wind;
 
@@ -34,4 +35,5 @@ mod tests;
 pub use render::Picture;
 pub use scene::Scene;
 pub use settings::{Level, Settings, SynthError};
+pub use tree::tree;
 pub use truth::{At, BranchTruth, LeafTruth, Truth};

@@ -1,0 +1,20 @@
+//! Mechanics of plants: beams, their vibration modes, the wind, and how they move in it (thesis chapters 5 and 6).
+//!
+//! Metres, kilograms, seconds, radians; z up, right-handed. A [`Plant`](honami_model::plant::Plant) becomes [`Beams`],
+//! these a pair of matrices that know their tree ([`TreeMatrix`]), and these [`Modes`].
+
+mod beams;
+mod element;
+mod factor;
+mod lanczos;
+mod material;
+mod modes;
+mod simd;
+mod tree_matrix;
+
+pub use beams::{Beams, Options};
+pub use element::{Section, frame, shape};
+pub use factor::Factor;
+pub use material::Material;
+pub use modes::{Modes, ModesError};
+pub use tree_matrix::TreeMatrix;

@@ -1,0 +1,230 @@
+//! The slowest vibrations of a plant, and a proof that none was missed.
+
+#[cfg(test)]
+mod tests;
+
+use crate::beams::Beams;
+use crate::factor::{Factor, Flexibility, Singular};
+use crate::lanczos::Lanczos;
+use crate::simd::dot;
+use crate::tree_matrix::{DOF, TreeMatrix};
+use nalgebra::{DMatrix, Dyn, SymmetricEigen, Vector3};
+use std::f64::consts::TAU;
+
+/// Up to so many degrees of freedom all vibrations are worked out at once.
+const DENSE_MAX: usize = 96;
+/// Eigenvalues closer than this are one for the proof, which needs a gap to count below.
+const GAP: f64 = 1e-7;
+/// Vibrations beyond the wanted ones that are looked at to find a gap.
+const BEYOND: usize = 3;
+
+/// Vibration modes of a plant, slowest first, each of modal mass 1 kg m^2 per its unit: phi^T M phi = 1.
+#[derive(Clone, Debug)]
+pub struct Modes {
+    /// Angular frequencies, radians per second, ascending.
+    pub omegas: Vec<f64>,
+    /// How far each is from solving its equation: |phi - omega^2 K^-1 M phi| in M, where |phi| is 1.
+    pub residuals: Vec<f64>,
+    /// Displacements and rotations of all nodes but the root, 6 a node, mode after mode.
+    shapes: Vec<f64>,
+    n_nodes: usize,
+}
+
+/// Why there are no modes.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum ModesError {
+    /// No plant vibrates so little.
+    #[error("{wanted} modes were asked for, and the plant has {there} degrees of freedom")]
+    TooMany {
+        /// Asked for.
+        wanted: usize,
+        /// Of the plant.
+        there: usize,
+    },
+    /// Numbers so far apart that the matrix has no factors.
+    #[error(transparent)]
+    Singular(#[from] Singular),
+    /// It went on for long and could not be sure.
+    #[error("of {wanted} modes {found} were found for certain")]
+    Uncertain {
+        /// Asked for.
+        wanted: usize,
+        /// Found, of those beyond.
+        found: usize,
+    },
+}
+
+impl Modes {
+    /// The slowest modes of beams. Their number is proved: so many eigenvalues, and no more, lie below (the count of
+    /// negative pivots of K - s M).
+    ///
+    /// # Errors
+    /// [`ModesError`].
+    pub fn new(beams: &Beams, n_modes: usize, seed: u64) -> Result<Self, ModesError> {
+        let mass = beams.mass();
+        let there = DOF * mass.len();
+        if n_modes > there || n_modes == 0 {
+            return Err(ModesError::TooMany { wanted: n_modes, there });
+        }
+        let flexibility = Flexibility::new(beams);
+        let factor = Factor::new(&flexibility, &mass, 0.0)?;
+        let (lambdas, vectors) = if there <= DENSE_MAX.max(2 * n_modes) {
+            all(&factor, &mass, n_modes)
+        } else {
+            few(&flexibility, &factor, &mass, n_modes, seed)?
+        };
+        Ok(Self::checked(&factor, &mass, &lambdas, vectors))
+    }
+
+    fn checked(factor: &Factor, mass: &TreeMatrix, lambdas: &[f64], shapes: Vec<f64>) -> Self {
+        let height = DOF * mass.len();
+        let omegas: Vec<f64> = lambdas.iter().map(|lambda| lambda.sqrt()).collect();
+        let mut product = vec![0.0; height];
+        let residual = |(shape, lambda): (&[f64], &f64)| {
+            mass.times(shape, &mut product);
+            let mut other = product.clone();
+            factor.solve(&mut other);
+            other.iter_mut().zip(shape).for_each(|(y, x)| *y = x - *y * lambda);
+            mass.times(&other, &mut product);
+            dot(&other, &product).max(0.0).sqrt()
+        };
+        let residuals = shapes.chunks(height).zip(lambdas).map(residual).collect();
+        Self { omegas, residuals, shapes, n_nodes: mass.len() }
+    }
+
+    /// How many.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.omegas.len()
+    }
+
+    /// Whether there are none, which cannot be.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.omegas.is_empty()
+    }
+
+    /// Frequency of a mode, hertz.
+    #[must_use]
+    pub fn hz(&self, mode: usize) -> f64 {
+        self.omegas[mode] / TAU
+    }
+
+    /// Displacements and rotations of a mode, 6 numbers a node; the root, which is clamped, has none.
+    #[must_use]
+    pub fn shape(&self, mode: usize) -> &[f64] {
+        let height = DOF * self.n_nodes;
+        &self.shapes[mode * height..(mode + 1) * height]
+    }
+
+    /// Displacement of a node in a mode: node 0 is the root, which does not move.
+    #[must_use]
+    pub fn displacement(&self, mode: usize, node: usize) -> Vector3<f64> {
+        node.checked_sub(1).map_or_else(Vector3::zeros, |node| {
+            Vector3::from_column_slice(&self.shape(mode)[DOF * node..DOF * node + 3])
+        })
+    }
+}
+
+/// The smallest eigenvalues of K x = lambda M x and their vectors, all at once.
+fn all(factor: &Factor, mass: &TreeMatrix, n_modes: usize) -> (Vec<f64>, Vec<f64>) {
+    let height = DOF * mass.len();
+    // M^-1 is not sparse, but M = L L^T has the same eigenvalues in L^T K^-1 L.
+    let column = |of: &dyn Fn(&mut [f64])| {
+        let mut whole = DMatrix::zeros(height, height);
+        for k in 0..height {
+            let mut unit = vec![0.0; height];
+            unit[k] = 1.0;
+            of(&mut unit);
+            whole.column_mut(k).copy_from_slice(&unit);
+        }
+        whole
+    };
+    let flexible = column(&|x| factor.solve(x));
+    let heavy = column(&|x| {
+        let mut product = vec![0.0; x.len()];
+        mass.times(x, &mut product);
+        x.copy_from_slice(&product);
+    });
+    let Some(lower) = heavy.cholesky().map(|cholesky| cholesky.l()) else { return (Vec::new(), Vec::new()) };
+    let both = lower.tr_mul(&flexible) * &lower;
+    let eigen = SymmetricEigen::new((&both + both.transpose()) * 0.5);
+    let order = largest(&eigen, n_modes);
+    let lambdas = order.iter().map(|&k| eigen.eigenvalues[k].recip()).collect();
+    // x = L^-T y.
+    let mut vectors = eigen.eigenvectors.select_columns(&order);
+    lower.tr_solve_lower_triangular_mut(&mut vectors);
+    (lambdas, vectors.as_slice().to_vec())
+}
+
+/// The smallest eigenvalues of K x = lambda M x and their vectors, with the proof that none was missed.
+///
+/// They are sought about a shift that most of them lie below: there the wanted ones are far apart for the iteration,
+/// and the factors of K - s M tell how many lie below.
+fn few(
+    flexibility: &Flexibility,
+    factor: &Factor,
+    mass: &TreeMatrix,
+    n_modes: usize,
+    seed: u64,
+) -> Result<(Vec<f64>, Vec<f64>), ModesError> {
+    let (shift, shifted) = shift(flexibility, factor, mass, n_modes, seed)?;
+    let n_below = shifted.n_negative();
+    let mut lanczos = Lanczos::new(&shifted, shift, mass, seed);
+    let width_max = (12 * (n_modes + BEYOND) + 100).min(DOF * mass.len());
+    let mut found = 0;
+    while lanczos.width() < width_max {
+        lanczos.grow();
+        if lanczos.width() < n_modes + found.max(n_modes / 2) {
+            continue;
+        }
+        let ritz = lanczos.ritz(n_below);
+        found = ritz.lambdas.len();
+        let gap = (n_modes..found).find(|&k| ritz.lambdas[k] > ritz.lambdas[k - 1] * (1.0 + GAP));
+        let Some(below) = gap else { continue };
+        let between = f64::midpoint(ritz.lambdas[below - 1], ritz.lambdas[below]);
+        let counted = Factor::new(flexibility, mass, between)?.n_negative();
+        if counted == below {
+            return Ok((ritz.lambdas[..n_modes].to_vec(), lanczos.vectors(&ritz, n_modes)));
+        }
+    }
+    Err(ModesError::Uncertain { wanted: n_modes, found })
+}
+
+/// A shift, and the factors of K - s M there, that half of the wanted eigenvalues lie below at least, and no others.
+fn shift(
+    flexibility: &Flexibility,
+    factor: &Factor,
+    mass: &TreeMatrix,
+    n_modes: usize,
+    seed: u64,
+) -> Result<(f64, Factor), ModesError> {
+    let mut lanczos = Lanczos::new(factor, 0.0, mass, seed);
+    lanczos.grow();
+    let (mut low, mut high) = (lanczos.smallest(), f64::INFINITY);
+    let mut shift = 2.0 * low;
+    loop {
+        let shifted = Factor::new(flexibility, mass, shift)?;
+        let n_below = shifted.n_negative();
+        if n_below > n_modes {
+            high = shift;
+        } else if n_below < n_modes / 2 {
+            low = shift;
+        } else {
+            return Ok((shift, shifted));
+        }
+        // Eigenvalues that many share leave nothing in between: any shift serves.
+        if high < low * (1.0 + GAP) {
+            return Ok((shift, shifted));
+        }
+        shift = if high.is_finite() { (low * high).sqrt() } else { 2.0 * low };
+    }
+}
+
+/// Places of the largest eigenvalues, in order.
+fn largest(eigen: &SymmetricEigen<f64, Dyn>, n: usize) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
+    order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
+    order.truncate(n);
+    order
+}

@@ -1,0 +1,160 @@
+//! Vibrations that are known in closed form, and those of another program.
+
+use super::{Modes, ModesError};
+use crate::beams::{Beams, Options};
+use crate::material::Material;
+use honami_model::plant::{Node, Plant, RadiusRule};
+use nalgebra::{Rotation3, Vector3};
+use std::f64::consts::{PI, TAU};
+
+const LENGTH: f64 = 1.0;
+const RADIUS: f64 = 0.02;
+const MATERIAL: Material = Material { young: 1e10, poisson: 0.3, density: 1e3 };
+
+/// Solutions of cos x cosh x = -1.
+const BENDING: [f64; 4] =
+    [1.875_104_068_711_961, 4.694_091_132_974_175, 7.854_757_438_237_613, 10.995_540_734_875_467];
+
+/// A straight rod of so many segments.
+fn rod(n: u32, direction: Vector3<f64>) -> Plant {
+    let node = |k: u32| Node {
+        parent: k.checked_sub(1),
+        position: (direction * LENGTH * f64::from(k) / f64::from(n)).into(),
+        radius: RADIUS,
+    };
+    Plant::new((0..=n).map(node).collect()).unwrap()
+}
+
+fn options(rule: RadiusRule) -> Options {
+    Options { rule, material: MATERIAL, longest: None }
+}
+
+fn modes_of(plant: &Plant, n: usize) -> Modes {
+    Modes::new(&Beams::new(plant, &options(RadiusRule::Mean)).unwrap(), n, 1).unwrap()
+}
+
+/// Frequency of a clamped rod that bends, hertz: (beta L)^2 / (2 pi L^2) sqrt(E I / (rho A)), where I / A = r^2 / 4.
+fn bending_hz(beta: f64) -> f64 {
+    beta.powi(2) / (TAU * LENGTH.powi(2))
+        * (MATERIAL.young * RADIUS.powi(2) / (4.0 * MATERIAL.density)).sqrt()
+}
+
+fn assert_near(got: f64, wanted: f64, tolerance: f64, what: &str) {
+    assert!(
+        (got / wanted - 1.0).abs() < tolerance,
+        "{what}: wanted {wanted}, got {got}, off by {:e}",
+        got / wanted - 1.0
+    );
+}
+
+#[test]
+fn a_clamped_rod_bends_twists_and_stretches_at_its_frequencies() {
+    let modes = modes_of(&rod(32, Vector3::z()), 16);
+    for (k, beta) in BENDING.iter().enumerate() {
+        // The two planes have the same frequency.
+        for mode in [2 * k, 2 * k + 1] {
+            let mode = if k == 3 { mode + 1 } else { mode };
+            assert_near(modes.hz(mode), bending_hz(*beta), 2e-5, "bending");
+        }
+    }
+    assert_near(bending_hz(BENDING[0]), 17.695_83, 1e-6, "the rod of the oracle");
+    let twist = (MATERIAL.shear() / MATERIAL.density).sqrt() / (4.0 * LENGTH);
+    assert_near(twist, 490.290_34, 1e-8, "the rod of the oracle");
+    assert_near(modes.hz(6), twist * 1.000_100_4, 1e-7, "twisting");
+}
+
+#[test]
+fn the_error_falls_with_the_fourth_power_of_the_length_of_segments() {
+    let cases =
+        [(1, 1.004_754_3), (2, 1.000_483_44), (4, 1.000_032_71), (8, 1.000_002_08), (16, 1.000_000_13)];
+    for (n, ratio) in cases {
+        let modes = modes_of(&rod(n, Vector3::z()), 2);
+        assert_near(modes.hz(0) / bending_hz(BENDING[0]), ratio, 5e-8, &format!("{n} segments"));
+    }
+}
+
+#[test]
+fn frequencies_do_not_depend_on_where_the_rod_points() {
+    let upright = modes_of(&rod(8, Vector3::z()), 6);
+    for direction in [Vector3::x(), -Vector3::z(), Vector3::new(0.3, -0.5, 0.8).normalize()] {
+        let leaning = modes_of(&rod(8, direction), 6);
+        for mode in 0..6 {
+            assert_near(leaning.omegas[mode], upright.omegas[mode], 1e-9, "leaning");
+        }
+        assert_near(leaning.omegas[0], leaning.omegas[1], 1e-9, "the two planes");
+    }
+}
+
+#[test]
+fn a_mass_at_the_tip_slows_it_as_it_should() {
+    let plant = rod(32, Vector3::z());
+    let mut beams = Beams::new(&plant, &options(RadiusRule::Mean)).unwrap();
+    let mass = MATERIAL.density * PI * RADIUS.powi(2) * LENGTH;
+    beams.load([(32, mass)]);
+    let modes = Modes::new(&beams, 2, 1).unwrap();
+    assert_near(modes.hz(0), bending_hz(1.247_917_409_4), 1e-8, "tip mass = mass of the rod");
+}
+
+/// Kirchhoff's cone: omega L^2 / sqrt(E I0 / rho A0) = 8.719; of so many cylinders less.
+#[test]
+fn a_cone_of_cylinders_tends_to_kirchhoffs() {
+    for (n, wanted) in [(8, 8.246), (16, 8.623), (32, 8.696), (64, 8.713)] {
+        let node = |k: u32| Node {
+            parent: k.checked_sub(1),
+            position: [0.0, 0.0, LENGTH * f64::from(k) / f64::from(n)],
+            // The point has no radius; the rule of the tip takes that of the middle.
+            radius: RADIUS * (1.0 - (f64::from(k) - 0.5).max(0.0) / f64::from(n)),
+        };
+        let plant = Plant::new((0..=n).map(node).collect()).unwrap();
+        let modes = Modes::new(&Beams::new(&plant, &options(RadiusRule::Tip)).unwrap(), 1, 1).unwrap();
+        let scale = (MATERIAL.young * RADIUS.powi(2) / 4.0 / MATERIAL.density).sqrt() / LENGTH.powi(2);
+        assert_near(modes.omegas[0] / scale, wanted, 1e-4, &format!("{n} cylinders"));
+    }
+}
+
+/// Four arms on a trunk: where they swing against one another the trunk is at rest, and each is a clamped rod.
+#[test]
+fn arms_that_swing_against_one_another_leave_the_trunk_at_rest() {
+    let n = 8;
+    let mut nodes: Vec<Node> = rod(n, Vector3::z()).nodes().to_vec();
+    for arm in 0..4 {
+        let direction =
+            Rotation3::from_axis_angle(&Vector3::z_axis(), f64::from(arm) * PI / 2.0) * Vector3::x();
+        let mut parent = n;
+        for k in 1..=n {
+            let position = Vector3::z() * LENGTH + direction * LENGTH * f64::from(k) / f64::from(n);
+            nodes.push(Node { parent: Some(parent), position: position.into(), radius: RADIUS });
+            parent = nodes.len() as u32 - 1;
+        }
+    }
+    let modes = modes_of(&Plant::new(nodes).unwrap(), 12);
+    let clamped = bending_hz(BENDING[0]);
+    let nearest =
+        (0..12).min_by(|a, b| (modes.hz(*a) - clamped).abs().total_cmp(&(modes.hz(*b) - clamped).abs()));
+    assert_near(modes.hz(nearest.unwrap()), clamped, 3e-6, "an arm");
+}
+
+#[test]
+fn modes_are_of_mass_one_and_solve_their_equation() {
+    let plant = honami_synth::tree(300, 7).unwrap();
+    let beams = Beams::new(&plant, &options(RadiusRule::Mean)).unwrap();
+    let (modes, mass) = (Modes::new(&beams, 25, 1).unwrap(), beams.mass());
+    let mut product = vec![0.0; modes.shape(0).len()];
+    for mode in 0..25 {
+        mass.times(modes.shape(mode), &mut product);
+        for other in 0..25 {
+            let wanted = f64::from(u8::from(mode == other));
+            assert!((crate::simd::dot(&product, modes.shape(other)) - wanted).abs() < 1e-10);
+        }
+        assert!(modes.residuals[mode] < 1e-9, "{:e}", modes.residuals[mode]);
+    }
+}
+
+#[test]
+fn more_modes_than_there_are_is_an_error() {
+    let beams = Beams::new(&rod(2, Vector3::z()), &Options::default()).unwrap();
+    for wanted in [0, 13] {
+        let error = Modes::new(&beams, wanted, 1).unwrap_err();
+        assert_eq!(error, ModesError::TooMany { wanted, there: 12 });
+    }
+}
