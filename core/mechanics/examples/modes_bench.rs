@@ -5,7 +5,10 @@ use honami_mechanics::{Beams, Modes, Options};
 use std::time::Instant;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    println!("{:>8} {:>9} {:>9} {:>10} {:>9}  f1..f25 Hz", "nodes", "assemble", "modes", "of 7 runs", "residual");
+    println!(
+        "{:>8} {:>9} {:>9} {:>10} {:>9}  f1..f25 Hz",
+        "nodes", "assemble", "modes", "of 7 runs", "residual"
+    );
     let sizes: Vec<usize> = std::env::args().skip(1).map(|arg| arg.parse()).collect::<Result<_, _>>()?;
     for n in if sizes.is_empty() { vec![1000, 3437, 10_000, 30_000, 100_000] } else { sizes } {
         let plant = honami_synth::tree(n, 1)?;

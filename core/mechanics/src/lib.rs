@@ -9,12 +9,16 @@ mod factor;
 mod lanczos;
 mod material;
 mod modes;
+mod oscillator;
 mod simd;
 mod tree_matrix;
+mod wind_basis;
 
 pub use beams::{Beams, Options};
 pub use element::{Section, frame, shape};
 pub use factor::Factor;
 pub use material::Material;
 pub use modes::{Modes, ModesError};
+pub use oscillator::{Damping, Oscillator, State, symplectic_limit};
 pub use tree_matrix::TreeMatrix;
+pub use wind_basis::{AIR, Drag, WindBasis};

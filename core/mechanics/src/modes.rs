@@ -117,11 +117,21 @@ impl Modes {
         &self.shapes[mode * height..(mode + 1) * height]
     }
 
-    /// Displacement of a node in a mode: node 0 is the root, which does not move.
+    /// Displacement of a node of the beams in a mode: node 0 is the root, which does not move.
     #[must_use]
     pub fn displacement(&self, mode: usize, node: usize) -> Vector3<f64> {
+        self.part(mode, node, 0)
+    }
+
+    /// Rotation of a node of the beams in a mode, a vector about which it turns.
+    #[must_use]
+    pub fn rotation(&self, mode: usize, node: usize) -> Vector3<f64> {
+        self.part(mode, node, 3)
+    }
+
+    fn part(&self, mode: usize, node: usize, first: usize) -> Vector3<f64> {
         node.checked_sub(1).map_or_else(Vector3::zeros, |node| {
-            Vector3::from_column_slice(&self.shape(mode)[DOF * node..DOF * node + 3])
+            Vector3::from_column_slice(&self.shape(mode)[DOF * node + first..][..3])
         })
     }
 }

@@ -23,20 +23,11 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     sums[0][0]
 }
 
-/// Inner products of every column of one with every column of the other.
-pub(crate) fn gram(height: usize, a: &[f64], b: &[f64]) -> DMatrix<f64> {
-    let (n_a, n_b) = (a.len() / height, b.len() / height);
-    let mut sums = vec![[0.0; WIDE]; n_a * n_b.div_ceil(WIDE)];
-    Arch::new().dispatch(Products { height, basis: a, wide: b, sums: &mut sums });
-    DMatrix::from_fn(n_a, n_b, |row, column| sums[column / WIDE * n_a + row][column % WIDE])
-}
-
 struct Products<'a> {
     height: usize,
     basis: &'a [f64],
-    /// Any number of columns, taken two at a time.
+    /// Two columns, or one.
     wide: &'a [f64],
-    /// Of each pair with each column of the basis.
     sums: &'a mut [[f64; WIDE]],
 }
 
@@ -45,23 +36,20 @@ impl WithSimd for Products<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let n_basis = self.basis.len() / self.height;
+        // Where there is no second column the first stands in for it, and its sum is not read.
+        let second = self.wide.len() - self.height;
         for from in (0..self.height).step_by(ROWS) {
             let n = self.height.min(from + ROWS) - from;
-            for (pair, sums) in self.wide.chunks(WIDE * self.height).zip(self.sums.chunks_mut(n_basis)) {
-                // Where there is no second column the first stands in for it, and its sum is not read.
-                let second = pair.len() - self.height;
-                let (a, a_rest) = S::as_simd_f64s(&pair[from..from + n]);
-                let (b, b_rest) = S::as_simd_f64s(&pair[second + from..second + from + n]);
-                for (k, sums) in sums.iter_mut().enumerate() {
-                    let (v, v_rest) = S::as_simd_f64s(&self.basis[k * self.height + from..][..n]);
-                    let [more_a, more_b] = two(simd, v, a, b);
-                    sums[0] += more_a;
-                    sums[1] += more_b;
-                    for ((v, a), b) in v_rest.iter().zip(a_rest).zip(b_rest) {
-                        sums[0] += v * a;
-                        sums[1] += v * b;
-                    }
+            let (a, a_rest) = S::as_simd_f64s(&self.wide[from..from + n]);
+            let (b, b_rest) = S::as_simd_f64s(&self.wide[second + from..second + from + n]);
+            for (k, sums) in self.sums.iter_mut().enumerate() {
+                let (v, v_rest) = S::as_simd_f64s(&self.basis[k * self.height + from..][..n]);
+                let [more_a, more_b] = two(simd, v, a, b);
+                sums[0] += more_a;
+                sums[1] += more_b;
+                for ((v, a), b) in v_rest.iter().zip(a_rest).zip(b_rest) {
+                    sums[0] += v * a;
+                    sums[1] += v * b;
                 }
             }
         }
@@ -85,7 +73,10 @@ fn two<S: Simd>(simd: S, v: &[S::f64s], a: &[S::f64s], b: &[S::f64s]) -> [f64; 2
         lanes[0] = simd.mul_add_f64s(*v, *a, lanes[0]);
         lanes[1] = simd.mul_add_f64s(*v, *b, lanes[1]);
     }
-    [0, 1].map(#[inline(always)] |k| simd.reduce_sum_f64s(simd.add_f64s(lanes[k], lanes[k + 2])))
+    [0, 1].map(
+        #[inline(always)]
+        |k| simd.reduce_sum_f64s(simd.add_f64s(lanes[k], lanes[k + 2])),
+    )
 }
 
 /// Columns that are sums of those of `basis`: `basis * shares`, with no shares of columns beyond the rows of `shares`.
@@ -145,7 +136,9 @@ impl WithSimd for Accumulate<'_> {
                         let sum = simd.mul_add_f64s(b, s1, simd.mul_add_f64s(a, s0, *w));
                         *w = simd.mul_add_f64s(d, s3, simd.mul_add_f64s(c, s2, sum));
                     }
-                    for ((((w, a), b), c), d) in w_rest.iter_mut().zip(a_rest).zip(b_rest).zip(c_rest).zip(d_rest) {
+                    for ((((w, a), b), c), d) in
+                        w_rest.iter_mut().zip(a_rest).zip(b_rest).zip(c_rest).zip(d_rest)
+                    {
                         *w += a * share[0] + b * share[1] + c * share[2] + d * share[3];
                     }
                 }

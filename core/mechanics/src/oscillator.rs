@@ -1,0 +1,137 @@
+//! A mode in time: q'' + gamma q' + omega^2 q = f / m (6.17).
+
+#[cfg(test)]
+mod tests;
+
+/// Rayleigh's damping (6.11) and what scales the mass (6.36): chosen while it runs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Damping {
+    /// Of the mass, per second.
+    pub alpha: f64,
+    /// Of the stiffness, seconds.
+    pub beta: f64,
+    /// So many times as heavy as its wood.
+    pub mass: f64,
+}
+
+impl Default for Damping {
+    /// 5 % of critical at 1 Hz, and no added mass.
+    fn default() -> Self {
+        Self { alpha: 0.3, beta: 0.008, mass: 1.0 }
+    }
+}
+
+/// A mode as an oscillator of mass `mass` kg m^2 per unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Oscillator {
+    /// Angular frequency, radians per second.
+    pub omega: f64,
+    /// Damping, per second; the ratio to critical is gamma / (2 omega).
+    pub gamma: f64,
+    /// Modal mass.
+    pub mass: f64,
+}
+
+/// Where a mode is and how fast it moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct State {
+    /// Amplitude.
+    pub q: f64,
+    /// Its change, per second.
+    pub speed: f64,
+}
+
+impl Oscillator {
+    /// A mode of mass 1 and this frequency with the damping of its plant: omega' = omega / sqrt(m) (6.37) and
+    /// gamma' = alpha + beta omega'^2 (6.18; errata E42: 6.38 has m alpha + beta omega').
+    #[must_use]
+    pub fn new(omega: f64, damping: &Damping) -> Self {
+        let omega = omega / damping.mass.sqrt();
+        Self { omega, gamma: damping.alpha + damping.beta * omega.powi(2), mass: damping.mass }
+    }
+
+    /// The matrix of a step of `dt` seconds under a force that stays: exact, and stable whatever the step.
+    #[must_use]
+    pub fn step(&self, dt: f64) -> Step {
+        let (half, square) = (self.gamma / 2.0, self.omega.powi(2));
+        let inside = square - half.powi(2);
+        // e^(-half t) times cos and sin / root, or cosh and sinh / root where it is damped beyond critical.
+        let root = inside.abs().sqrt();
+        let (c, s) = if root * dt < 1e-6 {
+            let decay = (-half * dt).exp();
+            (decay * (1.0 - inside * dt.powi(2) / 2.0), decay * dt * (1.0 - inside * dt.powi(2) / 6.0))
+        } else if inside > 0.0 {
+            let decay = (-half * dt).exp();
+            (decay * (root * dt).cos(), decay * (root * dt).sin() / root)
+        } else {
+            let (slow, fast) = (((root - half) * dt).exp(), ((-root - half) * dt).exp());
+            (f64::midpoint(slow, fast), (slow - fast) / (2.0 * root))
+        };
+        let stays = c + half * s;
+        Step {
+            q_of_q: stays,
+            q_of_speed: s,
+            q_of_force: (1.0 - stays) / (square * self.mass),
+            speed_of_q: -square * s,
+            speed_of_speed: c - half * s,
+            speed_of_force: s / self.mass,
+        }
+    }
+
+    /// A step of the thesis (6.19 - 6.21), which is the symplectic Euler's (errata E41), under a force that stays.
+    #[must_use]
+    pub fn symplectic(&self, state: State, force: f64, dt: f64) -> State {
+        let gain = force / self.mass - self.gamma * state.speed - self.omega.powi(2) * state.q;
+        let speed = state.speed + dt * gain;
+        State { q: state.q + dt * speed, speed }
+    }
+
+    /// A step of Newmark's method with constant mean acceleration (beta 1/4, gamma 1/2), under a force that changes
+    /// linearly from `before` to `after`.
+    #[must_use]
+    pub fn newmark(&self, state: State, before: f64, after: f64, dt: f64) -> State {
+        let (square, gamma) = (self.omega.powi(2), self.gamma);
+        let gain = before / self.mass - gamma * state.speed - square * state.q;
+        let q = state.q + dt * state.speed + dt.powi(2) / 4.0 * gain;
+        let speed = state.speed + dt / 2.0 * gain;
+        let next = (after / self.mass - gamma * speed - square * q)
+            / (1.0 + dt / 2.0 * gamma + dt.powi(2) / 4.0 * square);
+        State { q: q + dt.powi(2) / 4.0 * next, speed: speed + dt / 2.0 * next }
+    }
+
+    /// Where it stays under a constant force.
+    #[must_use]
+    pub fn rest(&self, force: f64) -> f64 {
+        force / (self.mass * self.omega.powi(2))
+    }
+}
+
+/// What a step does: numbers that a state and a force are multiplied by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    q_of_q: f64,
+    q_of_speed: f64,
+    q_of_force: f64,
+    speed_of_q: f64,
+    speed_of_speed: f64,
+    speed_of_force: f64,
+}
+
+impl Step {
+    /// The state after the step.
+    #[must_use]
+    pub fn next(&self, State { q, speed }: State, force: f64) -> State {
+        State {
+            q: self.q_of_q * q + self.q_of_speed * speed + self.q_of_force * force,
+            speed: self.speed_of_q * q + self.speed_of_speed * speed + self.speed_of_force * force,
+        }
+    }
+}
+
+/// The longest step, seconds, for which symplectic Euler stays bounded: omega dt < 2 (sqrt(1 + zeta^2) - zeta)
+/// (errata E41: damping lowers the limit).
+#[must_use]
+pub fn symplectic_limit(oscillator: &Oscillator) -> f64 {
+    let zeta = oscillator.gamma / (2.0 * oscillator.omega);
+    2.0 * ((1.0 + zeta.powi(2)).sqrt() - zeta) / oscillator.omega
+}
