@@ -1,0 +1,45 @@
+//! Poses against the curves that they are made of.
+
+use super::Rig;
+use crate::{Beams, Bending, Form, Modes, Options};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+#[test]
+fn a_pose_is_the_sum_of_what_every_mode_does() {
+    for (n_nodes, n_modes, n_copies) in [(23, 3, 1), (60, 5, 7), (101, 4, 100)] {
+        let beams = Beams::new(&honami_synth::tree(n_nodes, 1).unwrap(), &Options::default()).unwrap();
+        let modes = Modes::new(&beams, n_modes, 1).unwrap();
+        let q_max: Vec<f64> = (0..n_modes).map(|k| 1.0 + k as f64).collect();
+        let mut chance = Pcg64::seed_from_u64(1);
+        let amplitudes: Vec<f32> = (0..n_copies * n_modes).map(|_| chance.random_range(-1.0..1.0)).collect();
+        for form in [Form::Linear, Form::Mode(2), Form::Mode(3)] {
+            let rig = Rig::new(&beams, &modes, &q_max, form);
+            let mut poses = vec![f32::NAN; n_copies * rig.n_columns()];
+            rig.pose(&amplitudes, 1, &mut poses);
+            let bendings: Vec<Bending> =
+                (0..n_modes).map(|mode| Bending::new(&beams, &modes, mode, q_max[mode], form)).collect();
+            for (copy, pose) in poses.chunks(rig.n_columns()).enumerate() {
+                let of_copy = &amplitudes[copy * n_modes..(copy + 1) * n_modes];
+                for (node, got) in pose.as_chunks::<3>().0.iter().enumerate() {
+                    let moves = bendings.iter().zip(of_copy);
+                    let wanted: nalgebra::Vector3<f64> =
+                        moves.map(|(b, q)| b.displacement(node, f64::from(*q))).sum();
+                    let size = wanted.norm().max(1e-3);
+                    for axis in 0..3 {
+                        assert!(
+                            (f64::from(got[axis]) - wanted[axis]).abs() < 1e-5 * size,
+                            "{form:?} {copy} {node}"
+                        );
+                    }
+                }
+            }
+            let mut again = vec![f32::NAN; poses.len()];
+            rig.pose(&amplitudes, 3, &mut again);
+            assert!(
+                poses.iter().zip(&again).all(|(a, b)| a.to_bits() == b.to_bits()),
+                "the same bits on 3 threads"
+            );
+        }
+    }
+}
