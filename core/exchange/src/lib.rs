@@ -23,6 +23,7 @@ pub mod flo;
 pub mod foreign;
 pub mod origin;
 mod parquet;
+pub mod plant;
 pub mod rows;
 pub mod spans;
 pub mod table;

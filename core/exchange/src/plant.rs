@@ -1,0 +1,42 @@
+//! Plants as others have measured them, in.
+
+pub mod mtg;
+
+use honami_model::plant::{Plant, PlantError};
+use std::path::PathBuf;
+
+/// A plant that was read, and what was done to make it one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measured {
+    /// Metres.
+    pub plant: Plant,
+    /// What was dropped or guessed, a sentence each; empty where all was as it should be.
+    pub notes: Vec<String>,
+}
+
+/// Why a file is no plant.
+#[derive(Debug, thiserror::Error)]
+pub enum PlantFileError {
+    /// It cannot be read.
+    #[error("{}: {source}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// A line of it is not what it must be.
+    #[error("line {line}: {what}")]
+    Line {
+        /// Counted from 1.
+        line: usize,
+        /// What was wanted, and what came.
+        what: String,
+    },
+    /// It lacks something that every such file has.
+    #[error("{0}")]
+    Lacks(String),
+    /// What is in it is no plant.
+    #[error(transparent)]
+    Plant(#[from] PlantError),
+}
