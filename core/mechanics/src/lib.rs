@@ -14,6 +14,7 @@ mod oscillator;
 mod rig;
 mod simd;
 mod tree_matrix;
+pub mod wind;
 mod wind_basis;
 
 pub use beams::{Beams, BeamsError, Options};

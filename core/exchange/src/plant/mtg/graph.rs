@@ -58,6 +58,8 @@ impl Graph {
         // The last part of every column.
         let mut open: Vec<Option<usize>> = Vec::new();
         for (number, line) in lines {
+            // What follows is a remark.
+            let line = line.split('#').next().unwrap_or_default();
             let cells: Vec<&str> = line.split('\t').map(str::trim).collect();
             let Some(axis) = cells.iter().take(columns.n_axes).position(|cell| !cell.is_empty()) else {
                 continue;

@@ -1,0 +1,165 @@
+//! Winds against what defines them.
+
+use super::{
+    Constant, Frozen, Kaimal, Mask, Noise, Power, Primitive, Series, Shape, Sine, Spectrum, Sum, Wind, series,
+};
+use nalgebra::Vector3;
+use realfft::RealFftPlanner;
+
+const PLACES: [[f64; 3]; 4] = [[3.0, 4.0, 2.0], [-7.5, 0.3, 0.0], [0.9, -12.0, 8.0], [40.0, 25.0, 1.0]];
+
+/// Derivatives by differences: divergence, and the upright part of the turning.
+fn change(wind: &dyn Wind, place: &Vector3<f64>) -> (f64, f64) {
+    let h = 1e-4;
+    let along = |axis: usize| {
+        let step = Vector3::from_fn(|k, _| if k == axis { h } else { 0.0 });
+        (wind.sample(&(place + step), 0.0) - wind.sample(&(place - step), 0.0)) / (2.0 * h)
+    };
+    let [x, y, z] = [along(0), along(1), along(2)];
+    (x.x + y.y + z.z, x.y - y.x)
+}
+
+#[test]
+fn flow_primitives_neither_spring_nor_turn_away_from_their_axis() {
+    for shape in [Shape::Source, Shape::Sink, Shape::Vortex] {
+        let flow = Primitive { shape, centre: [0.5, -0.5], strength: 30.0, core: 0.1 };
+        for place in PLACES.map(Vector3::from) {
+            let (divergence, turning) = change(&flow, &place);
+            assert!(
+                divergence.abs() < 1e-7 && turning.abs() < 1e-7,
+                "{shape:?} {place}: {divergence} {turning}"
+            );
+        }
+    }
+}
+
+/// What flows through a circle, and round it, is the strength whatever the radius.
+#[test]
+fn strength_is_what_flows_through_or_round_every_circle() {
+    for radius in [0.2, 1.0, 30.0] {
+        let through = |shape: Shape, round: bool| {
+            let flow = Primitive { shape, centre: [2.0, 1.0], strength: 12.0, core: 0.1 };
+            let n = 360;
+            let part = |k: i32| {
+                let (sin, cos) = (f64::from(k) / f64::from(n) * std::f64::consts::TAU).sin_cos();
+                let v = flow.sample(&Vector3::new(2.0 + radius * cos, 1.0 + radius * sin, 0.0), 0.0);
+                let speed = if round { v.y * cos - v.x * sin } else { v.x * cos + v.y * sin };
+                speed * std::f64::consts::TAU * radius / f64::from(n)
+            };
+            (0..n).map(part).sum::<f64>()
+        };
+        let cases = [(Shape::Source, [12.0, 0.0]), (Shape::Sink, [-12.0, 0.0]), (Shape::Vortex, [0.0, 12.0])];
+        for (shape, [out, round]) in cases {
+            assert!(
+                (through(shape, false) - out).abs() < 1e-9 && (through(shape, true) - round).abs() < 1e-9
+            );
+        }
+    }
+}
+
+#[test]
+fn the_axis_itself_is_calm() {
+    let flow = Primitive { shape: Shape::Vortex, centre: [0.0, 0.0], strength: 5.0, core: 0.5 };
+    assert_eq!(flow.sample(&Vector3::new(0.0, 0.0, 3.0), 1.0), Vector3::zeros());
+}
+
+/// w(x + mean d, t + d) = w(x, t), and at t* it is what was given (errata E25).
+#[test]
+fn frozen_flow_is_the_same_air_further_on() {
+    let turbulence = Noise { speed: 2.0, cell: 3.0, second: 1.5, seed: 7 };
+    let wind = Frozen { mean: Vector3::new(4.0, -1.0, 0.0), turbulence, time: 11.0 };
+    for place in PLACES.map(Vector3::from) {
+        let given = wind.mean + turbulence.sample(&place, 11.0);
+        assert!((wind.sample(&place, 11.0) - given).norm() < 1e-12);
+        for d in [0.1, 2.0, -5.0] {
+            let later = wind.sample(&(place + wind.mean * d), 13.0 + d);
+            assert!((later - wind.sample(&place, 13.0)).norm() < 1e-9);
+        }
+    }
+}
+
+#[test]
+fn noise_is_smooth_bounded_and_the_same_for_the_same_seed() {
+    let noise = Noise { speed: 3.0, cell: 2.0, second: 1.0, seed: 1 };
+    let other = Noise { seed: 2, ..noise };
+    let (mut sum, mut squares, n) = (0.0, 0.0, 4000);
+    // At whole numbers it is 0.
+    for k in 1..=n {
+        let at = Vector3::new(f64::from(k) * 0.317, f64::from(k) * -0.071, f64::from(k) * 0.013);
+        let v = noise.sample(&at, f64::from(k) * 0.029);
+        assert_eq!(v, noise.sample(&at, f64::from(k) * 0.029));
+        assert_ne!(v, other.sample(&at, f64::from(k) * 0.029));
+        assert!(v.amax() <= 3.0);
+        let near = noise.sample(&(at + Vector3::new(1e-6, 0.0, 0.0)), f64::from(k) * 0.029);
+        assert!((v - near).norm() < 1e-4);
+        sum += v.x;
+        squares += v.x * v.x;
+    }
+    let (mean, deviation) = (sum / f64::from(n), (squares / f64::from(n)).sqrt());
+    assert!(mean.abs() < 0.1 && (0.3..2.0).contains(&deviation), "{mean} {deviation}");
+}
+
+/// The variance is the integral of the density, and the slope in double logarithms is -beta (errata E24).
+#[test]
+fn a_draw_has_the_spectrum_that_it_was_drawn_from() {
+    let (n, step) = (1 << 14, 0.05);
+    let df = 1.0 / (n as f64 * step);
+    let kaimal = Kaimal::along(1.3, 5.0, 30.0);
+    let power = Power { at_1_hz: 0.2, beta: 5.0 / 3.0 };
+    let density = |samples: &[f64]| {
+        let forward = RealFftPlanner::<f64>::new().plan_fft_forward(n);
+        let (mut input, mut output) = (samples.to_vec(), forward.make_output_vec());
+        forward.process(&mut input, &mut output).unwrap();
+        output.iter().map(|v| 2.0 * v.norm_sqr() / (n as f64).powi(2) / df).collect::<Vec<f64>>()
+    };
+    let check = |samples: Vec<f64>, spectrum: &dyn Spectrum| {
+        assert!(samples.iter().sum::<f64>().abs() < 1e-6);
+        let got = density(&samples);
+        for k in [1, 10, 100, 1000, 8000] {
+            let wanted = spectrum.density(k as f64 * df);
+            assert!((got[k] / wanted - 1.0).abs() < 1e-9, "{k}: {} {wanted}", got[k]);
+        }
+        let variance = samples.iter().map(|v| v * v).sum::<f64>() / n as f64;
+        let wanted: f64 = (1..n / 2).map(|k| spectrum.density(k as f64 * df) * df).sum();
+        assert!((variance / wanted - 1.0).abs() < 1e-3, "{variance} {wanted}");
+        (got[4000].ln() - got[2000].ln()) / 2.0_f64.ln()
+    };
+    let slope = check(series(&power, n, step, 3), &power);
+    assert!((slope + 5.0 / 3.0).abs() < 1e-6, "{slope}");
+    let slope = check(series(&kaimal, n, step, 3), &kaimal);
+    assert!((slope + 5.0 / 3.0).abs() < 0.02, "{slope}");
+    // All of its variance: of a wind of 1.3 m/s deviation, but for what is slower or faster than the draw.
+    let variance: f64 = (0..200_000).map(|k| kaimal.density((f64::from(k) + 0.5) * 1e-3) * 1e-3).sum();
+    assert!((variance.sqrt() - 1.3).abs() < 0.02, "{variance}");
+}
+
+#[test]
+fn a_series_repeats_and_is_read_between_its_samples() {
+    let wind =
+        Series { step: 0.5, samples: [0.0, 2.0, 4.0, 8.0].map(|x| Vector3::new(x, 0.0, 0.0)).to_vec() };
+    for (time, wanted) in
+        [(0.0, 0.0), (0.25, 1.0), (1.5, 8.0), (1.75, 4.0), (2.0, 0.0), (-0.25, 4.0), (2.75, 3.0)]
+    {
+        assert!((wind.at(time).x - wanted).abs() < 1e-12, "{time}");
+    }
+    assert_eq!(Series { step: 1.0, samples: Vec::new() }.at(3.0), Vector3::zeros());
+}
+
+#[test]
+fn winds_add_up_and_a_mask_travels() {
+    let wave = Sine { amplitude: Vector3::x(), hz: 0.5, waves: Vector3::new(0.1, 0.0, 0.0), phase: 0.0 };
+    // A crest moves at f / k.
+    let crest = |t: f64| Vector3::new(5.0 * t - 2.5, 0.0, 0.0);
+    assert!((wave.sample(&crest(0.0), 0.0).x - 1.0).abs() < 1e-12);
+    assert!((wave.sample(&crest(3.3), 3.3).x - 1.0).abs() < 1e-12);
+    let squall = Mask {
+        wind: Constant(Vector3::new(0.0, 9.0, 0.0)),
+        centre: [0.0, 0.0],
+        velocity: [2.0, 0.0],
+        radius: 5.0,
+    };
+    assert!((squall.sample(&Vector3::new(8.0, 0.0, 1.0), 4.0).y - 9.0).abs() < 1e-12);
+    assert!((squall.sample(&Vector3::new(8.0, 5.0, 1.0), 4.0).y - 9.0 / std::f64::consts::E).abs() < 1e-12);
+    let sum = Sum(vec![Box::new(Constant(Vector3::z())), Box::new(wave)]);
+    assert!((sum.sample(&crest(0.0), 0.0) - Vector3::new(1.0, 0.0, 1.0)).norm() < 1e-12);
+}
