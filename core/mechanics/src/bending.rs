@@ -56,8 +56,8 @@ impl Bending {
             })
         };
         let (n_powers, groups) = match form {
-            Form::Mode(n_powers) => (n_powers, vec![0..n]),
-            _ => (2, (0..n).map(|node| node..node + 1).collect()),
+            Form::Mode(n_powers) => (n_powers, std::iter::once(0..n).collect()),
+            _ => (2, (0..n).map(|node| node..node + 1).collect::<Vec<_>>()),
         };
         let (mut b, mut powers) = (Vec::new(), vec![Vec::with_capacity(n); n_powers]);
         for nodes in groups {

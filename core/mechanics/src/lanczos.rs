@@ -97,6 +97,7 @@ impl<'a> Lanczos<'a> {
 
     /// Makes columns orthogonal to one another and of length 1 and adds them; what was given is they times what is
     /// returned. A column that is nothing new is another, by chance.
+    #[expect(clippy::needless_range_loop, reason = "k counts columns of three arrays")]
     fn append(&mut self, mut wide: Vec<f64>) -> Square {
         let height = self.height;
         let mut triangle = Square::default();

@@ -71,10 +71,10 @@ pub fn series(spectrum: &impl Spectrum, n: usize, step: f64, seed: u64) -> Vec<f
         *wave = Complex::from_polar((2.0 * spectrum.density(k as f64 * df) * df).sqrt() / 2.0, phase);
     }
     // The highest of an even number has no phase.
-    if n.is_multiple_of(2) {
-        if let Some(last) = waves.last_mut() {
-            *last = Complex::new(last.norm(), 0.0);
-        }
+    if n.is_multiple_of(2)
+        && let Some(last) = waves.last_mut()
+    {
+        *last = Complex::new(last.norm(), 0.0);
     }
     match inverse.process(&mut waves, &mut samples) {
         Ok(()) => samples,

@@ -85,6 +85,6 @@ fn still_air_damps_nothing() {
     let beams = rod(4);
     let modes = Modes::new(&beams, 2, 1).unwrap();
     let basis = WindBasis::new(&beams, &modes, &Drag::default());
-    assert_eq!(basis.damping(0, &Vector3::zeros()), 0.0);
-    assert_eq!(basis.force(0, &Vector3::zeros()), 0.0);
+    assert!(basis.damping(0, &Vector3::zeros()).abs() < f64::MIN_POSITIVE);
+    assert!(basis.force(0, &Vector3::zeros()).abs() < f64::MIN_POSITIVE);
 }

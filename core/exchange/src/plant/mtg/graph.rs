@@ -102,7 +102,7 @@ impl Graph {
             let scale =
                 *scales.get(class).ok_or_else(|| wrong(line, format!("class {class:?} is not declared")))?;
             // A part without a number is the only one.
-            let index: u32 = if index.is_empty() { 0 } else { index.parse().map_err(|_| unknown())? };
+            let index: u32 = if index.is_empty() { 0 } else { index.parse().map_err(|_none| unknown())? };
             let first = match relation {
                 "<<" => at.map_or(0, |at| self.vertices[at].index).saturating_add(1),
                 "/" | "<" | "+" => index,
@@ -206,7 +206,7 @@ fn scales<'a>(
         if scale.is_empty() {
             break;
         }
-        let scale = scale.parse().map_err(|_| wrong(number, format!("{scale:?} is no scale")))?;
+        let scale = scale.parse().map_err(|_none| wrong(number, format!("{scale:?} is no scale")))?;
         // `$`, the whole database, may be written or not.
         if class.chars().all(|c| c.is_ascii_alphabetic()) && !class.is_empty() {
             scales.insert(class.to_owned(), scale);

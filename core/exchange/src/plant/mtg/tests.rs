@@ -8,8 +8,10 @@ fn file(lines: &[&str]) -> String {
     format!("{HEAD}\n{}\n", lines.join("\n"))
 }
 
-/// Parents and heights in centimetres.
-fn tree(lines: &[&str], options: &Options) -> Result<(Vec<(Option<u32>, f64)>, Vec<String>), String> {
+/// Parent and height in centimetres of every node, and the notes.
+type Read = (Vec<(Option<u32>, f64)>, Vec<String>);
+
+fn tree(lines: &[&str], options: &Options) -> Result<Read, String> {
     let measured = parse(&file(lines), options).map_err(|error| error.to_string())?;
     let nodes = measured.plant.nodes().iter();
     Ok((nodes.map(|node| (node.parent, (node.position[2] * 100.0).round())).collect(), measured.notes))
