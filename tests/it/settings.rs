@@ -66,6 +66,18 @@ fn plugins_work_where_it_was_settled() {
 }
 
 #[test]
+fn a_misspelt_word_of_the_environment_is_said_once_and_isolates() {
+    let Some(bench) = bench("NONE") else { return };
+    let settings = "[plugins.hosting]\nbad = \"in-process\"";
+    for line in [TRACK, "plugin list --plugin bad.so", "doctor"] {
+        let ran = settled(&bench, settings, line, &[("HONAMI_HOSTING", "bogus")]);
+        let said = format!("{}{}", ran.stdout, ran.stderr);
+        assert_eq!(said.matches("is wanted, got \"bogus\": isolated").count(), 1, "{line}: {ran:?}");
+    }
+    assert_ne!(bench.log("p.honami", "run")[0]["provenance"]["sandbox"], "in process");
+}
+
+#[test]
 fn what_is_wrong_with_settings_of_plugins_is_said_by_commands_that_start_them() {
     let Some(bench) = bench("NONE") else { return };
     let settings = "[plugins]\nmemory = \"much\"\n[plugins.hosting]\nbad = \"here\"\nsnail = \"isolated\"";

@@ -34,6 +34,14 @@ impl Hosting {
             Self::Isolated => "isolated",
         }
     }
+
+    /// What `$HONAMI_HOSTING` says: where all plugins work, or a word that is none of ours.
+    #[must_use]
+    pub fn of_environment() -> Option<Result<Self, String>> {
+        let word = std::env::var_os("HONAMI_HOSTING")?;
+        let meant = [Self::InProcess, Self::Isolated].into_iter().find(|hosting| word == hosting.word());
+        Some(meant.ok_or_else(|| word.to_string_lossy().into_owned()))
+    }
 }
 
 /// Where a result came from: what to write beside it.
@@ -74,9 +82,7 @@ impl Host {
     #[must_use]
     pub fn new() -> Self {
         // What is misspelt is safe.
-        let hosting = std::env::var_os("HONAMI_HOSTING").map(|word| {
-            if word == Hosting::InProcess.word() { Hosting::InProcess } else { Hosting::Isolated }
-        });
+        let hosting = Hosting::of_environment().map(|said| said.unwrap_or(Hosting::Isolated));
         Self { hosting, ..Self::with_store(store::folder_of_user()) }
     }
 

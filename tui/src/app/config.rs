@@ -7,6 +7,8 @@ mod plugins;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use honami_workbench::plugins::Hosting;
+
 use super::keymap::KeyMap;
 use super::state::State;
 use super::view::theme::Theme;
@@ -30,6 +32,8 @@ pub struct Config {
     pub plugins: Plugins,
     /// What is wrong with what was settled, one line each.
     pub wrong: Vec<String>,
+    /// What is wrong with what the environment says.
+    misspelt: Option<String>,
     /// Whether theme and mouse were settled, so that no choice on screen outlasts the session.
     settled: (bool, bool),
 }
@@ -50,14 +54,16 @@ impl Config {
             _ => Ok(String::new()),
         };
         let chosen = read(choices_path()).unwrap_or_default();
-        match read(Self::path()) {
+        let mut config = match read(Self::path()) {
             Ok(text) => Self::of(&text, &chosen),
             Err(error) => {
                 let mut config = Self::of("", &chosen);
                 config.wrong.push(format!("it cannot be read: {error}"));
                 config
             }
-        }
+        };
+        config.misspelt = plugins::misspelt(Hosting::of_environment());
+        config
     }
 
     /// Where a user settles things.
@@ -103,7 +109,7 @@ impl Config {
             wrong.push(format!("there is no theme {named}; there are {}", known.join(", ")));
         }
         let mouse = table.get("mouse").or(chosen.get("mouse")).and_then(toml::Value::as_bool).unwrap_or(true);
-        Self { keys, themes, theme: theme.unwrap_or(0), mouse, plugins, wrong, settled }
+        Self { keys, themes, theme: theme.unwrap_or(0), mouse, plugins, wrong, misspelt: None, settled }
     }
 
     /// Takes the settings into a state.
@@ -117,12 +123,12 @@ impl Config {
     /// One line for the screen, where something is wrong.
     #[must_use]
     pub fn complaint(&self) -> Option<String> {
-        let first = self.wrong.first()?;
-        let more = match self.wrong.len() - 1 {
-            0 => String::new(),
-            n => format!(", and {n} more: `honami keys --check` says all"),
-        };
-        Some(format!("config.toml: {first}{more}"))
+        let settled = self.wrong.split_first().map(|(first, others)| match others.len() {
+            0 => format!("config.toml: {first}"),
+            n => format!("config.toml: {first}, and {n} more: `honami keys --check` says all"),
+        });
+        let lines: Vec<String> = self.misspelt.iter().cloned().chain(settled).collect();
+        (!lines.is_empty()).then(|| lines.join(" · "))
     }
 
     /// Keeps what was chosen on screen and is not settled. Lost without harm: nobody is told.

@@ -82,6 +82,12 @@ impl Plugins {
     }
 }
 
+/// What is wrong with what the environment says of where plugins work.
+pub(super) fn misspelt(said: Option<Result<Hosting, String>>) -> Option<String> {
+    let word = said?.err()?;
+    Some(format!("HONAMI_HOSTING: \"isolated\" or \"in-process\" is wanted, got {word:?}: isolated"))
+}
+
 /// Where plugins work, by id or short name. What is misspelt is safe.
 fn hosting(settled: Option<&Value>, wrong: &mut Vec<String>) -> BTreeMap<String, Hosting> {
     let Some(settled) = settled else { return BTreeMap::new() };

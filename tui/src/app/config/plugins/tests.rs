@@ -81,3 +81,15 @@ fn what_is_wrong_of_plugins_is_named_and_is_as_usual() {
         assert!(plugins.hosting.values().all(|place| *place == Hosting::Isolated), "{text}");
     }
 }
+
+#[test]
+fn a_misspelt_word_of_the_environment_is_named() {
+    let wanted = "HONAMI_HOSTING: \"isolated\" or \"in-process\" is wanted, got \"bogus\": isolated";
+    for (said, line) in [
+        (None, None),
+        (Some(Ok(Hosting::InProcess)), None),
+        (Some(Err("bogus".to_owned())), Some(wanted.to_owned())),
+    ] {
+        assert_eq!(misspelt(said), line);
+    }
+}
