@@ -73,6 +73,12 @@ fn want(condition: bool, otherwise: impl FnOnce() -> String) -> Result<(), Usage
 /// Runs the command line of this process.
 #[must_use]
 pub fn main() -> ExitCode {
+    let status = answer();
+    honami_workbench::plugins::ended_well();
+    status
+}
+
+fn answer() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => unknown_command(&error).unwrap_or(error).exit(),
@@ -235,7 +241,7 @@ fn options_of(config: &Config, common: &Common) -> SessionOptions {
 
 /// For a command that starts plugins: what is wrong with what was settled is said, as the terminal UI says it.
 fn told_options(common: &Common) -> SessionOptions {
-    let config = Config::load();
+    let config = Config::load().beginning();
     config.complaint().iter().for_each(|complaint| report::say(complaint));
     options_of(&config, common)
 }

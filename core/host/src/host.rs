@@ -68,6 +68,7 @@ pub struct Host {
     settled: BTreeMap<String, Hosting>,
     limits: Limits,
     has_quarantine: bool,
+    leaves_trails: bool,
 }
 
 impl Default for Host {
@@ -90,7 +91,7 @@ impl Host {
     #[must_use]
     pub fn with_store(store: PathBuf) -> Self {
         let (settled, limits) = (BTreeMap::new(), Limits::default());
-        Self { store, hosting: None, settled, limits, has_quarantine: true }
+        Self { store, hosting: None, settled, limits, has_quarantine: true, leaves_trails: false }
     }
 
     /// Lets all plugins work there; else shipped ones work in this process and others in their own.
@@ -118,6 +119,20 @@ impl Host {
     #[must_use]
     pub fn without_quarantine(self) -> Self {
         Self { has_quarantine: false, ..self }
+    }
+
+    /// What did not come with honami leaves a trail while it works in this process, until [`ended_well`](crate::ended_well);
+    /// and where a process has died with it, it works in one of its own, until its file changes or [`retry`](Self::retry).
+    #[must_use]
+    pub fn leaving_trails(self) -> Self {
+        Self { leaves_trails: true, ..self }
+    }
+
+    /// Looks for trails of processes that have died; the short names of the plugins that were in them. Each is told of
+    /// once.
+    #[must_use]
+    pub fn follow_trails(&self) -> Vec<String> {
+        Quarantine::beside(&self.store).follow_trails()
     }
 
     /// Starts a tracker with these parameter values; those that are missing take their defaults.
@@ -191,13 +206,14 @@ impl Host {
         self.store.with_file_name(name)
     }
 
-    /// Lets a plugin start again that has failed too often; whether it was held.
+    /// Lets a plugin start again that has failed too often, and in this process that has died with it; whether it was
+    /// held or kept out.
     ///
     /// # Errors
     /// When its file cannot be read, or what is known of it cannot be removed.
     pub fn retry(&self, info: &PluginInfo) -> Result<bool, HostError> {
         let (quarantine, sha256) = (Quarantine::beside(&self.store), info.sha256()?);
-        let was_held = quarantine.why(&sha256).is_some();
+        let was_held = quarantine.why(&sha256).is_some() || quarantine.is_kept_out(&sha256);
         let file_error = |error: std::io::Error| HostError::File {
             path: quarantine.0.clone(),
             why: format!("cannot be changed: {error}"),
@@ -260,6 +276,7 @@ impl Host {
     ) -> Result<(Box<dyn Instance>, String, String), HostError> {
         match self.hosting_of(info) {
             Hosting::InProcess => {
+                self.leave_trail(info)?;
                 let library = in_process::load(info, &self.store)?;
                 let sha256 = library.sha256.clone();
                 Ok((in_process::create(info, library, cx)?, sha256, "in process".to_owned()))
@@ -285,8 +302,30 @@ impl Host {
         }
     }
 
-    /// Where a plugin is to work.
+    /// Before the first instruction of a library runs, whose constructors may be what is wrong with it.
+    fn leave_trail(&self, info: &PluginInfo) -> Result<(), HostError> {
+        if self.leaves_trails && info.trust != Trust::Shipped {
+            let sha256 = in_process::keep_same(info, &self.store)?.sha256;
+            // Where nothing can be written there is none.
+            Quarantine::beside(&self.store).leave_trail(&sha256, &info.short_name).unwrap_or_default();
+        }
+        Ok(())
+    }
+
+    /// Where a plugin works.
     pub(crate) fn hosting_of(&self, info: &PluginInfo) -> Hosting {
+        if self.is_kept_out(info) { Hosting::Isolated } else { self.wished(info) }
+    }
+
+    /// Whether a plugin works in a process of its own against the user's wish: this one has died with it inside.
+    pub(crate) fn is_kept_out(&self, info: &PluginInfo) -> bool {
+        let is_bare = info.trust != Trust::Shipped && self.wished(info) == Hosting::InProcess;
+        let out = |sha256: String| Quarantine::beside(&self.store).is_kept_out(&sha256);
+        self.leaves_trails && is_bare && info.sha256().is_ok_and(out)
+    }
+
+    /// Where a plugin is to work.
+    fn wished(&self, info: &PluginInfo) -> Hosting {
         // A program has a process of its own by its nature.
         if info.is_program() {
             return Hosting::Isolated;

@@ -48,6 +48,7 @@ pub use note::needed;
 pub use plain::plain;
 pub use plughost::{serve, shut_in};
 pub use prospect::Prospect;
+pub use quarantine::ended_well;
 pub use rebuilt::Watch;
 pub use registry::{PluginInfo, Registry, SearchPath, Trust};
 pub use script::manifest_of as file_of;

@@ -11,7 +11,7 @@ pub struct Prospect {
     pub hosting: Hosting,
     /// How far it is shut in: `full`, `partial` or `none`.
     pub sandbox: &'static str,
-    /// Why no farther, for people; empty where it is `full`.
+    /// Why no farther, or why not where it was wished, for people; else empty.
     pub why: String,
     /// Whether it works in this process though it did not come with honami: full trust, which people are to see.
     pub is_bare: bool,
@@ -33,7 +33,13 @@ impl Host {
             (true, false) => Some("it is a program, which must be started"),
             (true, true) => Some("it starts other programs"),
         };
-        let (level, why) = plughost::foresee(programs);
+        let (level, mut why) = plughost::foresee(programs);
+        if self.is_kept_out(info) {
+            let name = &info.short_name;
+            let out =
+                format!("honami has died with it inside, `honami plugin retry {name}` lets it in again");
+            why = if why.is_empty() { out } else { format!("{out}; {why}") };
+        }
         Prospect { hosting, sandbox: level.word(), why, is_bare: false }
     }
 }

@@ -1,6 +1,11 @@
 //! Libraries that keep failing are not started again until somebody says so.
 //!
-//! Failures are counted by the hash of the library, so that a rebuilt one begins anew.
+//! Failures are counted by the hash of the library, so that a rebuilt one begins anew. What has brought honami itself
+//! down with it (`trail.rs`) works in a process of its own from then on, as long.
+
+mod trail;
+
+pub use trail::ended_well;
 
 use crate::error::HostError;
 use crate::isolated::Ended;
@@ -93,7 +98,7 @@ impl Quarantine {
     /// # Errors
     /// When what is known of it cannot be removed.
     pub(crate) fn release(&self, sha256: &str) -> io::Result<()> {
-        for file in [self.failures(sha256), self.held(sha256)] {
+        for file in [self.failures(sha256), self.held(sha256), self.kept_out(sha256)] {
             match fs::remove_file(file) {
                 Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
                 _ => {}

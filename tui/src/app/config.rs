@@ -34,6 +34,8 @@ pub struct Config {
     pub wrong: Vec<String>,
     /// What is wrong with what the environment says.
     misspelt: Option<String>,
+    /// What came of the end before, one line each.
+    kept_out: Vec<String>,
     /// Whether theme and mouse were settled, so that no choice on screen outlasts the session.
     settled: (bool, bool),
 }
@@ -109,7 +111,17 @@ impl Config {
             wrong.push(format!("there is no theme {named}; there are {}", known.join(", ")));
         }
         let mouse = table.get("mouse").or(chosen.get("mouse")).and_then(toml::Value::as_bool).unwrap_or(true);
-        Self { keys, themes, theme: theme.unwrap_or(0), mouse, plugins, wrong, misspelt: None, settled }
+        Self {
+            keys,
+            themes,
+            theme: theme.unwrap_or(0),
+            mouse,
+            plugins,
+            wrong,
+            misspelt: None,
+            kept_out: Vec::new(),
+            settled,
+        }
     }
 
     /// Takes the settings into a state.
@@ -120,6 +132,13 @@ impl Config {
         state.mouse = self.mouse;
     }
 
+    /// As it is for a program that begins to work now: with what became of plugins since.
+    #[must_use]
+    pub fn beginning(self) -> Self {
+        let plugins = self.plugins.host().follow_trails();
+        Self { kept_out: plugins.iter().map(|plugin| plugins::kept_out(plugin)).collect(), ..self }
+    }
+
     /// One line for the screen, where something is wrong.
     #[must_use]
     pub fn complaint(&self) -> Option<String> {
@@ -127,7 +146,7 @@ impl Config {
             0 => format!("config.toml: {first}"),
             n => format!("config.toml: {first}, and {n} more: `honami keys --check` says all"),
         });
-        let lines: Vec<String> = self.misspelt.iter().cloned().chain(settled).collect();
+        let lines: Vec<String> = self.kept_out.iter().chain(&self.misspelt).cloned().chain(settled).collect();
         (!lines.is_empty()).then(|| lines.join(" · "))
     }
 

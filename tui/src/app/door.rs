@@ -55,7 +55,7 @@ pub enum Gives {
 /// # Errors
 /// When there is no terminal, or `first` cannot be opened. What is chosen on screen and cannot be opened is said there.
 pub fn run(first: Option<Plan>, offers: &Offers) -> anyhow::Result<Option<End>> {
-    let config = Config::load();
+    let config = Config::load().beginning();
     let mut screen = Screen::open(&log_path()).context("the terminal UI cannot start")?;
     if !config.mouse {
         screen.set_mouse(false)?;

@@ -212,12 +212,12 @@ fn apart(prospect: &Prospect) -> String {
     }
 }
 
-/// Why plugins that did not come with honami are not shut in fully, each reason with their names.
+/// Why plugins are not shut in fully that did not come with honami, or do not work where it was wished, each reason with their names.
 fn not_full<'r>(host: &Host, registry: &'r Registry) -> BTreeMap<String, Vec<&'r str>> {
     let mut reasons = BTreeMap::<String, Vec<&str>>::new();
     for plugin in registry.plugins() {
         let told = host.prospect(plugin);
-        if told.sandbox != "full" && (told.is_bare || told.hosting == Hosting::Isolated) {
+        if !told.why.is_empty() && (told.is_bare || told.hosting == Hosting::Isolated) {
             reasons.entry(format!("{}: {}", apart(&told), told.why)).or_default().push(&plugin.short_name);
         }
     }

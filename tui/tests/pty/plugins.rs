@@ -108,3 +108,25 @@ fn a_plugin_that_hangs_is_named_and_a_stopped_run_goes_on() {
     terminal.press("q");
     assert!(terminal.wait_for_end());
 }
+
+#[test]
+fn a_session_after_one_that_died_with_a_plugin_inside_says_so_and_keeps_it_out() {
+    let folder = folder();
+    let Some(library) = bad(folder.path(), "SEGFAULT") else { return };
+    let mut terminal = open(folder.path(), &library, "in-process");
+    terminal.press("\r");
+    assert!(!terminal.wait_for_end(), "it dies of a signal");
+    let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_honami"));
+    command.arg("sway.honami");
+    command.env("HONAMI_PLUGIN_PATH", &library);
+    command.env("HONAMI_HOSTING", "in-process");
+    let mut terminal = Terminal::start(command, folder.path(), (100, 24), true);
+    terminal.wait_for_text("bad works in a process of its own: honami died with it inside");
+    terminal.press("tr");
+    terminal.wait_for_text("sandbox");
+    terminal.press("\r");
+    terminal.wait_for_text("frames 0-11");
+    terminal.press("q");
+    assert!(terminal.wait_for_end());
+    terminal.assert_restored();
+}

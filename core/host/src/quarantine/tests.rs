@@ -35,3 +35,27 @@ fn failures_of_long_ago_count_no_more() {
         assert_eq!(quarantine.count("abc", at(minutes)).unwrap(), wanted, "after {minutes} minutes");
     }
 }
+
+#[test]
+fn the_trail_of_a_dead_process_keeps_its_library_out_until_it_is_released() {
+    let folder = tempfile::tempdir().unwrap();
+    let quarantine = Quarantine(folder.path().join("new"));
+    assert_eq!(quarantine.follow_trails(), Vec::<String>::new());
+    for _ in 0..2 {
+        quarantine.leave_trail("alive", "klt").unwrap();
+    }
+    assert_eq!(quarantine.follow_trails(), Vec::<String>::new(), "its process lives");
+    // Two processes that have died with it, and one that has died before its trail had a name.
+    for (name, plugin) in [("abc.7.inside", "snail"), ("abc.8.inside", "snail"), ("abc.9.new", "snail")] {
+        fs::write(quarantine.0.join(name), plugin).unwrap();
+    }
+    assert!(!quarantine.is_kept_out("abc"));
+    assert_eq!(quarantine.follow_trails(), ["snail"]);
+    assert_eq!(quarantine.follow_trails(), Vec::<String>::new(), "it is told once");
+    assert_eq!(["abc", "alive", "rebuilt"].map(|hash| quarantine.is_kept_out(hash)), [true, false, false]);
+    quarantine.release("abc").unwrap();
+    assert!(!quarantine.is_kept_out("abc"));
+    ended_well();
+    let left: Vec<_> = fs::read_dir(&quarantine.0).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert_eq!(left, ["abc.9.new"]);
+}

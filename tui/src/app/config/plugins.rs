@@ -70,7 +70,7 @@ impl Plugins {
     /// What starts plugins as it was settled; what the environment says stands over it.
     #[must_use]
     pub fn host(&self) -> Host {
-        Host::new().settled(self.limits, self.hosting.clone())
+        Host::new().settled(self.limits, self.hosting.clone()).leaving_trails()
     }
 
     /// What is said of plugins that are not there, one line each.
@@ -80,6 +80,13 @@ impl Plugins {
         let strangers = self.hosting.keys().filter(|name| !is_there(name));
         strangers.map(|name| format!("plugins.hosting.{name}: no such plugin is here")).collect()
     }
+}
+
+/// What is said of a plugin that was in honami when that died.
+pub(super) fn kept_out(plugin: &str) -> String {
+    format!(
+        "{plugin} works in a process of its own: honami died with it inside (`honami plugin retry {plugin}`)"
+    )
 }
 
 /// What is wrong with what the environment says of where plugins work.
