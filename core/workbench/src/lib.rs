@@ -27,6 +27,7 @@ pub mod simulate;
 pub mod spectra;
 mod stamp;
 pub mod track;
+pub mod used;
 pub mod versus;
 
 pub use error::WorkbenchError;

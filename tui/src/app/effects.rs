@@ -20,12 +20,13 @@ use honami_workbench::retrack::{self, Way};
 use honami_workbench::session::Session;
 use honami_workbench::store::{Project, StoreError};
 use honami_workbench::track::{self, TrackRequest};
+use honami_workbench::used::Used;
 use honami_workbench::{correct, dense, versus};
 
 use super::command_log::{self, Origin};
 use super::correcting::{Answer, Ask};
 use super::dense::Measuring;
-use super::form::{Plugin, Task};
+use super::form::{self, Plugin, Task};
 use super::jobs::{Done, Running, Work};
 use super::offering::Offering;
 use super::rebuilding::Rebuilding;
@@ -49,6 +50,8 @@ pub(super) struct World {
     /// Measures dense motion, once that was asked for.
     measuring: Option<Measuring>,
     rows: BTreeMap<TrackId, TrackRow>,
+    /// What plugins were told last.
+    used: Used,
     /// Entries of the undo tree that the state has been told of.
     n_told: usize,
     /// Where the user was when it was last kept.
@@ -82,6 +85,7 @@ impl World {
             reviewing,
             measuring,
             rows,
+            used: Used::default(),
             n_told: 0,
             n_before,
             seat,
@@ -123,6 +127,15 @@ impl World {
     fn plugins(&self) -> Vec<Plugin> {
         let host = &self.session.options.host;
         self.session.registry.plugins().iter().filter_map(|info| plugin(info, host)).collect()
+    }
+
+    /// What the plugins that are here were told last in this project.
+    fn used(&self) -> Fact {
+        let used = |info: &PluginInfo| {
+            let values = self.used.values(&info.id, &info.renamed);
+            Some(form::Used { task: task_of(info)?, plugin: info.short_name.clone(), values })
+        };
+        Fact::Used(self.session.registry.plugins().iter().filter_map(used).collect())
     }
 
     /// Which project it is, and where its document stands.
@@ -483,16 +496,17 @@ impl World {
         let answers = self.offering.as_mut().map(Offering::news).unwrap_or_default();
         news.extend(answers.into_iter().map(Fact::Offered));
         news.extend(self.job_news());
-        news.extend(self.rebuilt());
+        news.extend(self.rebuilt().into_iter().flatten());
         news
     }
 
     /// The plugins there are now, when the file of one is another than it was. While a job runs it looks after its own.
-    fn rebuilt(&mut self) -> Option<Fact> {
+    fn rebuilt(&mut self) -> Option<[Fact; 2]> {
         let rebuilding = self.rebuilding.as_ref().filter(|_| self.running.is_none())?;
         rebuilding.is_news().then(|| {
             self.session.look_for_plugins();
-            Fact::Plugins(self.plugins())
+            // What a form begins with that is filled in anew.
+            [self.used(), Fact::Plugins(self.plugins())]
         })
     }
 
@@ -624,6 +638,9 @@ impl World {
         self.n_told = history.entries().len();
         let told = Fact::History(new, history.head());
         let mut facts = vec![Fact::Tracks(rows), Fact::Groups(groups), Fact::Tracker(tracker), told];
+        if self.used.look(&self.session.project)? {
+            facts.push(self.used());
+        }
         facts.extend(self.layers()?);
         Ok(facts)
     }
@@ -641,15 +658,19 @@ fn failed(error: &WorkbenchError) -> Fact {
     said_wrong(error.to_string())
 }
 
+/// What a plugin does for the terminal UI; `None` for kinds without a form.
+fn task_of(info: &PluginInfo) -> Option<Task> {
+    match info.kind {
+        Kind::Tracker => Some(Task::Track),
+        Kind::Clusterer => Some(Task::Cluster),
+        _ => None,
+    }
+}
+
 /// A plugin as forms know it; `None` for kinds without a form.
 fn plugin(info: &PluginInfo, host: &Host) -> Option<Plugin> {
-    let task = match info.kind {
-        Kind::Tracker => Task::Track,
-        Kind::Clusterer => Task::Cluster,
-        _ => return None,
-    };
     Some(Plugin {
-        task,
+        task: task_of(info)?,
         name: info.short_name.clone(),
         version: info.version.clone(),
         params: info.params.clone(),

@@ -57,6 +57,19 @@ pub struct Wanted<'a> {
     pub frames: Range<u32>,
     /// Frames of the clip.
     pub n_frames: u32,
+    /// What plugins were told last.
+    pub used: &'a [Used],
+}
+
+/// What a plugin was told last in this project.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Used {
+    /// What it does.
+    pub task: Task,
+    /// Its short name.
+    pub plugin: String,
+    /// The values of its parameters; perhaps of some that it has no more, or not yet.
+    pub values: Values,
 }
 
 /// Which features a tracker follows.
@@ -101,6 +114,7 @@ pub struct Form {
     pub typed: Option<String>,
     values: Values,
     n_frames: u32,
+    used: Vec<Used>,
 }
 
 /// A row of a form.
@@ -124,34 +138,42 @@ impl Form {
             let ours = own_params(plugin.can_detect, wanted);
             plugin.params.splice(0..0, ours);
         }
-        let values = Values::defaults(&plugins.first()?.params);
-        Some(Self {
-            task,
-            plugins,
-            which: 0,
-            at: 0,
-            unfolded: false,
-            typed: None,
-            values,
-            n_frames: wanted.n_frames,
-        })
+        let used = wanted.used.iter().filter(|used| used.task == task).cloned().collect();
+        let (values, n_frames) = (Values::defaults(&plugins.first()?.params), wanted.n_frames);
+        let mut form =
+            Self { task, plugins, which: 0, at: 0, unfolded: false, typed: None, values, n_frames, used };
+        form.begin(0);
+        Some(form)
+    }
+
+    /// Begins with a plugin, as it was used last.
+    fn begin(&mut self, which: usize) {
+        self.which = which;
+        self.values = Values::defaults(&self.plugin().params);
+        if let Some(used) = self.used.iter().position(|used| used.plugin == self.plugin().name) {
+            let values = self.used[used].values.clone();
+            self.fill_in(&values);
+        }
+    }
+
+    /// Fills in what the plugin takes; what it takes no more is as it is by itself.
+    fn fill_in(&mut self, values: &Values) {
+        for (id, value) in values.iter() {
+            self.values.set(&self.plugins[self.which].params, id, value.clone()).ok();
+        }
     }
 
     /// Chooses a plugin by its name, where it does this task.
     pub fn choose(&mut self, name: &str) {
         if let Some(which) = self.plugins.iter().position(|plugin| plugin.name == name) {
-            self.which = which;
-            self.values = Values::defaults(&self.plugin().params);
+            self.begin(which);
         }
     }
 
     /// Takes what was filled into another form of this task: the plugin, and what it still takes under the same ids.
     pub fn take(&mut self, other: &Self) {
         self.choose(&other.plugin().name);
-        for (id, value) in other.values.iter() {
-            // What it takes no more is as it is by itself.
-            self.values.set(&self.plugins[self.which].params, id, value.clone()).ok();
-        }
+        self.fill_in(&other.values);
         self.unfolded = other.unfolded;
         self.typed.clone_from(&other.typed);
         self.at = other.at.min(self.rows().len().saturating_sub(1));
@@ -235,8 +257,7 @@ impl Form {
             Some(Row::Plugin(_)) => {
                 let n = i64::try_from(self.plugins.len()).unwrap_or(1);
                 let which = (i64::try_from(self.which).unwrap_or(0) + steps).rem_euclid(n);
-                self.which = usize::try_from(which).unwrap_or(0);
-                self.values = Values::defaults(&self.plugin().params);
+                self.begin(usize::try_from(which).unwrap_or(0));
             }
             Some(Row::Fold(_)) => self.unfolded = !self.unfolded,
             Some(Row::Param(param, value)) => match changed(param, value, steps, coarse) {

@@ -13,7 +13,7 @@ use super::clock::Play;
 use super::command_log::CommandLog;
 use super::correcting::{Moving, Tool};
 use super::dense::Dense;
-use super::form::{Form, Plugin};
+use super::form::{Form, Plugin, Used};
 use super::history::Tree;
 use super::keymap::KeyMap;
 use super::lesson::Lesson;
@@ -81,6 +81,8 @@ pub struct State {
     pub tracker: Option<String>,
     /// Trackers and clusterers that were found.
     pub plugins: Vec<Plugin>,
+    /// What they were told last.
+    pub used: Vec<Used>,
     /// What keys mean now.
     pub mode: Mode,
     /// The live key map.
@@ -310,6 +312,7 @@ impl State {
             groups: None,
             tracker: None,
             plugins: Vec::new(),
+            used: Vec::new(),
             mode: Mode::Review,
             keys: KeyMap::default(),
             pending: Vec::new(),

@@ -4,7 +4,7 @@ use super::*;
 use crate::app::fixture;
 
 fn wanted(features: &[Features]) -> Wanted<'_> {
-    Wanted { features, frames: 20..60, n_frames: 100 }
+    Wanted { features, frames: 20..60, n_frames: 100, used: &[] }
 }
 
 #[test]
@@ -72,6 +72,38 @@ fn what_was_filled_in_is_kept_when_the_plugin_is_another_build() {
     assert_eq!(value("radius"), Some(Value::Int(12)));
     assert_eq!((value("check"), value("label")), (Some(Value::Text("both".to_owned())), None));
     assert_eq!((after.at, after.unfolded, after.frames()), (3, true, 20..60));
+}
+
+#[test]
+fn a_form_begins_with_what_its_plugin_was_told_last() {
+    let plugins = fixture::state().plugins;
+    let told = [
+        ("radius", Value::Int(12)),
+        // Of a newer build, of another type, and beyond what it takes.
+        ("novelty", Value::Int(1)),
+        ("check", Value::Int(7)),
+        ("expire", Value::Float(99.0)),
+    ];
+    let values: Values = told.map(|(id, value)| (id.to_owned(), value)).into_iter().collect();
+    let of = |task, plugin: &str| Used { task, plugin: plugin.to_owned(), values: values.clone() };
+    for (used, radius) in [
+        (vec![], 10),
+        (vec![of(Task::Track, "klt")], 12),
+        (vec![of(Task::Track, "gone")], 10),
+        (vec![of(Task::Cluster, "klt")], 10),
+    ] {
+        let wanted = Wanted { used: &used, ..wanted(&[Features::Here]) };
+        let mut form = Form::new(Task::Track, &plugins, &wanted).unwrap();
+        // Also after another was chosen meanwhile.
+        for _ in 0..2 {
+            let value = |id: &str| form.values.get(id).cloned();
+            let expect = [Value::Int(radius), Value::Bool(true)].map(Some);
+            assert_eq!([value("radius"), value("check")], expect, "{used:?}");
+            assert_eq!((value("novelty"), value("expire")), (None, Some(Value::Float(0.5))), "{used:?}");
+            form.change(1, false);
+            form.change(-1, false);
+        }
+    }
 }
 
 #[test]

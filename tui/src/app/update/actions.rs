@@ -447,7 +447,8 @@ fn form(state: &State, task: Task) -> Option<Form> {
         }
         Some(_) => &[Features::Here, Features::Selected, Features::Found],
     };
-    let wanted = Wanted { features, frames: likely_frames(state), n_frames: state.clip.n_frames() };
+    let (frames, n_frames) = (likely_frames(state), state.clip.n_frames());
+    let wanted = Wanted { features, frames, n_frames, used: &state.used };
     let mut form = Form::new(task, &state.plugins, &wanted)?;
     // Likely the one whose run is on top.
     let last = state.tracker.as_deref().and_then(|tracker| tracker.split_whitespace().next());

@@ -12,7 +12,7 @@ use super::{Mode, State, actions, logged, motion, moving, offers, queue, sketch,
 use crate::app::correcting::Answer;
 use crate::app::dense::FieldOf;
 use crate::app::files::Listing;
-use crate::app::form::Plugin;
+use crate::app::form::{Plugin, Used};
 use crate::app::menu::Menu;
 use crate::app::plotted::Subject;
 use crate::app::prints::Print;
@@ -51,6 +51,8 @@ pub enum Fact {
     Recovery(Option<Recovery>),
     /// These plugins there are from now on.
     Plugins(Vec<Plugin>),
+    /// Plugins were told this last.
+    Used(Vec<Used>),
     /// Something has become of a job on its way.
     Happened(String),
     /// Something worth a line.
@@ -122,6 +124,7 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
             time::select(state, missed.unwrap_or(track));
         }
         Fact::Job(job) => on_job(state, job),
+        Fact::Used(used) => state.used = used,
         Fact::Plugins(plugins) => actions::on_plugins(state, plugins),
         Fact::Happened(text) => happened(state, text, false),
         Fact::Said(notice) => tell(state, notice),
