@@ -19,7 +19,7 @@ use rustix::process::{Pid, Signal, kill_process};
 use crate::isolated::has_cc;
 
 /// Compiles `mine.c` to `mine.so` at once, as a linker does not: another file takes the old one's place.
-fn build(bench: &Bench, flags: &[&str]) {
+pub(crate) fn build(bench: &Bench, flags: &[&str]) {
     let given = |name: &str| flags.iter().any(|flag| flag.starts_with(&format!("-D{name}=")));
     let usual = ["-DVERSION=\"2\"", "-DWAIT=-1", "-DDIES=1000", "-DSTEP=1"];
     let usual = usual.iter().filter(|flag| !given(&flag[2..flag.find('=').unwrap()]));

@@ -5,18 +5,27 @@ use std::fs;
 use honami_tests::Bench;
 use serde_json::json;
 
+use crate::isolated::has_cc;
+use crate::rebuilt::build;
+
 /// A project with tracks, and the first line of a session that begins with it.
 fn bench() -> (Bench, String) {
     let bench = Bench::new();
     bench.synth("clip.y4m", 20, "");
     let clip = bench.json("new p.honami clip.y4m")["sha256"].clone();
     bench.json("track p.honami --with klt --set max_features=9");
+    let head = head(&bench, &clip);
+    (bench, head)
+}
+
+/// The first line of a session that begins with the project as it is.
+fn head(bench: &Bench, clip: &serde_json::Value) -> String {
     let revision = bench.json("log p.honami")["revision"].clone();
     let head = json!({
         "honami-log": 1, "honami": "0.1.0", "project": "p", "clip": clip, "revision": revision,
         "screen": [80, 24], "seat": {},
     });
-    (bench, format!("{head}\n"))
+    format!("{head}\n")
 }
 
 const SESSION: &str = r#"{"t_s":1.0,"action":"move-sample","in":"review","frame":4,"track":3}
@@ -84,4 +93,42 @@ fn it_stops_where_it_goes_another_way() {
         let ran = bench.line(line);
         assert!(ran.code == Some(1) && ran.stderr.contains(words), "{ran:?}");
     }
+}
+
+#[test]
+fn a_form_begins_with_what_its_plugin_was_told_before_it_was_away() {
+    if !has_cc() {
+        return;
+    }
+    let bench = Bench::new();
+    bench.synth("clip.y4m", 8, "--leaves 20");
+    let clip = bench.json("new p.honami clip.y4m")["sha256"].clone();
+    fs::write(bench.path("points.csv"), "id,x,y\n1,20,30\n2,60,40\n").unwrap();
+    build(&bench, &[]);
+    let with = "--plugin mine.so --with mine --set gate=elsewhere --points points.csv";
+    bench.json(&format!("track p.honami {with}"));
+    let told = |bench: &Bench| {
+        let runs = bench.log("p.honami", "run");
+        let newest = runs.iter().max_by_key(|run| run["id"].as_u64()).unwrap();
+        (newest["provenance"]["plugin_id"].clone(), newest["provenance"]["params"].clone())
+    };
+    let before = told(&bench);
+    assert_eq!(before, (json!("org.me.mine"), json!({ "gate": "elsewhere" })));
+    // It is away while another tracker works in the project, from the form, and its run is undone.
+    fs::rename(bench.path("mine.so"), bench.path("away")).unwrap();
+    bench.json("track p.honami --with klt --points points.csv");
+    let run = r#"{"t_s":1.0,"action":"track","in":"review","frame":0}
+{"t_s":1.5,"action":"accept","in":"form","frame":0}
+"#;
+    let undo = r#"{"t_s":9.5,"action":"undo","in":"review","frame":0,"count":2}"#;
+    let session = format!("{}{run}{{\"t_s\":9.0,\"ended\":\"klt\"}}\n{undo}\n", head(&bench, &clip));
+    fs::write(bench.path("s.jsonl"), session).unwrap();
+    assert_eq!(bench.json("replay p.honami s.jsonl")["difference"], json!(null));
+    assert_eq!(told(&bench).0, "org.honami.klt");
+    // Back again it is used as before.
+    fs::rename(bench.path("away"), bench.path("mine.so")).unwrap();
+    let session = format!("{}{run}{{\"t_s\":9.0,\"ended\":\"mine\"}}\n", head(&bench, &clip));
+    fs::write(bench.path("s.jsonl"), session).unwrap();
+    let done = bench.json("replay p.honami s.jsonl --plugin mine.so");
+    assert_eq!((&done["difference"], told(&bench)), (&json!(null), before), "{done}");
 }

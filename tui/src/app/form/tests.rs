@@ -99,7 +99,7 @@ fn a_form_begins_with_what_its_plugin_was_told_last() {
             let value = |id: &str| form.values.get(id).cloned();
             let expect = [Value::Int(radius), Value::Bool(true)].map(Some);
             assert_eq!([value("radius"), value("check")], expect, "{used:?}");
-            assert_eq!((value("novelty"), value("expire")), (None, Some(Value::Float(0.5))), "{used:?}");
+            assert_eq!((value("novelty"), value("expire")), (None, Some(Value::Float(0.55))), "{used:?}");
             form.change(1, false);
             form.change(-1, false);
         }
