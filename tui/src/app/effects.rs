@@ -1,5 +1,7 @@
 //! The only door to the world: what the state wants done is done here, and what comes of it becomes facts.
 
+mod plugins;
+
 use std::collections::BTreeMap;
 use std::io::Write as _;
 use std::ops::Range;
@@ -15,7 +17,6 @@ use honami_model::track::TrackId;
 use honami_workbench::WorkbenchError;
 use honami_workbench::cluster::{self, ClusterRequest};
 use honami_workbench::offer::{Granted, Wish};
-use honami_workbench::plugins::{Host, Kind, PluginInfo};
 use honami_workbench::retrack::{self, Way};
 use honami_workbench::session::Session;
 use honami_workbench::store::{Project, StoreError};
@@ -26,7 +27,6 @@ use honami_workbench::{correct, dense, versus};
 use super::command_log::{self, Origin};
 use super::correcting::{Answer, Ask};
 use super::dense::Measuring;
-use super::form::{self, Plugin, Task};
 use super::jobs::{Done, Running, Work};
 use super::offering::Offering;
 use super::rebuilding::Rebuilding;
@@ -122,20 +122,6 @@ impl World {
         }
         self.seat = Seat::of(&state);
         Ok(state)
-    }
-
-    fn plugins(&self) -> Vec<Plugin> {
-        let host = &self.session.options.host;
-        self.session.registry.plugins().iter().filter_map(|info| plugin(info, host)).collect()
-    }
-
-    /// What the plugins that are here were told last in this project.
-    fn used(&self) -> Fact {
-        let used = |info: &PluginInfo| {
-            let values = self.used.values(&info.id, &info.renamed);
-            Some(form::Used { task: task_of(info)?, plugin: info.short_name.clone(), values })
-        };
-        Fact::Used(self.session.registry.plugins().iter().filter_map(used).collect())
     }
 
     /// Which project it is, and where its document stands.
@@ -417,14 +403,6 @@ impl World {
         self.start(Work::Track(Box::new(job)), &plugin, true, now)
     }
 
-    /// Lets a plugin start again that has failed too often.
-    fn release(&mut self, id: &str) -> Facts {
-        if let Some(plugin) = self.session.registry.plugins().iter().find(|plugin| plugin.id == id) {
-            self.session.options.host.retry(plugin)?;
-        }
-        Ok(Vec::new())
-    }
-
     fn retrack(
         &mut self,
         (track, way, frame): (TrackId, Way, u32),
@@ -498,16 +476,6 @@ impl World {
         news.extend(self.job_news());
         news.extend(self.rebuilt().into_iter().flatten());
         news
-    }
-
-    /// The plugins there are now, when the file of one is another than it was. While a job runs it looks after its own.
-    fn rebuilt(&mut self) -> Option<[Fact; 2]> {
-        let rebuilding = self.rebuilding.as_ref().filter(|_| self.running.is_none())?;
-        rebuilding.is_news().then(|| {
-            self.session.look_for_plugins();
-            // What a form begins with that is filled in anew.
-            [self.used(), Fact::Plugins(self.plugins())]
-        })
     }
 
     fn job_news(&mut self) -> Vec<Fact> {
@@ -656,25 +624,4 @@ fn said_wrong(text: String) -> Fact {
 
 fn failed(error: &WorkbenchError) -> Fact {
     said_wrong(error.to_string())
-}
-
-/// What a plugin does for the terminal UI; `None` for kinds without a form.
-fn task_of(info: &PluginInfo) -> Option<Task> {
-    match info.kind {
-        Kind::Tracker => Some(Task::Track),
-        Kind::Clusterer => Some(Task::Cluster),
-        _ => None,
-    }
-}
-
-/// A plugin as forms know it; `None` for kinds without a form.
-fn plugin(info: &PluginInfo, host: &Host) -> Option<Plugin> {
-    Some(Plugin {
-        task: task_of(info)?,
-        name: info.short_name.clone(),
-        version: info.version.clone(),
-        params: info.params.clone(),
-        can_detect: info.offers("honami.detect/1"),
-        apart: host.prospect(info),
-    })
 }
