@@ -10,8 +10,8 @@ pub use trail::ended_well;
 use crate::error::HostError;
 use crate::isolated::Ended;
 use crate::registry::PluginInfo;
-use std::fs;
-use std::io;
+use std::fs::{self, File};
+use std::io::{self, Read as _, Seek as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
@@ -78,13 +78,22 @@ impl Quarantine {
 
     fn count(&self, sha256: &str, now: SystemTime) -> io::Result<usize> {
         fs::create_dir_all(&self.0)?;
-        let file = self.failures(sha256);
-        let seconds = |time: SystemTime| time.duration_since(UNIX_EPOCH).unwrap_or_default().as_secs();
-        let since = seconds(now).saturating_sub(WITHIN.as_secs());
-        let before = fs::read_to_string(&file).unwrap_or_default();
-        let recent = before.lines().filter_map(|line| line.parse().ok()).filter(|time: &u64| *time > since);
-        let times: Vec<String> = recent.chain([seconds(now)]).map(|time| time.to_string()).collect();
-        fs::write(&file, times.join("\n"))?;
+        let path = self.failures(sha256);
+        let mut file = File::options().read(true).write(true).create(true).truncate(false).open(path)?;
+        // Other sessions count, too.
+        file.lock()?;
+        let mut before = Vec::new();
+        file.read_to_end(&mut before)?;
+        let now = now.duration_since(UNIX_EPOCH).unwrap_or_default().as_secs();
+        let since = now.saturating_sub(WITHIN.as_secs());
+        // What lies ahead was counted by a clock that has been put back since.
+        let is_recent = |time: &u64| (since + 1..=now).contains(time);
+        let before = String::from_utf8_lossy(&before);
+        let recent = before.lines().filter_map(|line| line.parse().ok()).filter(is_recent);
+        let times: Vec<String> = recent.chain([now]).map(|time| time.to_string()).collect();
+        file.rewind()?;
+        file.set_len(0)?;
+        file.write_all(times.join("\n").as_bytes())?;
         Ok(times.len())
     }
 

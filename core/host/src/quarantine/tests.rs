@@ -27,11 +27,11 @@ fn the_third_death_within_ten_minutes_holds_a_library_until_it_is_released() {
 }
 
 #[test]
-fn failures_of_long_ago_count_no_more() {
+fn failures_of_long_ago_and_of_a_clock_that_went_ahead_count_no_more() {
     let folder = tempfile::tempdir().unwrap();
     let quarantine = Quarantine(folder.path().to_owned());
     let at = |minutes: u64| UNIX_EPOCH + Duration::from_secs(1_000_000 + minutes * 60);
-    for (minutes, wanted) in [(0, 1), (5, 2), (9, 3), (11, 3), (30, 1)] {
+    for (minutes, wanted) in [(0, 1), (5, 2), (9, 3), (11, 3), (30, 1), (20, 1), (21, 2)] {
         assert_eq!(quarantine.count("abc", at(minutes)).unwrap(), wanted, "after {minutes} minutes");
     }
 }
@@ -58,4 +58,17 @@ fn the_trail_of_a_dead_process_keeps_its_library_out_until_it_is_released() {
     ended_well();
     let left: Vec<_> = fs::read_dir(&quarantine.0).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     assert_eq!(left, ["abc.9.new"]);
+}
+
+#[test]
+fn failures_that_several_sessions_count_at_once_are_all_counted() {
+    let folder = tempfile::tempdir().unwrap();
+    let (quarantine, now) =
+        (Quarantine(folder.path().to_owned()), UNIX_EPOCH + Duration::from_secs(1_000_000));
+    std::thread::scope(|scope| {
+        for _ in 0..8 {
+            scope.spawn(|| (0..10).for_each(|_| assert!(quarantine.count("abc", now).unwrap() > 0)));
+        }
+    });
+    assert_eq!(quarantine.count("abc", now).unwrap(), 81);
 }
