@@ -9,8 +9,6 @@ use serde_json::Value;
 
 /// How far what ships is held.
 const SHIPPED: u8 = 9;
-/// How far templates are held: they say nothing of a point that has left the picture, which level 7 wants.
-const TEMPLATES: u8 = 6;
 
 /// What a report says of a plugin that has not passed; nothing of one that has.
 fn complaints(report: &Value) -> Vec<String> {
@@ -68,20 +66,8 @@ fn example_in_c(bench: &Bench, flags: &[&str]) -> Option<PathBuf> {
 }
 
 #[test]
-fn a_template_passes_and_what_is_no_plugin_does_not() {
+fn what_is_no_plugin_does_not_pass() {
     let bench = Bench::new();
-    let numpy = Command::new("python3").args(["-c", "import numpy"]).output();
-    if numpy.is_ok_and(|output| output.status.success()) {
-        let _said = bench.text("plugin new mine --lang python");
-        let mut python = Command::new("python3");
-        let written = python.args(["mine/mine.py", "--honami-manifest"]).current_dir(bench.path("")).status();
-        assert!(written.unwrap().success());
-        let complaints = complaints(&check(&bench, "mine/mine.py", TEMPLATES));
-        assert!(complaints.is_empty(), "\n{}\n", complaints.join("\n"));
-        assert!(bench.text("plugin list --plugin mine/mine.py").contains("checked 6"));
-    } else {
-        skipped("python3 with numpy");
-    }
     fs::write(bench.path("text.so"), "no library").unwrap();
     let ran = bench.line("plugin check text.so");
     assert!(ran.code == Some(1) && ran.stdout.contains("file.readable"), "{ran:?}");

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use honami_tests::Bench;
 
-use crate::python::with_example;
+use crate::python::{with_example, with_method};
 use crate::sdk::begun;
 use crate::trax::{NEEDED, with_server};
 
@@ -57,9 +57,8 @@ fn assert_ends_with_honami(bench: &Bench, with: &str) {
 #[test]
 fn a_python_plugin_that_lets_no_thread_run_ends_with_a_killed_honami() {
     let hang = "open(os.environ['TMPDIR'] + '/here', 'w').close(); ctypes.PyDLL(None).pause()";
-    let push = "    def push(self, frame):\n";
-    let change = |text: String| text.replace(push, &format!("{push}        import ctypes, os; {hang}\n"));
-    let Some(bench) = with_example(change) else { return };
+    let push = format!("    def push(self, frame):\n        import ctypes, os; {hang}\n");
+    let Some(bench) = with_example(|text| with_method(&text, &push)) else { return };
     assert_ends_with_honami(&bench, "--with template --plugin template.py");
 }
 

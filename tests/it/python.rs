@@ -85,9 +85,8 @@ fn what_python_raises_is_told_in_its_words() {
         if wanted.starts_with("PermissionError") && !is_shut_in() {
             continue;
         }
-        let change =
-            |text: String| text.replace("status, edge = ", &format!("{push}\n        status, edge = "));
-        let Some(bench) = with_example(change) else { return };
+        let method = format!("    def push(self, frame):\n        {push}\n");
+        let Some(bench) = with_example(|text| with_method(&text, &method)) else { return };
         fs::write(bench.path("points.csv"), "id,x,y\n1,60,60\n").unwrap();
         let _said = bench.text("new p.honami clip.y4m");
         let ran = bench.line("track p.honami --plugin template.py --with template --points points.csv");
@@ -100,21 +99,30 @@ fn what_python_raises_is_told_in_its_words() {
     }
 }
 
-/// Lets the example end its process in frame 5, once: what is loaded has no such wish.
-fn mortal(text: String) -> String {
-    let death = "        if frame.index == 5 and self.dies:\n            __import__('os')._exit(3)\n";
-    let more = [
-        ("def begin(self, stream):\n", "        self.dies = True\n"),
-        ("def push(self, frame):\n", death),
-        ("def load(self, data):\n", "        self.dies = False\n"),
-    ];
-    more.into_iter().fold(text, |text, (line, more)| text.replace(line, &format!("{line}{more}")))
+/// The example's class with one more method, in place of its base's.
+pub(crate) fn with_method(text: &str, method: &str) -> String {
+    let class = "class Template(honami.PointByPoint):\n";
+    assert!(text.contains(class));
+    text.replace(class, &format!("{class}{method}\n"))
 }
+
+/// Ends its process in frame 5, once: what is loaded has no such wish.
+const MORTAL: &str = "    dies = True
+
+    def load(self, data):
+        super().load(data)
+        self.dies = False
+
+    def push(self, frame):
+        if frame.index == 5 and self.dies:
+            __import__('os')._exit(3)
+        return super().push(frame)
+";
 
 #[test]
 fn a_tracker_in_python_that_dies_goes_on_from_what_it_saved() {
     let tables = [false, true].map(|is_mortal| {
-        let bench = with_example(|text| if is_mortal { mortal(text) } else { text })?;
+        let bench = with_example(|text| if is_mortal { with_method(&text, MORTAL) } else { text })?;
         fs::write(bench.path("points.csv"), "id,x,y\n1,60,60\n2,90,70\n").unwrap();
         let _said = bench.text("new p.honami clip.y4m");
         let said = bench.text("track p.honami --plugin template.py --with template --points points.csv");

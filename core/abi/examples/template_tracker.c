@@ -55,7 +55,15 @@ static int keep(point *p, const picture *picture, long r) {
   return 1;
 }
 
-/* Moves a point to where the sum of squared differences from its template is smallest; it stays where all look alike. */
+/* Whether what misses by so much is something else: by more than half of the template's own contrast. */
+static int is_other(const uint8_t *first, long n, long miss) {
+  long sum = 0, squares = 0;
+  for (long k = 0; k < n; k++) sum += first[k], squares += (long)first[k] * first[k];
+  return 2 * miss * n > n * squares - sum * sum;
+}
+
+/* Moves a point to where the sum of squared differences from its template is smallest; it stays where all look alike.
+ * Where the search leaves the picture and finds something else, the point has left it, too. */
 static uint8_t look(const tracker *self, const picture *now, point *p) {
   const long s = self->search, side = 2 * self->radius + 1;
   long best = LONG_MAX, dx = 0, dy = 0;
@@ -71,9 +79,11 @@ static uint8_t look(const tracker *self, const picture *now, point *p) {
         }
       if (miss < best) best = miss, dx = i, dy = j;
     }
+  if (best == LONG_MAX) return HONAMI_LOST;
+  if (!window(now, p->x, p->y, self->radius + s) && is_other(p->first, side * side, best)) return HONAMI_LOST;
   p->x += (float)dx;
   p->y += (float)dy;
-  return best == LONG_MAX ? HONAMI_LOST : HONAMI_TRACKED;
+  return HONAMI_TRACKED;
 }
 
 static void forget(tracker *self, uint32_t id) {

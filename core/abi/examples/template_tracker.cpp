@@ -40,7 +40,15 @@ private:
     std::vector<uint8_t> first; // around it, where it was seeded; none near the border
   };
 
+  // Whether what misses by so much is something else: by more than half of the template's own contrast.
+  static bool is_other(const std::vector<uint8_t> &first, long miss) {
+    long n = long(first.size()), sum = 0, squares = 0;
+    for (long pixel : first) sum += pixel, squares += pixel * pixel;
+    return 2 * miss * n > n * squares - sum * sum;
+  }
+
   // Moves a point to where the sum of squared differences from its template is smallest; it stays where all look alike.
+  // Where the search leaves the picture and finds something else, the point has left it, too.
   honami::Status look(const honami::Frame &frame, Point &point) const {
     long best = -1;
     int dx = 0, dy = 0;
@@ -52,8 +60,10 @@ private:
         for (std::size_t k = 0; k < here.size(); k++) miss += (here[k] - point.first[k]) * (here[k] - point.first[k]);
         if (best < 0 || miss < best) best = miss, dx = i, dy = j;
       }
+    if (best < 0) return honami::LOST;
+    if (frame.window(point.x, point.y, radius + search).empty() && is_other(point.first, best)) return honami::LOST;
     point.x += float(dx), point.y += float(dy);
-    return best < 0 ? honami::LOST : honami::TRACKED;
+    return honami::TRACKED;
   }
 
   int radius, search;

@@ -136,8 +136,10 @@ fn aside(subject: &Subject, scene: &Scene) -> Result<Verdict, Fault> {
     }
 }
 
-/// Places at which a byte is changed.
+/// Places at which a byte is changed,
 const N_CHANGED: usize = 24;
+/// and of what a program has saved, which is started anew for each.
+const N_CHANGED_OF_PROGRAM: usize = 8;
 
 fn damaged(subject: &Subject, scene: &Scene) -> Result<Verdict, Fault> {
     let mut chance = subject.chance("state.damaged");
@@ -159,7 +161,8 @@ fn damaged(subject: &Subject, scene: &Scene) -> Result<Verdict, Fault> {
             with((0..1 << 20).map(|_| chance.random()).collect()),
         ));
     }
-    for _ in 0..if len > 0 { N_CHANGED } else { 0 } {
+    let n_changed = if subject.info.is_program() { N_CHANGED_OF_PROGRAM } else { N_CHANGED };
+    for _ in 0..if len > 0 { n_changed } else { 0 } {
         let (place, mut bytes) = (chance.random_range(0..len), saved.bytes.clone());
         bytes[place] ^= 1 << chance.random_range(0..8);
         cases.push((format!("its own bytes, of which byte {place} is changed"), with(bytes)));

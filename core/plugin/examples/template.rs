@@ -74,21 +74,32 @@ impl Tracker for Template {
 }
 
 impl Followed {
-    /// Moves to where the sum of squared differences from the template is smallest; stays where all look alike.
+    /// Moves to where the sum of squared differences from the template is smallest; stays where all look alike. Where the
+    /// search leaves the picture and finds something else, the point has left it, too.
     fn look(&mut self, gray: &Gray<'_>, r: u32, s: i32) -> Status {
+        let Some(first) = &self.first else { return Status::Lost };
         let miss = |(i, j): (i32, i32)| {
             let here = gray.window(self.x + i as f32, self.y + j as f32, r)?;
-            let squares =
-                here.iter().zip(self.first.as_ref()?).map(|(a, b)| u64::from(a.abs_diff(*b)).pow(2));
+            let squares = here.iter().zip(first).map(|(a, b)| u64::from(a.abs_diff(*b)).pow(2));
             Some((squares.sum::<u64>() + u64::from((i, j) != (0, 0)), i, j))
         };
         let places = (-s..=s).flat_map(|j| (-s..=s).map(move |i| (i, j)));
-        let Some((_, i, j)) = places.filter_map(miss).min_by_key(|found| found.0) else {
-            return Status::Lost;
-        };
-        (self.x, self.y) = (self.x + i as f32, self.y + j as f32);
-        Status::Tracked
+        let is_inside = gray.window(self.x, self.y, r + s.unsigned_abs()).is_some();
+        match places.filter_map(miss).min_by_key(|found| found.0) {
+            Some((best, i, j)) if is_inside || !is_other(first, best) => {
+                (self.x, self.y) = (self.x + i as f32, self.y + j as f32);
+                Status::Tracked
+            }
+            _ => Status::Lost,
+        }
     }
+}
+
+/// Whether what misses by so much is something else: by more than half of the template's own contrast.
+fn is_other(first: &[u8], miss: u64) -> bool {
+    let n = first.len() as u64;
+    let of = |power| first.iter().map(|pixel| u64::from(*pixel).pow(power)).sum::<u64>();
+    2 * miss * n > n * of(2) - of(1).pow(2)
 }
 
 export! {

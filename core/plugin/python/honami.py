@@ -19,7 +19,8 @@
 returns `honami.Field(gx, gy, step, u, v, known)`. One with `save()`, which returns bytes with all that later frames depend
 on, and `load(bytes)`, which comes after `begin` in their place, goes on with the same numbers when its process has died; it
 only gets what it saved under the same parameters and the same `state_version`, a number of its class. Arrays that it is
-given are gone after the call: copy what you keep.
+given are gone after the call: copy what you keep. One that follows every point by itself
+derives from `honami.PointByPoint`, which does all of this, and writes two functions.
 
     @honami.clusterer("org.me.groups", "My groups", params=Settings)
     class Groups:
@@ -30,6 +31,7 @@ given are gone after the call: copy what you keep.
 without running it. Write it anew when parameters change. What is printed is a line of the plugin's log.
 """
 
+import io
 import json
 import mmap
 import os
@@ -139,12 +141,68 @@ def Tree(merges, outlier=None, distance=None, frame=None):
     return {"honami.dendrogram/1": tree, "honami.frames/1": judged}
 
 
-def window(gray, x, y, r):
-    """The window of radius r around the pixel nearest to (x, y), copied; None where it leaves the picture."""
-    left, top = np.floor(x + 0.5) - r, np.floor(y + 0.5) - r
-    if not (left >= 0 and top >= 0 and left + 2 * r < gray.shape[1] and top + 2 * r < gray.shape[0]):
+def window(gray, x, y, r, outside=None):
+    """The window of radius r around the pixel nearest to (x, y), copied; None where it leaves the picture.
+
+    With `outside`, a number, there is always one, of integers: what lies outside the picture has that number.
+    """
+    (height, width), side = gray.shape, 2 * r + 1
+    left, top = [int(np.clip(np.floor(v + 0.5) - r, -side, n)) for v, n in ((x, width), (y, height))]
+    leaves = not (0 <= left <= width - side and 0 <= top <= height - side)
+    if leaves and outside is None:
         return None
-    return gray[int(top):int(top) + 2 * r + 1, int(left):int(left) + 2 * r + 1].copy()
+    inner = gray[max(top, 0):max(top + side, 0), max(left, 0):max(left + side, 0)]
+    if outside is None:
+        return inner.copy()
+    whole = np.full((side, side), outside, "i4")
+    down, right = max(-top, 0), max(-left, 0)
+    whole[down:down + inner.shape[0], right:right + inner.shape[1]] = inner
+    return whole
+
+
+class PointByPoint:
+    """Base of a tracker that follows every point by itself.
+
+    `start(gray, x, y)` returns what is remembered of a point where it was seeded: an array, a number or None;
+    `follow(gray, x, y, first)` where the point is in the next picture: x, y and its status. `first` is what was remembered.
+    """
+
+    def begin(self, stream):
+        self._live, self._last = {}, None
+
+    def seed(self, points):
+        for id, x, y in zip(points.id.tolist(), points.x.tolist(), points.y.tolist()):
+            self._live[id] = x, y, None if self._last is None else self.start(self._last, x, y)
+
+    def retire(self, ids):
+        for id in ids.tolist():
+            self._live.pop(id, None)
+
+    def push(self, frame):
+        rows = []
+        for id, (x, y, first) in self._live.items():
+            progress(len(rows) / len(self._live), "following points")
+            if self._last is None:
+                first = self.start(frame.gray, x, y)
+            x, y, status = self.follow(frame.gray, x, y, first)
+            self._live[id] = x, y, first
+            rows.append((id, x, y, status))
+        self._last = frame.gray.copy()
+        return Points(*(zip(*rows) if rows else [()] * 4))
+
+    def save(self):
+        kept = {f"first {id}": first for id, (_, _, first) in self._live.items() if first is not None}
+        if self._last is not None:
+            kept["last"] = self._last
+        file = io.BytesIO()
+        np.savez(file, id=list(self._live), at=[(x, y) for x, y, _ in self._live.values()], **kept)
+        return file.getvalue()
+
+    def load(self, data):
+        kept = np.load(io.BytesIO(data), allow_pickle=False)  # what is pickled could run anything
+        points = zip(kept["id"].tolist(), kept["at"].tolist())
+        self._live = {id: (x, y, kept.get(f"first {id}")) for id, (x, y) in points}
+        self._last = kept.get("last")
 
 
 def _optional(**columns):

@@ -57,7 +57,7 @@ fn program() -> &'static Path {
             files.next_back().unwrap()
         };
         built(&["--package", "honami-plughost"]);
-        built(&["--package", "honami-check", "--example", "one-check"])
+        built(&["--package", "honami-check", "--example", "one_check"])
     })
 }
 

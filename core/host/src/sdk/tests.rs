@@ -83,3 +83,35 @@ fn names_that_would_not_work_are_refused() {
     assert!(begin("a", Kind::Clusterer, Language::C).unwrap_err().contains("in Python and in Rust"));
     assert!(begin("a", Kind::Simulator, Language::Rust).unwrap_err().contains("draft"));
 }
+
+/// Lines with code: neither empty nor a comment, nor the tests of the template itself.
+fn n_code_lines(text: &str) -> usize {
+    let is_code = |line: &&str| {
+        let line = line.trim_start();
+        let is_comment = ["//", "/*", "* ", "# ", "\"\"\""].iter().any(|mark| line.starts_with(mark));
+        !line.is_empty() && !is_comment
+    };
+    text.lines().take_while(|line| *line != "#[cfg(test)]").filter(is_code).count()
+}
+
+#[test]
+fn a_tracker_that_works_is_short_and_the_page_for_authors_says_how_short() {
+    let n_lines = |language| {
+        let begun = begin("mine", Kind::Tracker, language).unwrap();
+        n_code_lines(&begun.files[0].1)
+    };
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/plugins.md");
+    let page = fs::read_to_string(page).unwrap();
+    let all = [
+        ("Python", Language::Python),
+        ("Rust", Language::Rust),
+        ("C++17", Language::Cpp),
+        ("C99", Language::C),
+    ];
+    for (name, language) in all {
+        let n = n_lines(language);
+        let row = page.lines().find(|line| line.starts_with(&format!("| {name} | "))).unwrap();
+        assert!(row.ends_with(&format!(" | {n} |")), "wanted {n} lines in: {row}");
+    }
+    assert!(n_lines(Language::Python) <= 25, "{}", n_lines(Language::Python));
+}

@@ -11,7 +11,8 @@ class Settings(honami.Params):
                   doc="Groups tracks by how much the distance between them changes.")
 class Linkage:
     def cluster(self, tracks):
-        apart = np.array([self.from_all(tracks, k) for k in range(len(tracks.id))]).reshape(len(tracks.id), -1)
+        n = len(tracks.id)
+        apart = np.array([self.from_all(tracks, k) for k in range(n)]).reshape(n, n)
         np.fill_diagonal(apart, np.inf)
         number, size, merges = np.arange(len(apart)), np.ones(len(apart)), []
         for r in range(len(apart) - 1):

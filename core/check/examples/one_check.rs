@@ -1,4 +1,5 @@
-//! What `honami plugin check FILE --plugin-id ID --reproduce CHECK:SEED --answer` does, without the rest of honami.
+//! What the tests start a process for each check with: what `honami plugin check FILE --plugin-id ID --reproduce
+//! CHECK:SEED --answer` does, without the rest of honami.
 
 use honami_check::{Asker, Subject, checks, examine};
 use honami_host::{Host, Registry, SearchPath};
