@@ -105,18 +105,19 @@ layout! {
             struct_size 0 4, max_threads 4 4, width 8 4, height 12 4, seed 16 8, tracks 24 8, times 32 8,
         }
         crate::ClustererV1 = "honami_clusterer_v1", 16, 8 { struct_size 0 4, reserved 4 4, run 8 8, }
+        crate::SimulatorInput = "honami_simulator_input", 32, 8 {
+            struct_size 0 4, max_threads 4 4, seed 8 8, skeleton 16 8, instances 24 8,
+        }
+        crate::StepInput = "honami_step_input", 32, 8 { struct_size 0 4, n_steps 4 4, dt 8 8, wind 16 8, detail 24 8, }
+        crate::SimulatorV1 = "honami_simulator_v1", 32, 8 {
+            struct_size 0 4, reserved 4 4, prepare 8 8, reset 16 8, step 24 8,
+        }
     }
     DRAFT {
         crate::draft::StructureInput = "honami_structure_input", 40, 8 {
             struct_size 0 4, max_threads 4 4, seed 8 8, tracks 16 8, times 24 8, dendrogram 32 8,
         }
         crate::draft::StructureV1 = "honami_structure_v1", 16, 8 { struct_size 0 4, reserved 4 4, run 8 8, }
-        crate::draft::SimulatorInput = "honami_simulator_input", 32, 8 {
-            struct_size 0 4, max_threads 4 4, seed 8 8, skeleton 16 8, n_instances 24 4, reserved 28 4,
-        }
-        crate::draft::SimulatorV1 = "honami_simulator_v1", 32, 8 {
-            struct_size 0 4, reserved 4 4, prepare 8 8, reset 16 8, step 24 8,
-        }
     }
 }
 
@@ -185,9 +186,12 @@ pub const IDS: &[(&str, &core::ffi::CStr)] = &[
     ("HONAMI_FIELD", crate::interface::FIELD),
     ("HONAMI_STATE", crate::interface::STATE),
     ("HONAMI_CLUSTERER", crate::interface::CLUSTERER),
-    ("HONAMI_SKELETON", crate::draft::SKELETON),
-    ("HONAMI_WIND", crate::draft::WIND),
-    ("HONAMI_MOTION", crate::draft::MOTION),
+    ("HONAMI_SKELETON", crate::schema::SKELETON),
+    ("HONAMI_INSTANCES", crate::schema::INSTANCES),
+    ("HONAMI_WIND", crate::schema::WIND),
+    ("HONAMI_DETAIL", crate::schema::DETAIL),
+    ("HONAMI_MOTION", crate::schema::MOTION),
+    ("HONAMI_MODES", crate::schema::MODES),
+    ("HONAMI_SIMULATOR", crate::interface::SIMULATOR),
     ("HONAMI_STRUCTURE", crate::draft::STRUCTURE),
-    ("HONAMI_SIMULATOR", crate::draft::SIMULATOR),
 ];

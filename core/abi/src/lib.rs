@@ -12,7 +12,8 @@ pub mod layout;
 
 pub use structs::{
     Call, ClustererInput, ClustererV1, Column, DetectInput, DetectV1, FieldInput, FieldV1, Frame, HostInfo,
-    Instance, Library, LibraryFn, StateV1, StreamInfo, Table, TrackerV1, Value,
+    Instance, Library, LibraryFn, SimulatorInput, SimulatorV1, StateV1, StepInput, StreamInfo, Table,
+    TrackerV1, Value,
 };
 
 use core::ffi::CStr;
@@ -115,6 +116,12 @@ pub mod schema {
     pub const DENDROGRAM: &CStr = c"honami.dendrogram/1";
     pub const FRAMES: &CStr = c"honami.frames/1";
     pub const STATE: &CStr = super::interface::STATE;
+    pub const SKELETON: &CStr = c"honami.skeleton/1";
+    pub const INSTANCES: &CStr = c"honami.instances/1";
+    pub const WIND: &CStr = c"honami.wind/1";
+    pub const DETAIL: &CStr = c"honami.detail/1";
+    pub const MOTION: &CStr = c"honami.motion/1";
+    pub const MODES: &CStr = c"honami.modes/1";
 }
 
 /// Ids of interfaces.
@@ -126,6 +133,7 @@ pub mod interface {
     pub const FIELD: &CStr = c"honami.field/1";
     pub const STATE: &CStr = c"honami.state/1";
     pub const CLUSTERER: &CStr = c"honami.clusterer/1";
+    pub const SIMULATOR: &CStr = c"honami.simulator/1";
 }
 
 /// A byte a pixel, luma as coded.

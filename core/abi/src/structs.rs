@@ -197,3 +197,33 @@ pub struct ClustererV1 {
     pub reserved: u32,
     pub run: Option<unsafe extern "C" fn(*mut Instance, *const Call, *const ClustererInput) -> Code>,
 }
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct SimulatorInput {
+    pub struct_size: u32,
+    pub max_threads: u32,
+    pub seed: u64,
+    pub skeleton: *const Table,
+    pub instances: *const Table,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct StepInput {
+    pub struct_size: u32,
+    pub n_steps: u32,
+    pub dt: f64,
+    pub wind: *const Table,
+    pub detail: *const Table,
+}
+
+#[repr(C)]
+#[derive(Debug)]
+pub struct SimulatorV1 {
+    pub struct_size: u32,
+    pub reserved: u32,
+    pub prepare: Option<unsafe extern "C" fn(*mut Instance, *const Call, *const SimulatorInput) -> Code>,
+    pub reset: Option<unsafe extern "C" fn(*mut Instance, *const Call) -> Code>,
+    pub step: Option<unsafe extern "C" fn(*mut Instance, *const Call, *const StepInput) -> Code>,
+}

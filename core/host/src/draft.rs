@@ -1,4 +1,4 @@
-//! Structure builders and simulators: drafts, not part of ABI 1.0. Metres, z up, right-handed.
+//! Structure builders: a draft, not part of ABI 1.1. Metres, z up, right-handed.
 
 use crate::context::CallContext;
 use crate::error::HostError;
@@ -17,15 +17,6 @@ pub struct Node {
     pub radius: f32,
     /// Row of the track it was grown from.
     pub track: Option<u32>,
-}
-
-/// Wind at a time, everywhere.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Gust {
-    /// Seconds.
-    pub time_s: f64,
-    /// Metres per second.
-    pub wind: [f32; 3],
 }
 
 /// A structure builder at work.
@@ -52,11 +43,13 @@ impl Structure {
 fn read_skeleton(reply: &Reply, n_tracks: usize) -> Result<Vec<Node>, String> {
     let table = reply.table(&reply::SKELETON).ok_or("returned without committing honami.skeleton/1")?;
     let [x, y, z, radii] = ["x", "y", "z", "radius"].map(|name| table.required::<f32>(name));
-    let [parents, sources] = ["parent", "track"].map(|name| table.required::<i32>(name));
+    let parents = table.required::<i32>("parent");
+    let sources = table.column::<i32>("track");
     let mut nodes = Vec::with_capacity(table.rows());
     for k in 0..table.rows() {
         let (position, radius) = ([x[k], y[k], z[k]], radii[k]);
-        let (parent, track) = (u32::try_from(parents[k]).ok(), u32::try_from(sources[k]).ok());
+        let (parent, track) =
+            (u32::try_from(parents[k]).ok(), sources.and_then(|rows| u32::try_from(rows[k]).ok()));
         if parent.is_none() != (k == 0) || parent.is_some_and(|p| p as usize >= k) {
             return Err(format!("node {k} has parent {parent:?}, which does not come before it"));
         }
@@ -69,76 +62,4 @@ fn read_skeleton(reply: &Reply, n_tracks: usize) -> Result<Vec<Node>, String> {
         nodes.push(Node { parent, position, radius, track });
     }
     Ok(nodes)
-}
-
-/// A simulator at work.
-#[derive(Debug)]
-pub struct Simulator {
-    pub(crate) handle: Handle,
-    pub(crate) reply: Reply,
-    pub(crate) n_rows: Option<usize>,
-}
-
-impl Simulator {
-    /// Hands over a plant, at rest at time 0, in so many copies.
-    ///
-    /// # Errors
-    /// [`HostError`], when the plugin cannot work on it.
-    pub fn prepare(
-        &mut self,
-        nodes: &[Node],
-        n_instances: u32,
-        max_threads: u32,
-        seed: u64,
-        cx: &CallContext<'_>,
-    ) -> Result<(), HostError> {
-        self.n_rows = None;
-        let request = Request::Prepare { nodes, n_instances, max_threads, seed };
-        self.handle.ask(&request, cx, &mut self.reply)?;
-        self.n_rows = Some(nodes.len() * n_instances as usize);
-        Ok(())
-    }
-
-    /// Back to rest at time 0.
-    ///
-    /// # Errors
-    /// [`HostError`], when there is no plant or the plugin cannot do it.
-    pub fn reset(&mut self, cx: &CallContext<'_>) -> Result<(), HostError> {
-        self.prepared()?;
-        self.handle.ask(&Request::Reset, cx, &mut self.reply).map(|_| ())
-    }
-
-    /// Goes `n_steps` steps of `dt` seconds; gives every node's displacement from rest, metres, `(n_instances, n_nodes)`
-    /// row-major. No wind: still air.
-    ///
-    /// # Errors
-    /// [`HostError`], when there is no plant, or the plugin cannot do it or its motion is none.
-    pub fn step(
-        &mut self,
-        dt: f64,
-        n_steps: u32,
-        wind: &[Gust],
-        cx: &CallContext<'_>,
-    ) -> Result<Vec<[f32; 3]>, HostError> {
-        let wanted = self.prepared()?;
-        self.handle.ask(&Request::Step { dt, n_steps, wind }, cx, &mut self.reply)?;
-        let Some(table) = self.reply.table(&reply::MOTION) else {
-            return Err(self.handle.misbehaved("step", "returned without committing honami.motion/1"));
-        };
-        if table.rows() != wanted {
-            let what = format!("committed {} rows of motion for {wanted} nodes", table.rows());
-            return Err(self.handle.misbehaved("step", what));
-        }
-        let numbers = table.required::<f32>("d");
-        match numbers.iter().position(|v| !v.is_finite()) {
-            Some(k) => {
-                Err(self.handle.misbehaved("step", format!("row {} of the motion is not finite", k / 3)))
-            }
-            None => Ok(numbers.as_chunks().0.to_vec()),
-        }
-    }
-
-    fn prepared(&self) -> Result<usize, HostError> {
-        self.n_rows.ok_or_else(|| self.handle.usage("has no plant: prepare it first"))
-    }
 }

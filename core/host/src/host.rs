@@ -4,7 +4,7 @@ mod place;
 
 use crate::clusterer::Clusterer;
 use crate::context::CallContext;
-use crate::draft::{Simulator, Structure};
+use crate::draft::Structure;
 use crate::error::HostError;
 use crate::instance::{Handle, Instance, Request};
 use crate::isolated::Limits;
@@ -12,6 +12,7 @@ use crate::manifest::{Kind, ParamKind};
 use crate::quarantine::{self, Quarantine, Tally};
 use crate::registry::PluginInfo;
 use crate::reply::Reply;
+use crate::simulator::{Sent, Simulator};
 use crate::tracker::Tracker;
 use crate::values::{Value, Values};
 use crate::{in_process, isolated, script, store};
@@ -180,7 +181,7 @@ impl Host {
         Ok((Structure { handle }, origin))
     }
 
-    /// Starts a simulator (draft) with these parameter values.
+    /// Starts a simulator with these parameter values.
     ///
     /// # Errors
     /// [`HostError`], when the plugin is not trusted, cannot be loaded, or refuses the values.
@@ -191,7 +192,7 @@ impl Host {
         cx: &CallContext<'_>,
     ) -> Result<(Simulator, Origin), HostError> {
         let (handle, origin) = self.start(info, Kind::Simulator, values, cx)?;
-        Ok((Simulator { handle, reply: Reply::default(), n_rows: None }, origin))
+        Ok((Simulator::new(handle, info, complete(info, values)?.0), origin))
     }
 
     /// The copy in the store from which a trusted plugin's library is loaded, made if it is not there yet.
@@ -235,9 +236,7 @@ impl Host {
             let what = format!("is a {}, not a {wanted}", info.kind);
             return Err(HostError::Usage { plugin: info.id.clone(), what });
         }
-        let mut complete = Values::defaults(&info.params);
-        complete.restore(values, &info.renamed);
-        complete.validate(&info.params)?;
+        let (complete, checked) = complete(info, values)?;
         if !info.caps.pixels.iter().any(|format| format == "gray8") {
             let what = format!("takes only pixels of format {:?}, this honami has gray8", info.caps.pixels);
             return Err(HostError::Usage { plugin: info.id.clone(), what });
@@ -252,15 +251,7 @@ impl Host {
         };
         let tally = self.tally(&origin.plugin_sha256);
         let mut handle = Handle::new(info.id.clone(), instance, tally);
-        let checked: Vec<_> = info
-            .params
-            .iter()
-            .map(|param| {
-                let value = complete.get(&param.id).cloned().unwrap_or_else(|| param.default());
-                Ok((param.id.as_str(), param.check(value)?, param.kind.abi()))
-            })
-            .collect::<Result<_, HostError>>()?;
-        let sent: Vec<_> = checked.iter().map(|(id, value, kind)| (*id, value, *kind)).collect();
+        let sent: Vec<_> = checked.iter().map(|(id, value, kind)| (id.as_str(), value, *kind)).collect();
         handle.ask(&Request::SetParams(&sent), cx, &mut Reply::default())?;
         Ok((handle, origin))
     }
@@ -319,4 +310,17 @@ fn files_of(info: &PluginInfo, values: &Values) -> Vec<PathBuf> {
         _ => None,
     };
     paths.filter_map(|param| values.get(&param.id).and_then(file)).collect()
+}
+
+/// The values of all parameters of a plugin, those that are missing by default; and as they are sent.
+pub(crate) fn complete(info: &PluginInfo, values: &Values) -> Result<(Values, Sent), HostError> {
+    let mut complete = Values::defaults(&info.params);
+    complete.restore(values, &info.renamed);
+    complete.validate(&info.params)?;
+    let sent = info.params.iter().map(|param| {
+        let value = complete.get(&param.id).cloned().unwrap_or_else(|| param.default());
+        Ok((param.id.clone(), param.check(value)?, param.kind.abi()))
+    });
+    let sent = sent.collect::<Result<_, HostError>>()?;
+    Ok((complete, sent))
 }

@@ -46,7 +46,7 @@ struct Interfaces {
     state: Option<abi::StateV1>,
     clusterer: Option<abi::ClustererV1>,
     structure: Option<draft::StructureV1>,
-    simulator: Option<draft::SimulatorV1>,
+    simulator: Option<abi::SimulatorV1>,
 }
 
 /// Makes an instance of a plugin.
@@ -114,7 +114,7 @@ impl InProcess {
             Kind::Tracker => interface::TRACKER,
             Kind::Clusterer => interface::CLUSTERER,
             Kind::Structure => draft::STRUCTURE,
-            Kind::Simulator => draft::SIMULATOR,
+            Kind::Simulator => interface::SIMULATOR,
         };
         if !info.offers(&main.to_string_lossy()) {
             return Err(format!("a {} needs {}, its manifest has none", info.kind, main.to_string_lossy()));
@@ -132,7 +132,7 @@ impl InProcess {
             state: interface!(self, info, interface::STATE, abi::StateV1, [save, load]),
             clusterer: interface!(self, info, interface::CLUSTERER, abi::ClustererV1, [run]),
             structure: interface!(self, info, draft::STRUCTURE, draft::StructureV1, [run]),
-            simulator: interface!(self, info, draft::SIMULATOR, draft::SimulatorV1, [prepare, reset, step]),
+            simulator: interface!(self, info, interface::SIMULATOR, abi::SimulatorV1, [prepare, reset, step]),
         })
     }
 
@@ -224,23 +224,18 @@ unsafe fn call_plugin(plugin: &InProcess, request: &Request<'_>, call: *const ab
                 let (rows, times) = (InputTable::tracks(tracks), InputTable::times(tracks));
                 (has.structure.as_ref()?.run?)(raw, call, &input::structure(tracks, rows.raw(), times.raw()))
             }
-            Request::Prepare { nodes, n_instances, max_threads, seed } => {
-                let skeleton = InputTable::skeleton(nodes);
-                let input = abi::draft::SimulatorInput {
-                    struct_size: size_of::<draft::SimulatorInput>() as u32,
-                    max_threads,
-                    seed,
-                    skeleton: skeleton.raw(),
-                    n_instances,
-                    reserved: 0,
-                };
+            Request::Prepare { nodes, instances, max_threads, seed } => {
+                let (skeleton, copies) = (InputTable::skeleton(nodes), InputTable::instances(instances));
+                let struct_size = size_of::<abi::SimulatorInput>() as u32;
+                let (skeleton, instances) = (skeleton.raw(), copies.raw());
+                let input = abi::SimulatorInput { struct_size, max_threads, seed, skeleton, instances };
                 (has.simulator.as_ref()?.prepare?)(raw, call, &input)
             }
             Request::Reset => (has.simulator.as_ref()?.reset?)(raw, call),
-            Request::Step { dt, n_steps, wind } => {
-                let gusts = InputTable::wind(wind);
-                let gusts = if wind.is_empty() { null() } else { gusts.raw() };
-                (has.simulator.as_ref()?.step?)(raw, call, dt, n_steps, gusts)
+            Request::Step(steps) => {
+                let wind = InputTable::wind(steps.wind);
+                let detail = steps.detail.map(InputTable::detail);
+                (has.simulator.as_ref()?.step?)(raw, call, &input::steps(steps, &wind, detail.as_ref()))
             }
         })
     }

@@ -3,11 +3,12 @@
 //! Handles know only [`Instance`]: one calls the library in this process, one asks another process.
 
 use crate::context::CallContext;
-use crate::draft::{Gust, Node};
+use crate::draft::Node;
 use crate::error::{Code, HostError};
 use crate::isolated::Ended;
 use crate::quarantine::Tally;
 use crate::reply::{self, Reply, Schema};
+use crate::simulator::{PlantInstance, Steps};
 use crate::types::{DetectRequest, FrameView, Point, StreamInfo, Tracks};
 use crate::values::Value;
 use honami_abi::code;
@@ -34,16 +35,12 @@ pub(crate) enum Request<'a> {
     Grow(&'a Tracks),
     Prepare {
         nodes: &'a [Node],
-        n_instances: u32,
+        instances: &'a [PlantInstance],
         max_threads: u32,
         seed: u64,
     },
     Reset,
-    Step {
-        dt: f64,
-        n_steps: u32,
-        wind: &'a [Gust],
-    },
+    Step(&'a Steps<'a>),
 }
 
 impl Request<'_> {
@@ -63,7 +60,7 @@ impl Request<'_> {
             Self::Cluster(_) | Self::Grow(_) => "run",
             Self::Prepare { .. } => "prepare",
             Self::Reset => "reset",
-            Self::Step { .. } => "step",
+            Self::Step(_) => "step",
         }
     }
 
@@ -81,7 +78,8 @@ impl Request<'_> {
             Self::Field { .. } => &[&reply::VECTORS, &reply::GRID],
             Self::Cluster(_) => &[&reply::DENDROGRAM, &reply::FRAMES],
             Self::Grow(_) => &[&reply::SKELETON],
-            Self::Step { .. } => &[&reply::MOTION],
+            Self::Prepare { .. } => &[&reply::MODES],
+            Self::Step(_) => &[&reply::MOTION],
             _ => &[],
         }
     }

@@ -28,6 +28,7 @@ mod registry;
 mod regular;
 mod reply;
 mod script;
+mod simulator;
 mod store;
 mod tracker;
 mod trust;
@@ -52,6 +53,7 @@ pub use quarantine::ended_well;
 pub use rebuilt::Watch;
 pub use registry::{PluginInfo, Registry, SearchPath, Trust};
 pub use script::manifest_of as file_of;
+pub use simulator::{Detail, ModeRow, PlantInstance, Simulator, Steps, WindRows};
 pub use tracker::{Checkpoint, Tracker};
 pub use trust::TrustBook;
 pub use types::{

@@ -59,21 +59,30 @@ pub(crate) const FRAMES: Schema = Schema {
 pub(crate) const STATE: Schema =
     Schema { id: schema::STATE, required: &[("bytes", dtype::U8, 1)], optional: &[] };
 pub(crate) const SKELETON: Schema = Schema {
-    id: honami_abi::draft::SKELETON,
+    id: schema::SKELETON,
     required: &[
         ("parent", dtype::I32, 1),
         ("x", dtype::F32, 1),
         ("y", dtype::F32, 1),
         ("z", dtype::F32, 1),
         ("radius", dtype::F32, 1),
-        ("track", dtype::I32, 1),
     ],
-    optional: &[],
+    optional: &[("track", dtype::I32, 1)],
+};
+pub(crate) const MODES: Schema = Schema {
+    id: schema::MODES,
+    required: &[("hz", dtype::F64, 1), ("residual", dtype::F64, 1)],
+    optional: &[("certified", dtype::U8, 1)],
 };
 pub(crate) const MOTION: Schema =
-    Schema { id: honami_abi::draft::MOTION, required: &[("d", dtype::F32, 3)], optional: &[] };
+    Schema { id: schema::MOTION, required: &[("d", dtype::F32, 3)], optional: &[] };
 
 impl Schema {
+    /// Whether memory for it is given as the call before left it: it is written whole, and much of it.
+    fn keeps(&self) -> bool {
+        self.id == schema::MOTION
+    }
+
     /// The type of a column that the host reads.
     pub(crate) fn column(&self, name: &str) -> Option<&'static ColumnType> {
         self.required.iter().chain(self.optional).find(|column| column.0 == name)
@@ -173,7 +182,7 @@ impl Column {
 }
 
 /// More is refused: no result of today's plugins comes near.
-const TABLE_BYTES_MAX: usize = 1 << 34;
+pub(crate) const TABLE_BYTES_MAX: usize = 1 << 34;
 
 impl Table {
     fn new(schema: &'static Schema) -> Self {
@@ -193,7 +202,7 @@ impl Table {
         (self.reserved, self.committed) = (None, None);
     }
 
-    /// Makes zeroed room for columns of known or unknown types, given with bytes a row; gives each column's start.
+    /// Makes room, zeroed unless the schema keeps it, for columns of known or unknown types, given with bytes a row; gives each column's start.
     /// `None` when it would be too much.
     pub(crate) fn reserve(
         &mut self,
@@ -208,11 +217,17 @@ impl Table {
             n_lines = n_lines.checked_add(column.n_lines + 1)?;
             self.columns.push(column);
         }
-        if n_lines > TABLE_BYTES_MAX / size_of::<Line>() || self.lines.try_reserve(n_lines).is_err() {
+        if n_lines > TABLE_BYTES_MAX / size_of::<Line>()
+            || self.lines.try_reserve(n_lines.saturating_sub(self.lines.len())).is_err()
+        {
             self.clear();
             return None;
         }
-        self.lines.clear();
+        if self.schema.keeps() {
+            self.lines.truncate(n_lines);
+        } else {
+            self.lines.clear();
+        }
         self.lines.resize(n_lines, Line([0; 64]));
         for column in &self.columns {
             self.lines[column.first_line + column.n_lines] = END;

@@ -119,9 +119,7 @@ pub fn begin(name: &str, kind: Kind, language: Language) -> Result<Begun, String
             "a clusterer can be begun in Python and in Rust; in C, core/abi/include/honami.h says what it is"
                 .into(),
         ),
-        (_, Kind::Structure | Kind::Simulator) => {
-            Err(format!("a {kind} is a draft still, and cannot be begun"))
-        }
+        (_, Kind::Structure | Kind::Simulator) => Err(format!("there is no template of a {kind} yet")),
     }
 }
 

@@ -65,7 +65,7 @@ pub(crate) enum Ask {
     Grow(Movement),
     Prepare {
         skeleton: Columns,
-        n_instances: u32,
+        instances: Columns,
         max_threads: u32,
         seed: u64,
     },
@@ -74,6 +74,8 @@ pub(crate) enum Ask {
         dt: f64,
         n_steps: u32,
         wind: Columns,
+        n_winds: u64,
+        detail: Option<Columns>,
     },
 }
 

@@ -2,17 +2,19 @@
 #![allow(unsafe_code, reason = "this is where the C contract meets the safe traits")]
 
 pub(crate) mod clusterer;
-pub(crate) mod draft;
 mod panics;
+pub(crate) mod simulator;
 mod state;
 mod stateless;
+pub(crate) mod structure;
 pub(crate) mod table;
 pub(crate) mod tracker;
 
 pub use crate::manifest::{Note, manifest_len};
 pub use clusterer::clusterer;
-pub use draft::{simulator, structure};
 pub use panics::quiet_panics;
+pub use simulator::simulator;
+pub use structure::structure;
 pub use tracker::tracker;
 
 use crate::params::{Param, Params, Value};
@@ -50,7 +52,7 @@ unsafe impl Sync for Exported {}
 ///     plugins: [tracker Klt, clusterer Movement],
 /// }
 /// ```
-/// A plugin is announced by its kind: `tracker`, `clusterer`, and, still drafts, `structure` and `simulator`.
+/// A plugin is announced by its kind: `tracker`, `clusterer`, `simulator`, and, still a draft, `structure`.
 #[macro_export]
 macro_rules! export {
     (library: { $($field:ident : $value:expr),* $(,)? }, plugins: [$($kind:ident $plugin:ty),* $(,)?] $(,)?) => {
@@ -202,12 +204,33 @@ struct Slot<S> {
 pub(crate) trait State: Sized + 'static {
     type Params: Params;
     fn new() -> Self;
-    /// The parameters, if they may be set now.
-    fn params(&mut self) -> Result<&mut Self::Params>;
-    /// A number for the parameters that were set, another for others.
-    fn told(&mut self, _params: u64) {}
+    /// Takes other parameters, if they may be set now.
+    fn set(&mut self, params: Self::Params, told: Told) -> Result<()>;
     /// The table of functions behind an interface id.
     fn interface(id: &CStr) -> *const std::ffi::c_void;
+}
+
+/// Numbers for the parameters that were set, others for others.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Told {
+    /// Of those that affect `"step"`,
+    pub(crate) passing: u64,
+    /// and of all others.
+    pub(crate) lasting: u64,
+}
+
+impl Told {
+    fn add(&mut self, schema: &[Param], id: &str, value: Value<'_>) {
+        let affects_step = |param: &Param| param.attributes.contains(&("affects", "\"step\""));
+        let is_passing = schema.iter().any(|param| param.id == id && affects_step(param));
+        let sum = if is_passing { &mut self.passing } else { &mut self.lasting };
+        // They come in any order.
+        *sum = sum.wrapping_add(mix(0, format!("{id} {value:?}").as_bytes()));
+    }
+
+    pub(crate) fn all(self) -> u64 {
+        self.passing.wrapping_add(self.lasting)
+    }
 }
 
 pub(crate) fn new_instance<S: State>() -> *mut abi::Instance {
@@ -291,15 +314,13 @@ unsafe extern "C" fn set_params<S: State>(
     // SAFETY: the host keeps the contract of honami_instance.set_params.
     unsafe {
         door::<S>(instance, call, |state, _| {
-            let (mut params, mut told) = (S::Params::default(), 0_u64);
+            let (mut params, mut told) = (S::Params::default(), Told::default());
             for value in table::slice(values, u64::from(n))? {
-                params.set(text(value.id), value_of(value)?)?;
-                // They come in any order.
-                let words = format!("{} {:?}", text(value.id), value_of(value)?);
-                told = told.wrapping_add(mix(0, words.as_bytes()));
+                let (id, value) = (text(value.id), value_of(value)?);
+                params.set(id, value)?;
+                told.add(S::Params::SCHEMA, id, value);
             }
-            *state.params()? = params;
-            state.told(told);
+            state.set(params, told)?;
             Ok(code::OK)
         })
     }

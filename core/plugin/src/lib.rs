@@ -58,7 +58,7 @@
 //! }
 //! ```
 //!
-//! The pieces: [`Tracker`], [`Clusterer`] and the drafts in [`draft`]; [`params!`] and [`choice!`] for parameters;
+//! The pieces: [`Tracker`], [`Clusterer`], [`Simulator`] and the draft in [`draft`]; [`params!`] and [`choice!`] for parameters;
 //! [`export!`] for the border; [`Cx`] for progress, cancel and log; [`testing`] to run a plugin without a host. The
 //! algorithm itself belongs in a library crate that knows nothing of plugins.
 //!
@@ -70,6 +70,7 @@ mod cx;
 mod error;
 mod info;
 mod manifest;
+mod simulator;
 mod state;
 mod tracker;
 
@@ -85,6 +86,7 @@ pub use error::{Error, Result};
 pub use honami_abi as abi;
 pub use info::{Info, Library};
 pub use params::{Entry, Param, ParamType, Params, Value};
+pub use simulator::{Detail, Instance, Mode, Node, Plant, Simulator, Steps, Wind};
 pub use state::State;
 pub use tracker::{
     Chroma, Detect, DetectFn, Feature, Field, FieldFn, Frame, Gray, Point, Points, Range, Seed, Status,

@@ -159,7 +159,7 @@ pub const fn joined<const N: usize>(parts: &[&[Param]]) -> [Param; N] {
 ///
 /// Doc comments become the parameters' descriptions. The default comes first, then `=> { … }` with what there is to say
 /// of `label`, `group`, `unit`, `min`, `max`, `soft_min`, `soft_max` (ends of the slider), `step`, `scale` (`"log"`),
-/// `relative_to`, `affects` (`"seed"`, `"track"`, `"all"`), `advanced`, `when` (`when: other == value`), and `mode` and
+/// `relative_to`, `affects` (`"seed"`, `"track"`, `"step"`, `"all"`), `advanced`, `when` (`when: other == value`), and `mode` and
 /// `glob` for paths. Values are literals, written as JSON writes them: `0.5`, not `.5`, `HALF` or `0.5_f64`.
 ///
 /// ```

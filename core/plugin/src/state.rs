@@ -1,4 +1,4 @@
-//! What a tracker carries from frame to frame, as bytes that go on where it stopped.
+//! What a plugin carries from frame to frame, or from step to step, as bytes that go on where it stopped.
 
 #[cfg(test)]
 mod tests;
@@ -41,16 +41,61 @@ impl Setting {
     }
 }
 
-/// What is laid before a tracker's own bytes.
-pub(crate) fn head<T: Tracker>(state: &State<T>, setting: &Setting, own: &[u8]) -> [u8; HEAD_BYTES] {
-    let whose = mix(u64::from(state.version), T::INFO.id.as_bytes());
-    let under = setting.sum();
-    let sum = [whose, under].iter().fold(mix(0, own), |sum, number| mix(sum, &number.to_le_bytes()));
+/// Whose bytes they are, and under what they were saved, as numbers.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Whose {
+    /// Of the plugin's id and the version of its bytes,
+    pub(crate) whose: u64,
+    /// and of its parameters and what it works on.
+    pub(crate) under: u64,
+}
+
+impl Whose {
+    /// Of a tracker in a stream.
+    fn tracker<T: Tracker>(state: &State<T>, setting: &Setting) -> Self {
+        Self { whose: mix(u64::from(state.version), T::INFO.id.as_bytes()), under: setting.sum() }
+    }
+}
+
+/// What is laid before a plugin's own bytes.
+pub(crate) fn head(by: Whose, own: &[u8]) -> [u8; HEAD_BYTES] {
+    let sum = [by.whose, by.under].iter().fold(mix(0, own), |sum, number| mix(sum, &number.to_le_bytes()));
     let mut head = [0; HEAD_BYTES];
-    for (place, number) in head.chunks_exact_mut(8).zip([MAGIC, sum, whose, under]) {
+    for (place, number) in head.chunks_exact_mut(8).zip([MAGIC, sum, by.whose, by.under]) {
         place.copy_from_slice(&number.to_le_bytes());
     }
     head
+}
+
+/// A plugin's own bytes behind the head, which must be that of these.
+pub(crate) fn own(by: Whose, bytes: &[u8]) -> Result<&[u8]> {
+    let refused = |what: &str| Error::data(format!("what was saved {what}"));
+    let (said, own) = bytes.split_at_checked(HEAD_BYTES).ok_or_else(|| refused("is cut off"))?;
+    let wanted = head(by, own);
+    let differs = |k: usize| said[8 * k..][..8] != wanted[8 * k..][..8];
+    if differs(0) {
+        return Err(refused("is something else"));
+    }
+    if differs(2) {
+        return Err(refused("is of another plugin, or of another version of it"));
+    }
+    if differs(3) {
+        return Err(refused("is of other parameters, or of another input"));
+    }
+    if differs(1) {
+        return Err(refused("is damaged"));
+    }
+    Ok(own)
+}
+
+/// Whatever a plugin says of its own bytes, it cannot work on them.
+pub(crate) fn unreadable(error: &Error) -> Error {
+    Error::data(format!("what was saved cannot be read: {error}"))
+}
+
+/// What is laid before a tracker's own bytes.
+pub(crate) fn tracker_head<T: Tracker>(state: &State<T>, setting: &Setting, own: &[u8]) -> [u8; HEAD_BYTES] {
+    head(Whose::tracker(state, setting), own)
 }
 
 /// The tracker that saved these bytes.
@@ -60,24 +105,8 @@ pub(crate) fn load<T: Tracker>(
     setting: &Setting,
     bytes: &[u8],
 ) -> Result<T> {
-    let refused = |what: &str| Error::data(format!("what was saved {what}"));
-    let (said, own) = bytes.split_at_checked(HEAD_BYTES).ok_or_else(|| refused("is cut off"))?;
-    let wanted = head(state, setting, own);
-    let differs = |k: usize| said[8 * k..][..8] != wanted[8 * k..][..8];
-    if differs(0) {
-        return Err(refused("is something else"));
-    }
-    if differs(2) {
-        return Err(refused("is of another plugin, or of another version of it"));
-    }
-    if differs(3) {
-        return Err(refused("is of other parameters, or of another stream"));
-    }
-    if differs(1) {
-        return Err(refused("is damaged"));
-    }
-    // Whatever a tracker says, it cannot work on these bytes.
-    (state.load)(params, &setting.stream, own).map_err(|error| refused(&format!("cannot be read: {error}")))
+    let own = own(Whose::tracker(state, setting), bytes)?;
+    (state.load)(params, &setting.stream, own).map_err(|error| unreadable(&error))
 }
 
 /// Adds bytes to a sum. One that differs in a single place always has another sum.

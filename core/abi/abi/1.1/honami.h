@@ -14,7 +14,7 @@
  *   [call]          only the thread that the host called on, before it returns
  *   [control]       the host calls it from any thread, but never two at once for one instance
  *   [.. & idle]     only before begin, or after end or a cancelled call
- *   [.. & run]      only between begin and end
+ *   [.. & run]      only between begin and end, or after prepare
  *   [library]       any thread, one at a time for a library
  * Two instances of one library work at once only if the manifest says "parallel_instances": true.
  *
@@ -25,7 +25,8 @@
  *
  * ERRORS. A negative code means that the call did nothing that counts; say why with call->fail. After a negative code
  * an instance has failed and only destroy is legal, with three exceptions: a refused set_params keeps the former values,
- * a refused save or load leaves the stream as it was, and HONAMI_E_CANCELLED leaves the instance idle. A lost point is no error: it is a row with status lost.
+ * a refused save or load leaves the stream as it was, and HONAMI_E_CANCELLED leaves the instance idle. A lost point is no
+ * error: it is a row with status lost.
  * No exception and no panic may cross the border.
  *
  * MANNERS. At most max_threads threads work at a time; they have stopped before the call returns. Leave alone: file
@@ -146,6 +147,25 @@ typedef struct honami_table {
 #define HONAMI_DENDROGRAM "honami.dendrogram/1"
 /* frame i64, outlier u8 (0 or 1), distance f64 (how far the frame lies from the others, at least 0). */
 #define HONAMI_FRAMES "honami.frames/1"
+/* Of plants: metres, z up, right-handed; angles in radians. Since 1.1.
+ * parent i32, x f32, y f32, z f32, radius f32; a row a node. Optional: track i32 (row of the tracks it was grown from,
+ * or -1). The parent's row comes before its own (-1: the root, row 0 and no other), so cycles cannot be written. */
+#define HONAMI_SKELETON "honami.skeleton/1"
+/* yaw f32 (turned about z, from x towards y), scale f32 (of all lengths, above 0: a plant of the same shape and
+ * material), mass f32 (times that of the plant, above 0); a row a copy. */
+#define HONAMI_INSTANCES "honami.instances/1"
+/* time_s f64, ascending from the last reset on. In a column with rows of its own: wind f32 x 3, m/s in the world, a row a
+ * time for all copies alike, or (time, copy) row-major. Between two times straight, before the first and after the last
+ * as there. */
+#define HONAMI_WIND "honami.wind/1"
+/* nodes u32, modes u32; a row a copy: how much of it is wanted, see honami_simulator_v1.step. */
+#define HONAMI_DETAIL "honami.detail/1"
+/* d f32 x 3: how far a node is from where it rests, in the world; a row a node, copy after copy. What is reserved for it
+ * is NOT zeroed: it holds what the last step left. */
+#define HONAMI_MOTION "honami.motion/1"
+/* hz f64 (above 0, rising), residual f64 (|K x - w2 M x| over |K x|); a row a mode. Optional: certified u8, 1 where it was
+ * proved that there is no other mode below. */
+#define HONAMI_MODES "honami.modes/1"
 
 /* Status of a point in a frame. */
 #define HONAMI_LOST 0      /* the tracker has lost it; the position is its last guess */
@@ -231,7 +251,8 @@ struct honami_instance {
   /* Frees the instance; legal in every state, and nothing of it may run afterwards.  [control] */
   void (*destroy)(honami_instance *instance);
 
-  /* Sets every parameter at once: those not listed take their defaults, unknown ids are ignored.  [control & idle] */
+  /* Sets every parameter at once: those not listed take their defaults, unknown ids are ignored. A simulator takes those
+   * that affect "step" in mid-motion; where others change it forgets its plant.  [control & idle; simulators: control] */
   honami_code (*set_params)(honami_instance *instance, const honami_call *call, const honami_value *values,
                             uint32_t n);
 
@@ -377,9 +398,9 @@ typedef struct honami_field_v1 {
   honami_code (*field)(honami_instance *instance, const honami_call *call, const honami_field_input *input);
 } honami_field_v1;
 
-/* Optional for trackers, since 1.1: what is carried from frame to frame, as bytes of the plugin's own. The host keeps them
- * for the case that the plugin's process dies, and to go on with another build. The table that save commits has the same
- * id: bytes u8, a row a byte. */
+/* Optional for trackers and simulators, since 1.1: what is carried from frame to frame, or from step to step, as bytes of
+ * the plugin's own. The host keeps them for the case that the plugin's process dies, and to go on with another build. The
+ * table that save commits has the same id: bytes u8, a row a byte. */
 #define HONAMI_STATE "honami.state/1"
 typedef struct honami_state_v1 {
   uint32_t struct_size;
@@ -389,7 +410,8 @@ typedef struct honami_state_v1 {
    * without. Changes nothing; the same state gives the same bytes.  [control & run] */
   honami_code (*save)(honami_instance *instance, const honami_call *call);
 
-  /* Goes on where save was called: comes directly after begin, with the same parameters and of the same stream. Bytes that
+  /* Goes on where save was called: comes directly after begin, with the same parameters and of the same stream, or after
+   * prepare, with the same plant and the same parameters but for those that affect "step". Bytes that
    * are not what save gave - cut, damaged, of another version - are refused with HONAMI_E_DATA, whatever is in them.
    * [control & run] */
   honami_code (*load)(honami_instance *instance, const honami_call *call, const uint8_t *bytes, uint64_t n);
@@ -416,6 +438,49 @@ typedef struct honami_clusterer_v1 {
   /* Commits honami.dendrogram/1, and honami.frames/1 if it judges frames.  [control & idle] */
   honami_code (*run)(honami_instance *instance, const honami_call *call, const honami_clusterer_input *input);
 } honami_clusterer_v1;
+
+/* ------------------------------------------------------------------------------------------------- simulators --- */
+
+/* What a simulator moves. */
+typedef struct honami_simulator_input {
+  uint32_t struct_size;
+  uint32_t max_threads;
+  uint64_t seed;
+  const honami_table *skeleton;   /* honami.skeleton/1, at rest */
+  const honami_table *instances;  /* honami.instances/1, at least one; NULL: one copy as it is */
+} honami_simulator_input;
+
+/* How far it is to go. */
+typedef struct honami_step_input {
+  uint32_t struct_size;
+  uint32_t n_steps;            /* at least 1 */
+  double dt;                   /* seconds a step, above 0 */
+  const honami_table *wind;    /* honami.wind/1; NULL: still air */
+  const honami_table *detail;  /* honami.detail/1; NULL: everything of every copy */
+} honami_step_input;
+
+/* Moves copies of a plant in the wind; every plugin of kind "simulator" has it. Since 1.1.
+ *
+ *   prepare, step, step, set_params (what affects "step"), step, reset, step, ... prepare, ...
+ */
+#define HONAMI_SIMULATOR "honami.simulator/1"
+typedef struct honami_simulator_v1 {
+  uint32_t struct_size;
+  uint32_t reserved;
+
+  /* Takes the plant, every copy at rest at time 0, and forgets an earlier one. May commit honami.modes/1.  [control] */
+  honami_code (*prepare)(honami_instance *instance, const honami_call *call, const honami_simulator_input *input);
+
+  /* Back to rest at time 0.  [control & run] */
+  honami_code (*reset)(honami_instance *instance, const honami_call *call);
+
+  /* Goes n_steps steps and commits where the last one led as honami.motion/1: the nodes of the first copy, then those of
+   * the next. n steps at once give the same bits as n times one. Of a copy with a detail only its first `nodes` nodes
+   * are written (parents come before children, so these are a tree; 0: none of it), moved by its first `modes` modes, if
+   * the method has such; both are at most what there is. What is not wanted moves on all the same. A dt that the method
+   * cannot take is refused with HONAMI_E_DATA and a text that says the largest that it can.  [control & run] */
+  honami_code (*step)(honami_instance *instance, const honami_call *call, const honami_step_input *input);
+} honami_simulator_v1;
 
 #ifdef __cplusplus
 }

@@ -1,6 +1,7 @@
 //! What goes to a plugin, in the shapes of the header. Everything borrows; nothing outlives the call.
 
-use crate::draft::{Gust, Node};
+use crate::draft::Node;
+use crate::simulator::{Detail, PlantInstance, Steps, WindRows};
 use crate::types::{DetectRequest, FrameView, Point, StreamInfo, Tracks};
 use honami_abi::{self as abi, draft, dtype, schema};
 use honami_model::picture::Range;
@@ -19,7 +20,6 @@ enum Owned {
     U32(Vec<u32>),
     I32(Vec<i32>),
     F32(Vec<f32>),
-    F64(Vec<f64>),
 }
 
 impl InputTable {
@@ -48,7 +48,6 @@ impl InputTable {
                 Owned::U32(data) => column(name, dtype::U32, rows, data),
                 Owned::I32(data) => column(name, dtype::I32, rows, data),
                 Owned::F32(data) => column(name, dtype::F32, rows, data),
-                Owned::F64(data) => column(name, dtype::F64, rows, data),
             })
             .collect();
         let owned = parts.into_iter().map(|(_, owned)| owned).collect();
@@ -91,7 +90,7 @@ impl InputTable {
         let row = |row: Option<u32>| row.and_then(|row| i32::try_from(row).ok()).unwrap_or(-1);
         let axis = |k: usize| Owned::F32(nodes.iter().map(|n| n.position[k]).collect());
         Self::gathered(
-            draft::SKELETON,
+            schema::SKELETON,
             nodes.len(),
             vec![
                 (c"parent", Owned::I32(nodes.iter().map(|n| row(n.parent)).collect())),
@@ -104,15 +103,29 @@ impl InputTable {
         )
     }
 
-    pub(super) fn wind(gusts: &[Gust]) -> Self {
-        Self::gathered(
-            draft::WIND,
-            gusts.len(),
-            vec![
-                (c"time_s", Owned::F64(gusts.iter().map(|gust| gust.time_s).collect())),
-                (c"wind", Owned::F32(gusts.iter().flat_map(|gust| gust.wind).collect())),
-            ],
-        )
+    pub(super) fn instances(instances: &[PlantInstance]) -> Self {
+        let of = |number: fn(&PlantInstance) -> f32| Owned::F32(instances.iter().map(number).collect());
+        let columns = vec![
+            (c"yaw", of(|copy| copy.yaw)),
+            (c"scale", of(|copy| copy.scale)),
+            (c"mass", of(|copy| copy.mass)),
+        ];
+        Self::gathered(schema::INSTANCES, instances.len(), columns)
+    }
+
+    pub(super) fn wind(wind: WindRows<'_>) -> Self {
+        let (n, velocities) = (wind.times_s.len(), wind.velocities.as_flattened());
+        let columns = vec![
+            column(c"time_s", dtype::F64, n, wind.times_s),
+            column(c"wind", dtype::F32, wind.velocities.len(), velocities),
+        ];
+        Self::new(schema::WIND, n, columns)
+    }
+
+    pub(super) fn detail(detail: &[Detail]) -> Self {
+        let of = |number: fn(&Detail) -> u32| Owned::U32(detail.iter().map(number).collect());
+        let columns = vec![(c"nodes", of(|copy| copy.nodes)), (c"modes", of(|copy| copy.modes))];
+        Self::gathered(schema::DETAIL, detail.len(), columns)
     }
 }
 
@@ -210,5 +223,15 @@ pub(super) fn structure(
         tracks: rows,
         times,
         dendrogram: null(),
+    }
+}
+
+pub(super) fn steps(steps: &Steps<'_>, wind: &InputTable, detail: Option<&InputTable>) -> abi::StepInput {
+    abi::StepInput {
+        struct_size: size_of::<abi::StepInput>() as u32,
+        n_steps: steps.n,
+        dt: steps.dt,
+        wind: if steps.wind.times_s.is_empty() { null() } else { wind.raw() },
+        detail: detail.map_or(null(), InputTable::raw),
     }
 }

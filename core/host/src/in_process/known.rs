@@ -25,7 +25,7 @@ growing!(
     abi::StateV1,
     abi::ClustererV1,
     draft::StructureV1,
-    draft::SimulatorV1
+    abi::SimulatorV1
 );
 
 /// As much of a plugin's struct as the plugin knew; the fields after that are zero, functions among them missing.

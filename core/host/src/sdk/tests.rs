@@ -81,7 +81,7 @@ fn names_that_would_not_work_are_refused() {
     }
     assert!(begin("json", Kind::Tracker, Language::Rust).is_ok());
     assert!(begin("a", Kind::Clusterer, Language::C).unwrap_err().contains("in Python and in Rust"));
-    assert!(begin("a", Kind::Simulator, Language::Rust).unwrap_err().contains("draft"));
+    assert!(begin("a", Kind::Simulator, Language::Rust).unwrap_err().contains("no template of a simulator"));
 }
 
 /// Lines with code: neither empty nor a comment, nor the tests of the template itself.

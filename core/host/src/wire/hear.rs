@@ -2,9 +2,10 @@
 
 use super::memory::Inbox;
 use super::{Ask, Columns, FULL, Frame, LIMITED, Movement, Plane};
-use crate::draft::{Gust, Node};
+use crate::draft::Node;
 use crate::instance::Request;
 use crate::reply::Element;
+use crate::simulator::{Detail, PlantInstance, Steps, WindRows};
 use crate::types::{DetectRequest, FrameView, Point, StreamInfo, Tracks};
 use honami_model::picture::{Chroma, Gray, Range};
 
@@ -61,17 +62,21 @@ pub(crate) fn hear<R>(
         }
         Ask::Cluster(movement) => return Ok(act(&Request::Cluster(&take_tracks(movement, inbox)?))),
         Ask::Grow(movement) => return Ok(act(&Request::Grow(&take_tracks(movement, inbox)?))),
-        Ask::Prepare { skeleton, n_instances, max_threads, seed } => {
-            let nodes = take_nodes(skeleton, inbox)?;
-            let (n_instances, max_threads, seed) = (*n_instances, *max_threads, *seed);
-            return Ok(act(&Request::Prepare { nodes: &nodes, n_instances, max_threads, seed }));
+        Ask::Prepare { skeleton, instances, max_threads, seed } => {
+            let (nodes, instances) = (take_nodes(skeleton, inbox)?, take_instances(instances, inbox)?);
+            let (nodes, instances, max_threads, seed) = (&nodes, &instances, *max_threads, *seed);
+            return Ok(act(&Request::Prepare { nodes, instances, max_threads, seed }));
         }
         Ask::Reset => Request::Reset,
-        Ask::Step { dt, n_steps, wind } => {
-            let times = take::<f64>(wind, inbox, "time_s", 1)?.iter();
-            let (winds, _) = take::<f32>(wind, inbox, "wind", 3)?.as_chunks::<3>();
-            let gusts: Vec<_> = times.zip(winds).map(|(&time_s, &wind)| Gust { time_s, wind }).collect();
-            return Ok(act(&Request::Step { dt: *dt, n_steps: *n_steps, wind: &gusts }));
+        Ask::Step { dt, n_steps, wind, n_winds, detail } => {
+            let winds = Columns { rows: *n_winds, at: wind.at.clone() };
+            let wind = WindRows {
+                times_s: take(wind, inbox, "time_s", 1)?,
+                velocities: take::<f32>(&winds, inbox, "wind", 3)?.as_chunks().0,
+            };
+            let detail = detail.as_ref().map(|detail| take_detail(detail, inbox)).transpose()?;
+            let steps = Steps { dt: *dt, n: *n_steps, wind, detail: detail.as_deref() };
+            return Ok(act(&Request::Step(&steps)));
         }
     };
     Ok(act(&request))
@@ -106,6 +111,17 @@ fn take_nodes(skeleton: &Columns, inbox: &Inbox) -> Result<Vec<Node>, &'static s
         track: u32::try_from(tracks[k]).ok(),
     };
     Ok((0..parents.len()).map(node).collect())
+}
+
+fn take_instances(instances: &Columns, inbox: &Inbox) -> Result<Vec<PlantInstance>, &'static str> {
+    let number = |name| take::<f32>(instances, inbox, name, 1);
+    let rows = number("yaw")?.iter().zip(number("scale")?).zip(number("mass")?);
+    Ok(rows.map(|((&yaw, &scale), &mass)| PlantInstance { yaw, scale, mass }).collect())
+}
+
+fn take_detail(detail: &Columns, inbox: &Inbox) -> Result<Vec<Detail>, &'static str> {
+    let (nodes, modes) = (take::<u32>(detail, inbox, "nodes", 1)?, take::<u32>(detail, inbox, "modes", 1)?);
+    Ok(nodes.iter().zip(modes).map(|(&nodes, &modes)| Detail { nodes, modes }).collect())
 }
 
 fn take_tracks(movement: &Movement, inbox: &Inbox) -> Result<Tracks, &'static str> {

@@ -4,6 +4,7 @@ use super::memory::{Outbox, bytes_of};
 use super::{Ask, Columns, FULL, Frame, LIMITED, Movement, Plane, Stream};
 use crate::draft::Node;
 use crate::instance::Request;
+use crate::simulator::{Detail, PlantInstance, WindRows};
 use crate::types::{FrameView, Point, Tracks};
 use honami_model::picture::{Gray, Range};
 
@@ -48,15 +49,24 @@ pub(crate) fn ask(request: &Request<'_>, out: &mut Outbox) -> Option<Ask> {
         }
         Request::Cluster(tracks) => Ask::Cluster(put_tracks(tracks, out)?),
         Request::Grow(tracks) => Ask::Grow(put_tracks(tracks, out)?),
-        Request::Prepare { nodes, n_instances, max_threads, seed } => {
-            Ask::Prepare { skeleton: put_nodes(nodes, out)?, n_instances, max_threads, seed }
+        Request::Prepare { nodes, instances, max_threads, seed } => {
+            let (skeleton, instances) = (put_nodes(nodes, out)?, put_instances(instances, out)?);
+            Ask::Prepare { skeleton, instances, max_threads, seed }
         }
         Request::Reset => Ask::Reset,
-        Request::Step { dt, n_steps, wind } => {
-            let times: Vec<f64> = wind.iter().map(|gust| gust.time_s).collect();
-            let winds: Vec<f32> = wind.iter().flat_map(|gust| gust.wind).collect();
-            let wind = put(out, wind.len(), &[("time_s", bytes_of(&times)), ("wind", bytes_of(&winds))])?;
-            Ask::Step { dt, n_steps, wind }
+        Request::Step(steps) => {
+            let WindRows { times_s, velocities } = steps.wind;
+            let columns = [("time_s", bytes_of(times_s)), ("wind", bytes_of(velocities.as_flattened()))];
+            Ask::Step {
+                dt: steps.dt,
+                n_steps: steps.n,
+                wind: put(out, times_s.len(), &columns)?,
+                n_winds: velocities.len() as u64,
+                detail: match steps.detail {
+                    Some(detail) => Some(put_detail(detail, out)?),
+                    None => None,
+                },
+            }
         }
     })
 }
@@ -91,6 +101,19 @@ fn put_nodes(nodes: &[Node], out: &mut Outbox) -> Option<Columns> {
         ("track", bytes_of(&tracks)),
     ];
     put(out, nodes.len(), &columns)
+}
+
+fn put_instances(instances: &[PlantInstance], out: &mut Outbox) -> Option<Columns> {
+    let of = |number: fn(&PlantInstance) -> f32| instances.iter().map(number).collect::<Vec<f32>>();
+    let (yaw, scale, mass) = (of(|copy| copy.yaw), of(|copy| copy.scale), of(|copy| copy.mass));
+    let columns = [("yaw", bytes_of(&yaw)), ("scale", bytes_of(&scale)), ("mass", bytes_of(&mass))];
+    put(out, instances.len(), &columns)
+}
+
+fn put_detail(detail: &[Detail], out: &mut Outbox) -> Option<Columns> {
+    let of = |number: fn(&Detail) -> u32| detail.iter().map(number).collect::<Vec<u32>>();
+    let (nodes, modes) = (of(|copy| copy.nodes), of(|copy| copy.modes));
+    put(out, detail.len(), &[("nodes", bytes_of(&nodes)), ("modes", bytes_of(&modes))])
 }
 
 fn put_tracks(tracks: &Tracks, out: &mut Outbox) -> Option<Movement> {

@@ -7,6 +7,7 @@ mod fossil;
 mod hostile;
 mod isolated;
 mod registry;
+mod simulator;
 mod state;
 mod threads;
 mod tools;

@@ -24,13 +24,13 @@ unsafe extern "C" fn save<T: Tracker>(instance: *mut Instance, call: *const Call
             let offered = offered::<T>()?;
             let (tracker, setting) = state.at_work()?;
             let own = (offered.save)(tracker)?;
-            write(call, &state::head(&offered, setting, &own), &own)?;
+            write(call, &state::tracker_head(&offered, setting, &own), &own)?;
             Ok(code::OK)
         })
     }
 }
 
-fn write(call: &HostCall<'_>, head: &[u8], own: &[u8]) -> Result<()> {
+pub(super) fn write(call: &HostCall<'_>, head: &[u8], own: &[u8]) -> Result<()> {
     let columns = [(c"bytes", dtype::U8, 1)];
     let mut out = Reserved::new(call, schema::STATE, head.len() + own.len(), &columns)?;
     out.fill_bytes(0, &[head, own]);

@@ -1,6 +1,6 @@
 //! Instances that hold parameters and nothing else.
 
-use super::State;
+use super::{State, Told};
 use crate::{Params, Result};
 use std::ffi::{CStr, c_void};
 
@@ -23,8 +23,9 @@ impl<F: Function> State for Stateless<F> {
         Self { params: F::Params::default() }
     }
 
-    fn params(&mut self) -> Result<&mut F::Params> {
-        Ok(&mut self.params)
+    fn set(&mut self, params: F::Params, _: Told) -> Result<()> {
+        self.params = params;
+        Ok(())
     }
 
     fn interface(id: &CStr) -> *const c_void {

@@ -57,8 +57,9 @@ all_given!(
     abi::DetectInput: seed,
     abi::FieldInput: to,
     abi::ClustererInput: times,
+    abi::SimulatorInput: instances,
+    abi::StepInput: detail,
     draft::StructureInput: dendrogram,
-    draft::SimulatorInput: reserved,
 );
 
 /// As much of a host's struct as the host knew; the fields after that are zero.
@@ -144,17 +145,24 @@ impl<'c> Reserved<'c> {
     /// # Panics
     /// When the column is of another type: a fault of the SDK's.
     pub(crate) fn fill<T: Element>(&mut self, k: usize, elements: impl Iterator<Item = T>) {
+        for (place, element) in self.elements(k).iter_mut().zip(elements) {
+            *place = element;
+        }
+    }
+
+    /// Column `k`, to write into.
+    ///
+    /// # Panics
+    /// When the column is of another type: a fault of the SDK's.
+    pub(crate) fn elements<T: Element>(&mut self, k: usize) -> &mut [T] {
         let column = &self.columns[k];
         assert_eq!(column.dtype, T::DTYPE, "column {k} of {}", self.schema.to_string_lossy());
         let n = self.rows * column.ncomp as usize;
         if n == 0 || column.data.is_null() {
-            return;
+            return &mut [];
         }
         // SAFETY: the host gave rows * ncomp elements of this type, aligned and ours until the call returns.
-        let target = unsafe { std::slice::from_raw_parts_mut(column.data.cast::<T>(), n) };
-        for (place, element) in target.iter_mut().zip(elements) {
-            *place = element;
-        }
+        unsafe { std::slice::from_raw_parts_mut(column.data.cast::<T>(), n) }
     }
 
     /// Fills column `k`, of bytes, from pieces that come one after the other.
@@ -162,14 +170,7 @@ impl<'c> Reserved<'c> {
     /// # Panics
     /// When the column is of another type: a fault of the SDK's.
     pub(crate) fn fill_bytes(&mut self, k: usize, pieces: &[&[u8]]) {
-        let column = &self.columns[k];
-        assert_eq!(column.dtype, dtype::U8, "column {k} of {}", self.schema.to_string_lossy());
-        let n = self.rows * column.ncomp as usize;
-        if n == 0 || column.data.is_null() {
-            return;
-        }
-        // SAFETY: as in `fill`.
-        let mut left = unsafe { std::slice::from_raw_parts_mut(column.data.cast::<u8>(), n) };
+        let mut left = self.elements::<u8>(k);
         for piece in pieces {
             let (place, rest) = left.split_at_mut(piece.len().min(left.len()));
             place.copy_from_slice(&piece[..place.len()]);

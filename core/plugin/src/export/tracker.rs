@@ -1,7 +1,7 @@
 //! Trackers across the border.
 
 use super::table::{Reserved, column, given, slice};
-use super::{Descriptor, HostCall, State, door, new_instance};
+use super::{Descriptor, HostCall, State, Told, door, new_instance};
 use crate::state::Setting;
 use crate::tracker::{Chroma, Detect, Frame, Gray, Points, Range, Seed, Stream, Tracker};
 use crate::{Cx, Error, Params, Result};
@@ -51,15 +51,12 @@ impl<T: Tracker> State for TrackerState<T> {
         }
     }
 
-    fn told(&mut self, params: u64) {
-        self.told = params;
-    }
-
-    fn params(&mut self) -> Result<&mut T::Params> {
+    fn set(&mut self, params: T::Params, told: Told) -> Result<()> {
         if self.running.is_some() {
             return Err(Error::with_code(code::STATE, "parameters are set before begin or after end"));
         }
-        Ok(&mut self.params)
+        (self.params, self.told) = (params, told.all());
+        Ok(())
     }
 
     fn interface(id: &CStr) -> *const c_void {

@@ -1,6 +1,6 @@
 //! What was saved is loaded as it was saved, or not at all.
 
-use super::{Setting, State, head, load, mix};
+use super::{Setting, State, load, mix, tracker_head};
 use crate::testing::stream;
 use crate::{Cx, Frame, Info, Points, Result, Seed, Stream, Tracker};
 use honami_abi::code;
@@ -36,7 +36,7 @@ fn setting() -> Setting {
 fn saved(word: &str) -> Vec<u8> {
     let state = Word::STATE.unwrap();
     let own = (state.save)(&Word(word.into())).unwrap();
-    [head(&state, &setting(), &own).as_slice(), &own].concat()
+    [tracker_head(&state, &setting(), &own).as_slice(), &own].concat()
 }
 
 fn loaded(state: &State<Word>, setting: &Setting, bytes: &[u8]) -> Result<String> {
@@ -76,14 +76,14 @@ fn what_was_saved_under_other_circumstances_is_refused_and_says_why() {
     let backward = Setting { stream: Stream { reversed: true, ..stream(64, 48) }, ..setting() };
     for (state, setting, wanted) in [
         (&newer, setting(), "what was saved is of another plugin, or of another version of it"),
-        (&state, other, "what was saved is of other parameters, or of another stream"),
-        (&state, larger, "what was saved is of other parameters, or of another stream"),
-        (&state, backward, "what was saved is of other parameters, or of another stream"),
+        (&state, other, "what was saved is of other parameters, or of another input"),
+        (&state, larger, "what was saved is of other parameters, or of another input"),
+        (&state, backward, "what was saved is of other parameters, or of another input"),
     ] {
         assert_eq!(loaded(state, &setting, &bytes).expect_err(wanted).to_string(), wanted);
     }
     let own = [0xff];
-    let bytes = [head(&state, &setting(), &own).as_slice(), &own].concat();
+    let bytes = [tracker_head(&state, &setting(), &own).as_slice(), &own].concat();
     let error = loaded(&state, &setting(), &bytes).expect_err("it is no text");
     assert_eq!(error.code(), code::DATA);
     assert!(error.to_string().starts_with("what was saved cannot be read: "), "{error}");

@@ -55,7 +55,7 @@ fn step<T: Tracker>(tracker: &mut T, t: usize) -> Result<Vec<Point>> {
 
 fn saved<T: Tracker>(offered: &State<T>, setting: &state::Setting, tracker: &T) -> Result<Vec<u8>> {
     let own = (offered.save)(tracker)?;
-    Ok([state::head(offered, setting, &own).as_slice(), &own].concat())
+    Ok([state::tracker_head(offered, setting, &own).as_slice(), &own].concat())
 }
 
 /// Cut and strange bytes: a refusal, and never worse. What the SDK would not let through, `load` must bear all the same.
