@@ -63,7 +63,7 @@ const GRAY: Scene = Scene { dress: Dress::Today, has_colour: false, sets_params:
 
 /// Drafts may still change, and what refuses ordinary work with its defaults can be told nothing.
 fn beside(subject: &Subject, today: &Played) -> Option<Verdict> {
-    if matches!(subject.info.kind, Kind::Structure | Kind::Simulator) {
+    if subject.info.kind == Kind::Structure {
         return Some(Verdict::Beside(format!("the ABI of a {} is a draft", subject.info.kind)));
     }
     let why = today.ended.as_ref()?;

@@ -64,8 +64,7 @@ pub(crate) const CHECKS: &[Check] = &[
 fn of_clusterer(subject: &Subject, check: fn(&Subject) -> Result<Verdict, Fault>) -> Result<Verdict, Fault> {
     match subject.info.kind {
         Kind::Clusterer => check(subject),
-        Kind::Tracker => Ok(Verdict::Beside("it is a tracker".into())),
-        kind => Ok(Verdict::Beside(format!("the interface of a {kind} is a draft"))),
+        kind => Ok(Verdict::Beside(format!("it is a {kind}"))),
     }
 }
 

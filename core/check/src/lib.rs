@@ -18,6 +18,7 @@ mod params;
 mod raw;
 mod report;
 mod running;
+mod simulator;
 mod state;
 mod stress;
 mod subject;
@@ -125,6 +126,7 @@ pub fn checks() -> Vec<Check> {
         frames::CHECKS,
         &truth::checks(),
         clusterer::CHECKS,
+        simulator::CHECKS,
         &running::checks(),
         stress::CHECKS,
     ]

@@ -2,9 +2,11 @@
 
 use crate::clip::{Clip, Texture, grid};
 use crate::course::{HERE, difference, follow, of_able, refusal};
+use crate::simulator::{DT, PLAIN, sapling};
 use crate::{Check, Fault, Subject, Verdict};
 use honami_host::{
-    CallContext, Clustering, HostError, Kind, Numeric, Param, ParamKind, Points, Value, Values,
+    CallContext, Clustering, HostError, Kind, Numeric, Param, ParamKind, Points, Steps, Value, Values,
+    WindRows,
 };
 use rand::RngExt;
 use rand_pcg::Pcg64;
@@ -72,6 +74,7 @@ const N_SETS_OF_PROGRAM: usize = 20;
 enum Outcome {
     Points(Vec<Points>),
     Clustering(Clustering),
+    Motion(Vec<[f32; 3]>),
     /// It says that it cannot work with this, and why.
     Refused(String),
 }
@@ -81,7 +84,8 @@ fn work(subject: &Subject, values: &Values) -> Result<Option<Outcome>, HostError
     let done = match subject.info.kind {
         Kind::Tracker => points(subject, values).map(Outcome::Points),
         Kind::Clusterer => clustering(subject, values).map(Outcome::Clustering),
-        Kind::Structure | Kind::Simulator => return Ok(None),
+        Kind::Simulator => motion(subject, values).map(Outcome::Motion),
+        Kind::Structure => return Ok(None),
     };
     match done {
         Err(error) => refusal(&error).map(|why| Some(Outcome::Refused(why.to_owned()))).ok_or(error),
@@ -97,6 +101,14 @@ fn points(subject: &Subject, values: &Values) -> Result<Vec<Points>, HostError> 
     let seeds = grid([48, 36], 8.0, [2, 2], &mut chance);
     let mut tracker = subject.tracker(HERE, values)?;
     follow(&mut tracker, &clip, &seeds)
+}
+
+fn motion(subject: &Subject, values: &Values) -> Result<Vec<[f32; 3]>, HostError> {
+    let (nodes, cx) = (sapling(&mut subject.chance("params.plant"), 7), CallContext::silent());
+    let mut simulator = subject.simulator(HERE, values)?;
+    simulator.prepare(&nodes, &[PLAIN], 1, 1, &cx)?;
+    let wind = WindRows { times_s: &[0.0], velocities: &[[3.0, 1.0, 0.0]] };
+    Ok(simulator.step(&Steps { dt: DT, n: 10, wind, detail: None }, &cx)?.to_vec())
 }
 
 fn clustering(subject: &Subject, values: &Values) -> Result<Clustering, HostError> {

@@ -46,12 +46,15 @@ sized! {
     abi::DetectInput: seed, Some(std::mem::offset_of!(abi::DetectInput, reserved));
     abi::FieldInput: to, None;
     abi::ClustererInput: times, None;
+    abi::SimulatorInput: instances, None;
+    abi::StepInput: detail, None;
     abi::Library: create, None;
     abi::Instance: get_interface, None;
     abi::TrackerV1: end, None;
     abi::DetectV1: detect, None;
     abi::FieldV1: field, None;
     abi::ClustererV1: run, None;
+    abi::SimulatorV1: step, None;
 }
 
 /// As much of a plugin's struct as the plugin knew; the rest is zero.

@@ -2,7 +2,8 @@
 
 use crate::Fault;
 use honami_host::{
-    CallContext, Clusterer, Host, HostError, Hosting, Kind, Origin, PluginInfo, Tracker, Values, shut_in,
+    CallContext, Clusterer, Host, HostError, Hosting, Kind, Origin, PluginInfo, Simulator, Tracker, Values,
+    shut_in,
 };
 use rand_pcg::Pcg64;
 use std::path::{Path, PathBuf};
@@ -68,6 +69,14 @@ impl Subject {
     /// What keeps it from starting.
     pub fn clusterer(&self, hosting: Hosting, values: &Values) -> Result<Clusterer, HostError> {
         Ok(self.host(hosting)?.clusterer(&self.info, values, &CallContext::silent())?.0)
+    }
+
+    /// A simulator at work with these values, where the others have their defaults.
+    ///
+    /// # Errors
+    /// What keeps it from starting.
+    pub fn simulator(&self, hosting: Hosting, values: &Values) -> Result<Simulator, HostError> {
+        Ok(self.host(hosting)?.simulator(&self.info, values, &CallContext::silent())?.0)
     }
 
     /// Who starts it there. Before anything of it runs in this process the process is shut in, for good: a check that

@@ -2,24 +2,31 @@
 
 use crate::clip::{Clip, Texture, grid};
 use crate::course::difference;
+use crate::simulator::{DT, PLAIN, sapling};
 use crate::{Subject, clusterer};
+use honami_host::draft::Node;
 use honami_host::{
-    CallContext, Clusterer, Clustering, HostError, Hosting, Kind, Point, Points, StreamInfo, Tracker, Tracks,
-    Values,
+    CallContext, Clusterer, Clustering, HostError, Hosting, Kind, PlantInstance, Point, Points, Simulator,
+    Steps, StreamInfo, Tracker, Tracks, Values, WindRows,
 };
 
-/// What there is to do: a clip with points to follow, or tracks to group.
+/// What there is to do: a clip with points to follow, tracks to group, or copies of a plant to move.
 #[derive(Clone, Debug)]
 pub(crate) enum Task {
     Follow { clip: Clip, seeds: Vec<Point> },
     Group(Tracks),
+    Sway { nodes: Vec<Node>, copies: Vec<PlantInstance>, steps_a_call: u32 },
 }
+
+/// So many calls move a plant.
+const SWAYS: usize = 10;
 
 /// What came of it.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Outcome {
     Points(Vec<Points>),
     Clustering(Option<Clustering>),
+    Motion(Vec<Vec<[f32; 3]>>),
 }
 
 impl Outcome {
@@ -27,13 +34,18 @@ impl Outcome {
     pub(crate) fn difference(&self, other: &Self) -> Option<String> {
         match (self, other) {
             (Self::Points(a), Self::Points(b)) => difference(a, b),
+            (Self::Motion(a), Self::Motion(b)) => {
+                let call = a.iter().zip(b).position(|(a, b)| a != b);
+                call.map(|call| format!("another motion from call {call} on"))
+            }
             (a, b) => (a != b).then(|| "another hierarchy".into()),
         }
     }
 }
 
 impl Task {
-    /// A small texture that moves, 20 points and 10 frames; or 40 tracks. `None` for kinds that are drafts.
+    /// A small texture that moves, 20 points and 10 frames; or 40 tracks; or 40 nodes. `None` for the kind that is a
+    /// draft.
     pub(crate) fn small(subject: &Subject) -> Option<Self> {
         Self::of(subject, [96, 72], 10, [5, 4], 40)
     }
@@ -66,7 +78,22 @@ impl Task {
                 Some(Self::Follow { clip: Clip::new(size, n_frames, at), seeds })
             }
             Kind::Clusterer => Some(Self::Group(clusterer::two_groups(&mut chance, n_tracks))),
-            Kind::Structure | Kind::Simulator => None,
+            // What takes a large one its time is steps.
+            Kind::Simulator => {
+                let copies = (0..5).map(|k| PlantInstance { yaw: k as f32, ..PLAIN }).collect();
+                let steps_a_call = if n_tracks > 100 { 20_000 } else { 12 };
+                Some(Self::Sway { nodes: sapling(&mut chance, n_tracks as u32), copies, steps_a_call })
+            }
+            Kind::Structure => None,
+        }
+    }
+
+    /// Of nothing done yet.
+    fn nothing(&self) -> Outcome {
+        match self {
+            Self::Follow { .. } => Outcome::Points(Vec::new()),
+            Self::Group(_) => Outcome::Clustering(None),
+            Self::Sway { .. } => Outcome::Motion(Vec::new()),
         }
     }
 }
@@ -83,21 +110,19 @@ pub(crate) struct Work<'a> {
 enum Plugin {
     Tracker(Box<Tracker>),
     Clusterer(Clusterer),
+    Simulator(Box<Simulator>),
 }
 
 impl<'a> Work<'a> {
     /// Starts a plugin with its defaults.
     pub(crate) fn start(subject: &Subject, hosting: Hosting, task: &'a Task) -> Result<Self, HostError> {
         let values = Values::default();
-        let (plugin, outcome) = match task {
-            Task::Follow { .. } => {
-                (Plugin::Tracker(Box::new(subject.tracker(hosting, &values)?)), Outcome::Points(Vec::new()))
-            }
-            Task::Group(_) => {
-                (Plugin::Clusterer(subject.clusterer(hosting, &values)?), Outcome::Clustering(None))
-            }
+        let plugin = match task {
+            Task::Follow { .. } => Plugin::Tracker(Box::new(subject.tracker(hosting, &values)?)),
+            Task::Group(_) => Plugin::Clusterer(subject.clusterer(hosting, &values)?),
+            Task::Sway { .. } => Plugin::Simulator(Box::new(subject.simulator(hosting, &values)?)),
         };
-        Ok(Self { plugin, task, n_threads: 1, step: 0, outcome })
+        Ok(Self { plugin, task, n_threads: 1, step: 0, outcome: task.nothing() })
     }
 
     /// Lets it use more threads than one.
@@ -107,11 +132,7 @@ impl<'a> Work<'a> {
 
     /// The same instance at another task, or at the same again.
     pub(crate) fn again(self, task: &'a Task) -> Self {
-        let outcome = match task {
-            Task::Follow { .. } => Outcome::Points(Vec::new()),
-            Task::Group(_) => Outcome::Clustering(None),
-        };
-        Self { task, step: 0, outcome, ..self }
+        Self { task, step: 0, outcome: task.nothing(), ..self }
     }
 
     /// Makes the next call; whether it was the last.
@@ -142,6 +163,15 @@ impl<'a> Work<'a> {
                 *found = Some(clusterer.run(&tracks, cx)?);
                 Ok(true)
             }
+            (Plugin::Simulator(simulator), Task::Sway { .. }, Outcome::Motion(all)) => {
+                // Another round after the last.
+                let at = step % (SWAYS + 1);
+                if at == 0 {
+                    all.clear();
+                }
+                all.extend(sway(simulator, self.task, at, self.n_threads, cx)?);
+                Ok(at == SWAYS)
+            }
             // A plugin has one kind, and its tasks are of that kind.
             _ => Ok(true),
         }
@@ -158,7 +188,7 @@ impl<'a> Work<'a> {
     pub(crate) fn tracker(&mut self) -> Option<&mut Tracker> {
         match &mut self.plugin {
             Plugin::Tracker(tracker) => Some(tracker),
-            Plugin::Clusterer(_) => None,
+            Plugin::Clusterer(_) | Plugin::Simulator(_) => None,
         }
     }
 
@@ -166,4 +196,25 @@ impl<'a> Work<'a> {
     pub(crate) fn outcome(&self) -> &Outcome {
         &self.outcome
     }
+}
+
+/// Call `step` of a simulator: it is prepared, then led through a wind that turns.
+fn sway(
+    simulator: &mut Simulator,
+    task: &Task,
+    step: usize,
+    n_threads: u32,
+    cx: &CallContext<'_>,
+) -> Result<Option<Vec<[f32; 3]>>, HostError> {
+    let Task::Sway { nodes, copies, steps_a_call } = task else { return Ok(None) };
+    if step == 0 {
+        simulator.prepare(nodes, copies, n_threads, 1, cx)?;
+        return Ok(None);
+    }
+    let wind = WindRows {
+        times_s: &[0.0, 0.2, 0.4],
+        velocities: &[[1.0, 0.0, 0.0], [0.0, 5.0, 0.5], [-3.0, 0.0, 0.0]],
+    };
+    let steps = Steps { dt: DT, n: *steps_a_call, wind, detail: None };
+    Ok(Some(simulator.step(&steps, cx)?.to_vec()))
 }

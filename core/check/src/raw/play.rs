@@ -84,8 +84,9 @@ impl Stage<'_> {
         match self.info.kind {
             Kind::Tracker => self.tracker(),
             Kind::Clusterer => self.clusterer(),
-            // Drafts: their structs may still change.
-            Kind::Structure | Kind::Simulator => Ok(()),
+            Kind::Simulator => self.simulator(),
+            // A draft: its structs may still change.
+            Kind::Structure => Ok(()),
         }
     }
 
@@ -210,6 +211,34 @@ impl Stage<'_> {
         // SAFETY: as in `begin`.
         self.call("run", |raw, call| unsafe { run(raw, call, input.raw()) })
     }
+
+    fn simulator(&mut self) -> Result<(), Stop> {
+        // SAFETY: the struct of that interface.
+        let table: abi::SimulatorV1 = unsafe { self.made.table(interface::SIMULATOR)? };
+        let (Some(prepare), Some(reset), Some(step)) = (table.prepare, table.reset, table.step) else {
+            return Err(lacking(interface::SIMULATOR).into());
+        };
+        let (plant, copies, wind) = (Columns::skeleton(), Columns::instances(), Columns::wind());
+        let skeleton = self.placed(&plant.table(schema::SKELETON, plant.rows))?;
+        let instances = self.placed(&copies.table(schema::INSTANCES, copies.rows))?;
+        let (skeleton, instances) = (skeleton.raw(), instances.raw());
+        let input = abi::SimulatorInput { struct_size: 0, max_threads: 1, seed: 1, skeleton, instances };
+        let input = self.placed(&input)?;
+        // SAFETY: as in `begin`.
+        self.call("prepare", |raw, call| unsafe { prepare(raw, call, input.raw()) })?;
+        let wind = self.placed(&wind.table(schema::WIND, wind.rows))?;
+        for _ in 0..2 {
+            for wind in [null(), wind.raw()] {
+                let input = abi::StepInput { struct_size: 0, n_steps: 3, dt: 0.005, wind, detail: null() };
+                let input = self.placed(&input)?;
+                // SAFETY: as in `begin`.
+                self.call("step", |raw, call| unsafe { step(raw, call, input.raw()) })?;
+            }
+            // SAFETY: as in `begin`.
+            self.call("reset", |raw, call| unsafe { reset(raw, call) })?;
+        }
+        Ok(())
+    }
 }
 
 fn lacking(id: &CStr) -> Fault {
@@ -308,6 +337,38 @@ impl Columns {
         });
         self._data.push(words);
         self
+    }
+
+    /// A column of f32.
+    fn floats<'a>(self, name: &'static CStr, data: impl IntoIterator<Item = &'a f32>) -> Self {
+        self.with(name, dtype::F32, data.into_iter().map(|v| v.to_ne_bytes()))
+    }
+
+    /// A trunk of 1.5 m that forks.
+    fn skeleton() -> Self {
+        Self::new(5)
+            .with(c"parent", dtype::I32, [-1_i32, 0, 1, 2, 2].into_iter().map(i32::to_ne_bytes))
+            .floats(c"x", &[0.0, 0.0, 0.0, 0.3, -0.2])
+            .floats(c"y", &[0.0, 0.0, 0.0, 0.1, 0.2])
+            .floats(c"z", &[0.0, 0.5, 1.0, 1.4, 1.5])
+            .floats(c"radius", &[0.03, 0.025, 0.02, 0.01, 0.01])
+    }
+
+    fn instances() -> Self {
+        Self::new(2).floats(c"yaw", &[0.0, 1.0]).floats(c"scale", &[1.0, 1.5]).floats(c"mass", &[1.0, 0.5])
+    }
+
+    /// A wind of its own for each of two copies, at two times.
+    fn wind() -> Self {
+        let velocities = [[2.0_f32, 0.0, 0.0], [0.0, 3.0, 0.0], [1.0, 1.0, 0.5], [0.0; 3]];
+        let rows = velocities.len() as u64;
+        let mut wind = Self::new(2)
+            .with(c"time_s", dtype::F64, [0.0_f64, 0.01].into_iter().map(f64::to_ne_bytes))
+            .floats(c"wind", velocities.as_flattened());
+        if let Some(column) = wind.columns.last_mut() {
+            (column.ncomp, column.rows) = (3, rows);
+        }
+        wind
     }
 
     fn table(&self, schema: &CStr, rows: u64) -> abi::Table {

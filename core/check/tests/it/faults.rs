@@ -21,6 +21,7 @@ struct Bad {
 const LOADED: &str = "tests/bad/loaded.c";
 const TRACKER: &str = "tests/bad/tracker.c";
 const CLUSTERER: &str = "tests/bad/clusterer.c";
+const SIMULATOR: &str = "tests/bad/simulator.c";
 
 /// Levels 1 to 3.
 const LOW: &[Bad] = &[
@@ -321,6 +322,29 @@ fn a_fault_in_the_way_of_working_is_found_at_its_level() {
     finds(HIGH);
 }
 
+/// Of simulators.
+const SWAYING: &[Bad] = &[
+    swaying("DRIFTS", "simulator.rest", "in no wind a node is"),
+    swaying("NEVER_CALMS", "simulator.calms", "still sways by"),
+    swaying("ONCE_A_CALL", "simulator.chunks", "60 steps in 60 calls"),
+    swaying("KEEPS_SPEED", "simulator.chunks", "lead"),
+    swaying("COARSE", "simulator.finer", "of the motion"),
+    swaying("FIRST_WIND", "simulator.copies", "copy 1 of 3"),
+    swaying("UNTURNED", "simulator.turned", "is off by"),
+    swaying("SKIPS_UNWANTED", "simulator.detail", "go on otherwise"),
+    swaying("FORGETS", "simulator.state", "one that loads what another saved goes on otherwise"),
+    swaying("DIES_OF_ONE", "simulator.odd", "SIGSEGV"),
+];
+
+const fn swaying(fault: &'static str, check: &'static str, says: &'static str) -> Bad {
+    Bad { fault, source: SIMULATOR, flags: &["-lm"], check, says }
+}
+
+#[test]
+fn a_fault_of_a_simulator_is_found_at_its_level() {
+    finds(SWAYING);
+}
+
 /// One fault, and every check that is to find it, whatever others say of it.
 const SEVERAL: &[(&str, &[&str], &[&str])] = &[
     ("NONE", &["-DWHEN_NOTHING"], &["params.when"]),
@@ -377,7 +401,7 @@ const WITHOUT: &[(&str, &str)] = &[
 
 #[test]
 fn every_check_has_a_bad_plugin_or_a_reason_why_it_has_none() {
-    let single = [LOW, MIDDLE, HIGH].into_iter().flatten().map(|bad| bad.check);
+    let single = [LOW, MIDDLE, HIGH, SWAYING].into_iter().flatten().map(|bad| bad.check);
     let several = SEVERAL.iter().flat_map(|(_, _, wanted)| wanted.iter().copied());
     let found: BTreeSet<&str> = single.chain(several).chain(["file.needed"]).collect();
     let without: BTreeSet<&str> = WITHOUT.iter().map(|(id, _)| *id).collect();

@@ -18,12 +18,12 @@ fn the_example_in_c_and_the_frame_of_the_bad_ones_pass_the_first_levels() {
 }
 
 #[test]
-fn what_the_bad_trackers_and_clusterers_are_made_from_passes_all_that_is_asked_of_everybody() {
+fn what_the_bad_ones_are_made_from_passes_all_that_is_asked_of_everybody() {
     if !has_cc() {
         return;
     }
-    for (source, name) in [("tests/bad/tracker.c", "tracker"), ("tests/bad/clusterer.c", "clusterer")] {
-        let library = compile(source, name, &["-DFAULT=NONE", "-lm"]);
+    for name in ["tracker", "clusterer", "simulator"] {
+        let library = compile(&format!("tests/bad/{name}.c"), name, &["-DFAULT=NONE", "-lm"]);
         let failed = failed(&check(&library, |check| check.level <= 9));
         assert!(failed.is_empty(), "{name}: {failed:?}");
     }
