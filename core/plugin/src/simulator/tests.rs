@@ -21,7 +21,11 @@ fn wind_is_straight_between_its_times_and_stays_beyond_them() {
         (Wind::default(), 1.0, 3, [0.0; 3]),
     ];
     for (wind, time_s, copy, wanted) in rows {
-        assert_eq!(wind.at(time_s, copy).map(f32::to_bits), wanted.map(f32::to_bits), "{wind:?} at {time_s} s, copy {copy}");
+        assert_eq!(
+            wind.at(time_s, copy).map(f32::to_bits),
+            wanted.map(f32::to_bits),
+            "{wind:?} at {time_s} s, copy {copy}"
+        );
     }
     assert!(each.is_per_copy() && !all.is_per_copy());
 }
