@@ -74,7 +74,7 @@ fn was_here(bench: &Bench) -> bool {
 fn what_honami_died_with_works_apart_from_then_on_until_it_is_rebuilt_or_let_in_again() {
     let Some(bench) = bench("SEGFAULT") else { return };
     let settings = "[plugins.hosting]\nbad = \"in-process\"";
-    let said = "bad works in a process of its own: honami died with it inside (`honami plugin retry bad`)";
+    let said = "bad works in a process of its own: honami died with it inside; `honami plugin retry /";
     // A run that nobody has ended keeps the numbers of its tracks: each begins with a project that has none.
     let track = |with: &str| {
         fs::copy(bench.path("p.honami"), bench.path("empty.honami")).unwrap();
@@ -88,10 +88,10 @@ fn what_honami_died_with_works_apart_from_then_on_until_it_is_rebuilt_or_let_in_
     // It is told once, and costs a frame instead of honami.
     assert_eq!([bad; 2].map(track), [(Some(false), true), (Some(false), false)]);
     let list = settled(&bench, settings, "plugin list --plugin bad.so", &[]).stdout;
-    assert!(list.contains("honami has died with it inside, `honami plugin retry bad` lets it in"), "{list}");
+    assert!(list.contains("honami has died with it inside, `honami plugin retry bad.so` lets it in"), "{list}");
     // What did come with honami leaves no trail, nor does what ends well.
     assert_eq!(track("--with klt"), (Some(true), false));
-    let retried = settled(&bench, settings, "plugin retry bad --plugin bad.so", &[]);
+    let retried = settled(&bench, settings, "plugin retry bad.so", &[]);
     assert_eq!(retried.stdout.trim(), "bad may start again");
     assert_eq!(track(bad), (None, false), "it dies");
     // Another build is another plugin, though what became of the one before is told.

@@ -131,10 +131,10 @@ impl Host {
         Self { leaves_trails: true, ..self }
     }
 
-    /// Looks for trails of processes that have died; the short names of the plugins that were in them. Each is told of
-    /// once.
+    /// Looks for trails of processes that have died; the short names of the plugins that were in them, and their
+    /// files. Each is told of once.
     #[must_use]
-    pub fn follow_trails(&self) -> Vec<String> {
+    pub fn follow_trails(&self) -> Vec<(String, PathBuf)> {
         Quarantine::beside(&self.store).follow_trails()
     }
 

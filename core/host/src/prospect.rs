@@ -35,9 +35,9 @@ impl Host {
         };
         let (level, mut why) = plughost::foresee(programs);
         if self.is_kept_out(info) {
-            let name = &info.short_name;
+            let file = info.library.display();
             let out =
-                format!("honami has died with it inside, `honami plugin retry {name}` lets it in again");
+                format!("honami has died with it inside, `honami plugin retry {file}` lets it in again");
             why = if why.is_empty() { out } else { format!("{out}; {why}") };
         }
         Prospect { hosting, sandbox: level.word(), why, is_bare: false }

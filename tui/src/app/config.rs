@@ -136,7 +136,10 @@ impl Config {
     #[must_use]
     pub fn beginning(self) -> Self {
         let plugins = self.plugins.host().follow_trails();
-        Self { kept_out: plugins.iter().map(|plugin| plugins::kept_out(plugin)).collect(), ..self }
+        Self {
+            kept_out: plugins.iter().map(|(plugin, library)| plugins::kept_out(plugin, library)).collect(),
+            ..self
+        }
     }
 
     /// One line for the screen, where something is wrong.

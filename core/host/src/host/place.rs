@@ -12,7 +12,9 @@ impl Host {
         if self.leaves_trails && info.trust != Trust::Shipped {
             let sha256 = in_process::keep_same(info, &self.store)?.sha256;
             // Where nothing can be written there is none.
-            Quarantine::beside(&self.store).leave_trail(&sha256, &info.short_name).unwrap_or_default();
+            Quarantine::beside(&self.store)
+                .leave_trail(&sha256, &info.short_name, &info.library)
+                .unwrap_or_default();
         }
         Ok(())
     }

@@ -36,22 +36,25 @@ fn failures_of_long_ago_and_of_a_clock_that_went_ahead_count_no_more() {
     }
 }
 
+/// What a trail says.
+const SNAIL: &str = "snail\n/lab/snail.so";
+
 #[test]
 fn the_trail_of_a_dead_process_keeps_its_library_out_until_it_is_released() {
     let folder = tempfile::tempdir().unwrap();
     let quarantine = Quarantine(folder.path().join("new"));
-    assert_eq!(quarantine.follow_trails(), Vec::<String>::new());
+    assert_eq!(quarantine.follow_trails(), []);
     for _ in 0..2 {
-        quarantine.leave_trail("alive", "klt").unwrap();
+        quarantine.leave_trail("alive", "klt", Path::new("/lab/klt.so")).unwrap();
     }
-    assert_eq!(quarantine.follow_trails(), Vec::<String>::new(), "its process lives");
+    assert_eq!(quarantine.follow_trails(), [], "its process lives");
     // Two processes that have died with it, and one that has died before its trail had a name.
-    for (name, plugin) in [("abc.7.inside", "snail"), ("abc.8.inside", "snail"), ("abc.9.new", "snail")] {
+    for (name, plugin) in [("abc.7.inside", SNAIL), ("abc.8.inside", SNAIL), ("abc.9.new", SNAIL)] {
         fs::write(quarantine.0.join(name), plugin).unwrap();
     }
     assert!(!quarantine.is_kept_out("abc"));
-    assert_eq!(quarantine.follow_trails(), ["snail"]);
-    assert_eq!(quarantine.follow_trails(), Vec::<String>::new(), "it is told once");
+    assert_eq!(quarantine.follow_trails(), [("snail".to_owned(), "/lab/snail.so".into())]);
+    assert_eq!(quarantine.follow_trails(), [], "it is told once");
     assert_eq!(["abc", "alive", "rebuilt"].map(|hash| quarantine.is_kept_out(hash)), [true, false, false]);
     quarantine.release("abc").unwrap();
     assert!(!quarantine.is_kept_out("abc"));

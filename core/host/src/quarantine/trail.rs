@@ -33,7 +33,7 @@ impl Quarantine {
     ///
     /// # Errors
     /// When it cannot be written.
-    pub(crate) fn leave_trail(&self, sha256: &str, plugin: &str) -> io::Result<()> {
+    pub(crate) fn leave_trail(&self, sha256: &str, plugin: &str, library: &Path) -> io::Result<()> {
         let trail = self.0.join(format!("{sha256}.{}.{INSIDE}", process::id()));
         let mut own = OWN.lock().unwrap_or_else(PoisonError::into_inner);
         if own.contains_key(&trail) {
@@ -44,18 +44,18 @@ impl Quarantine {
         let new = trail.with_extension("new");
         let mut file = File::create(&new)?;
         file.lock()?;
-        file.write_all(plugin.as_bytes())?;
+        write!(file, "{plugin}\n{}", std::path::absolute(library)?.display())?;
         fs::rename(&new, &trail)?;
         own.insert(trail, file);
         Ok(())
     }
 
-    /// Keeps those libraries out from now on whose trails dead processes have left; names of their plugins. Each trail
-    /// is told of once.
-    pub(crate) fn follow_trails(&self) -> Vec<String> {
+    /// Keeps those libraries out from now on whose trails dead processes have left; names of their plugins, and the
+    /// files that these were in. Each trail is told of once.
+    pub(crate) fn follow_trails(&self) -> Vec<(String, PathBuf)> {
         let Ok(entries) = fs::read_dir(&self.0) else { return Vec::new() };
         let files = entries.filter_map(|entry| Some(entry.ok()?.path()));
-        let mut plugins: Vec<String> = files
+        let mut plugins: Vec<_> = files
             .filter(|path| path.extension() == Some(OsStr::new(INSIDE)))
             .filter_map(|p| self.follow(&p))
             .collect();
@@ -64,13 +64,14 @@ impl Quarantine {
         plugins
     }
 
-    fn follow(&self, trail: &Path) -> Option<String> {
+    fn follow(&self, trail: &Path) -> Option<(String, PathBuf)> {
         File::open(trail).ok()?.try_lock_shared().ok()?;
         let (sha256, _) = trail.file_name()?.to_str()?.split_once('.')?;
         let out = self.kept_out(sha256);
         // Of several that find it one succeeds.
         fs::rename(trail, &out).ok()?;
-        fs::read_to_string(out).ok()
+        let text = fs::read_to_string(out).ok()?;
+        text.split_once('\n').map(|(plugin, library)| (plugin.to_owned(), library.into()))
     }
 }
 

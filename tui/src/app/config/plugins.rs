@@ -1,6 +1,7 @@
 //! `[plugins]`: what plugins may take in a process of their own, and where they work.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::time::Duration;
 
 use honami_workbench::plugins::{Host, Hosting, Limits, Registry};
@@ -83,9 +84,10 @@ impl Plugins {
 }
 
 /// What is said of a plugin that was in honami when that died.
-pub(super) fn kept_out(plugin: &str) -> String {
+pub(super) fn kept_out(plugin: &str, library: &Path) -> String {
+    let file = library.display();
     format!(
-        "{plugin} works in a process of its own: honami died with it inside (`honami plugin retry {plugin}`)"
+        "{plugin} works in a process of its own: honami died with it inside; `honami plugin retry {file}` lets it in again"
     )
 }
 
