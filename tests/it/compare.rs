@@ -8,6 +8,8 @@ use honami_tests::{Bench, data};
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
 
+use crate::isolated::{compile, has_cc, project};
+
 /// The row of a tracker.
 fn row<'a>(said: &'a Value, tracker: &str) -> &'a Value {
     said["trackers"].as_array().unwrap().iter().find(|row| row["tracker"] == tracker).unwrap()
@@ -191,4 +193,28 @@ fn middlebury_trees_are_followed_to_a_tenth_of_a_pixel() {
     let said = bench.run(["compare", &from, &to, "--truth", &truth, "--with", "klt", "--json"]).json();
     assert!(number(&row(&said, "klt")["median_px"]) < 0.1, "{said}");
     assert!(number(&row(&said, "static")["median_px"]) > 1.0, "{said}");
+}
+
+#[test]
+fn a_tracker_that_dies_once_loses_its_frame_and_one_that_dies_thrice_its_row() {
+    if !has_cc() {
+        return;
+    }
+    let bench = Bench::new();
+    project(&bench);
+    let line = "compare clip.y4m --points points.csv --plugin bad.so --with bad";
+    compile(&bench, "bad.so", &["-DFAULT=SEGFAULT"]);
+    let said = bench.json(&format!("{line} --quick"));
+    let bad = row(&said, "bad");
+    // In frame 2 both points are lost.
+    assert_eq!((&bad["deaths"], number(&bad["kept"])), (&1.into(), 0.0), "{said}");
+    // On the way back it dies there, too: that is not measured, and the row stays. By now it would be held.
+    let _said = bench.text("plugin retry bad.so");
+    let said = bench.json(line);
+    let bad = row(&said, "bad");
+    assert_eq!((&bad["deaths"], &bad["back"]), (&2.into(), &Value::Null), "{said}");
+    compile(&bench, "bad.so", &["-DFAULT=WITHERS"]);
+    let ran = bench.line(&format!("{line} --with klt"));
+    let why = "bad: no row: org.honami.bad has failed three times within ten minutes";
+    assert!(ran.code == Some(1) && ran.stderr.contains(why) && ran.stdout.contains("klt"), "{ran:?}");
 }

@@ -3,13 +3,14 @@
 
 use std::collections::BTreeSet;
 use std::fs;
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::Mutex;
-use std::time::{Duration, Instant};
 
 use honami_tests::{Bench, ran, root};
-use rustix::process::{Pid, Signal, kill_process};
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::process::{Pid, PidfdFlags, Signal, kill_process, pidfd_open};
 
 use crate::isolated::{compile, has_cc, is_shut_in, project};
 
@@ -46,6 +47,13 @@ const ROWS: &[Row] = &[
     ),
     ("sleep", C(&["-DFAULT=SLEEPS"]), "it was ended after 10 s without a sign of life", 0, "11011111"),
     ("segfault", C(&["-DFAULT=SEGFAULT"]), "started again at frame 2: it died of SIGSEGV", 0, "11011111"),
+    (
+        "last words",
+        C(&["-DFAULT=SPEAKS"]),
+        "it died of SIGSEGV (it used memory that is not its own); it last printed: no weights for level 2",
+        0,
+        "11011111",
+    ),
     ("abort", C(&["-DFAULT=ABORTS"]), "started again at frame 2: it died of SIGABRT", 0, "11011111"),
     ("exit", C(&["-DFAULT=EXITS"]), "frame 2: it ended its process with status 0", 0, "11011111"),
     ("fork", C(&["-DFAULT=FORKS"]), "started again at frame 2: it died of SIGSEGV", 0, "11011111"),
@@ -118,7 +126,11 @@ fn check(&(name, made, wanted, code, seen): &Row) {
     let ran = ran(tracking(&bench, &line).output().unwrap());
     let said = format!("{}{}", ran.stdout, ran.stderr);
     assert!(ran.code == Some(code) && said.contains(wanted), "{name}: {ran:?}");
-    assert!(!said.contains('\u{1b}') && said.lines().count() == 1, "{name}: {ran:?}");
+    // Who is silent is told of at once, and then again.
+    let (silent, told): (Vec<&str>, Vec<&str>) =
+        said.lines().partition(|line| line.starts_with("bad, frame 2: no sign of life for "));
+    assert_eq!(!silent.is_empty(), wanted.contains("without a sign of life"), "{name}: {ran:?}");
+    assert!(!said.contains('\u{1b}') && told.len() == 1, "{name}: {ran:?}");
     assert_whole(&bench, name, seen);
     assert_eq!(files(&bench), before, "{name}");
 }
@@ -169,8 +181,17 @@ fn assert_whole(bench: &Bench, name: &str, seen: &str) {
         assert_eq!(statuses, seen, "{name}");
         fs::remove_file(bench.path("p.honami.csv")).unwrap();
     }
-    let left = processes(&bench.path(""));
-    assert!(left.is_empty(), "{name}: {left:?}");
+    for (pid, process) in processes(&bench.path("")) {
+        // What was killed takes its time to be gone.
+        assert!(ends(pid), "{name}: {process} is left");
+    }
+}
+
+/// Whether a process ends, which is no child of this one.
+fn ends(pid: Pid) -> bool {
+    let Ok(process) = pidfd_open(pid, PidfdFlags::empty()) else { return true };
+    let mut wanted = [PollFd::new(&process, PollFlags::IN)];
+    poll(&mut wanted, Some(&Timespec { tv_sec: 60, tv_nsec: 0 })).unwrap() > 0
 }
 
 /// The files in the folder, and whatever lies in that for temporary files.
@@ -202,6 +223,8 @@ enum Act {
     Overwritten,
     /// What is no library is written over it.
     Spoilt,
+    /// It goes.
+    Removed,
 }
 
 #[test]
@@ -213,23 +236,26 @@ fn what_becomes_of_a_file_during_a_run_is_met_when_the_plugin_starts_again() {
         (Act::Replaced, Signal::USR1, "2 tracks, frames 0-7", 0, "11111111"),
         (Act::Overwritten, Signal::USR1, "2 tracks, frames 0-7", 0, "11111111"),
         (Act::Spoilt, Signal::USR1, "2 tracks, frames 0-7", 0, "11111111"),
+        (Act::Removed, Signal::USR1, "2 tracks, frames 0-7", 0, "11111111"),
         // The new one goes on where the old one was: no frame is lost.
         (Act::Replaced, Signal::KILL, "started again at frame 2: it died of SIGKILL", 0, "11111111"),
         (Act::Overwritten, Signal::KILL, "started again at frame 2: it died of SIGKILL", 0, "11111111"),
         // The old one goes on, and waits there again until it is ended.
         (Act::Spoilt, Signal::KILL, "started again at frame 2: it died of SIGKILL", 0, "11011111"),
+        (Act::Removed, Signal::KILL, "started again at frame 2: it died of SIGKILL", 0, "11011111"),
     ] {
         let bench = Bench::new();
         project(&bench);
         let library = compile(&bench, "plugin.so", &["-DFAULT=WAITS"]);
         let good = compile(&bench, "good.so", &["-DFAULT=NONE"]);
-        let line = "track p.honami --plugin plugin.so --with bad --points points.csv";
-        let child = tracking(&bench, line).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-        let plugin = waiting(&bench, &child);
+        let line = "track p.honami --plugin plugin.so --with bad --points points.csv -v";
+        let mut child = tracking(&bench, line).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let plugin = waiting(&bench, &mut child);
         match act {
             Act::Replaced => fs::rename(good, library).unwrap(),
             Act::Overwritten => fs::write(library, fs::read(good).unwrap()).unwrap(),
             Act::Spoilt => fs::write(library, "no library").unwrap(),
+            Act::Removed => fs::remove_file(library).unwrap(),
         }
         kill_process(plugin, signal).unwrap();
         let ran = ran(child.wait_with_output().unwrap());
@@ -240,15 +266,72 @@ fn what_becomes_of_a_file_during_a_run_is_met_when_the_plugin_starts_again() {
     }
 }
 
-/// The plugin's process, once it waits in frame 2.
-fn waiting(bench: &Bench, child: &Child) -> Pid {
-    let begun = Instant::now();
-    loop {
-        let found = processes(&bench.path("")).into_iter().find(|(_, name)| name.trim() == "waits");
-        if let Some((pid, _)) = found {
-            return pid;
-        }
-        assert!(begun.elapsed() < Duration::from_secs(60), "{} does not come to frame 2", child.id());
-        std::thread::yield_now();
+/// The plugin's process, once it has said that it waits in frame 2.
+fn waiting(bench: &Bench, child: &mut Child) -> Pid {
+    let said = child.stderr.as_mut().unwrap();
+    let mut heard = Vec::new();
+    while !heard.ends_with(b"bad: waits\n") {
+        // A byte at a time: what comes afterwards is for others.
+        let mut byte = [0];
+        let n = said.read(&mut byte).unwrap();
+        assert_eq!(n, 1, "it does not come to frame 2: {}", String::from_utf8_lossy(&heard));
+        heard.extend(byte);
     }
+    let found = processes(&bench.path("")).into_iter().find(|(_, name)| name.trim() == "waits");
+    found.unwrap().0
+}
+
+#[test]
+fn what_a_plugin_prints_is_told_where_that_is_asked_for() {
+    if !has_cc() {
+        return;
+    }
+    let bench = Bench::new();
+    project(&bench);
+    let with = make(&bench, C(&["-DFAULT=SPEAKS"]));
+    let line = format!("track p.honami --plugin plugin.so --with {with} --points points.csv");
+    let said = ran(tracking(&bench, &format!("{line} -v")).output().unwrap());
+    // It dies twice in frame 2, and is told of once; each has its own last words.
+    let wanted = [
+        "bad: read weights",
+        "bad: no weights for level 2",
+        "bad: error: died of SIGSEGV (it used memory that is not its own); it last printed: no weights for level 2, in frame 2",
+        "bad: warning: started again at frame 2",
+        "bad: read weights",
+        "bad: no weights for level 2",
+        "bad: warning: started again at frame 2",
+    ];
+    assert_eq!(said.stderr.lines().collect::<Vec<_>>(), wanted, "{said:?}");
+    // The reason stays with the run.
+    let run = bench.log("p.honami", "run")[0].clone();
+    let why = run["started_again"][0]["why"].as_str().unwrap();
+    assert!(why.ends_with("; it last printed: no weights for level 2"), "{run}");
+    let log = bench.text("log p.honami");
+    assert!(log.contains(why), "{log}");
+}
+
+#[test]
+fn what_was_hidden_when_a_run_failed_is_so_in_the_frame_that_it_goes_on_from() {
+    if !has_cc() {
+        return;
+    }
+    let bench = Bench::new();
+    project(&bench);
+    compile(&bench, "plugin.so", &["-DFAULT=NEGATIVE", "-DFROM=4", "-DHIDES=2"]);
+    let line = "track p.honami --plugin plugin.so --with bad --points points.csv";
+    let ran = bench.line(line);
+    assert!(ran.code == Some(1) && ran.stderr.contains("failed at frame 4"), "{ran:?}");
+    let statuses = |bench: &Bench| {
+        let samples = bench.samples("p.honami");
+        ["1", "2"].map(|track| {
+            let of = samples.iter().filter(|row| row["track"] == track);
+            of.map(|row| row["status"].as_str()).collect::<String>()
+        })
+    };
+    assert_eq!(statuses(&bench), ["1111", "1122"]);
+    // Rebuilt, it sees both; in frame 3 it was told where they are, and has looked at nothing.
+    compile(&bench, "plugin.so", &["-DFAULT=NONE"]);
+    let said = bench.text("track p.honami --plugin plugin.so --resume");
+    assert!(said.contains("frames 3-7"), "{said}");
+    assert_eq!(statuses(&bench), ["11111111", "11221111"]);
 }

@@ -38,7 +38,7 @@ pub(crate) fn build(bench: &Bench, flags: &[&str]) {
 }
 
 /// A project of 30 frames with three points, and a pipe to wait at.
-fn project() -> Bench {
+pub(crate) fn project() -> Bench {
     let bench = Bench::new();
     bench.synth("clip.y4m", 30, "--leaves 20 --wind calm");
     let _said = bench.text("new p.honami clip.y4m");
@@ -51,12 +51,12 @@ fn project() -> Bench {
 const PATIENCE: Duration = Duration::from_secs(300);
 
 /// Ends a program that says nothing of what is waited for, so that the test ends, too. It ends with this.
-struct Within {
+pub(crate) struct Within {
     _alive: SyncSender<()>,
 }
 
 impl Within {
-    fn begin(child: &Child, gate: &Path) -> Self {
+    pub(crate) fn begin(child: &Child, gate: &Path) -> Self {
         let (alive, end) = sync_channel::<()>(1);
         let (child, gate) = (Pid::from_child(child), gate.to_owned());
         let wait = move || {
@@ -206,9 +206,11 @@ fn what_is_no_plugin_any_more_changes_nothing() {
         }
     };
     type Do = Box<dyn Fn(&Path)>;
-    let rows: [(Do, &str); 2] = [
+    let rows: [(Do, &str); 3] = [
         (Box::new(replace("no library")), "mine was rebuilt, and the build before goes on: "),
         (Box::new(replace("")), "mine was rebuilt, and the build before goes on: "),
+        // What is not there is no build: nothing is said of it.
+        (Box::new(|file: &Path| fs::remove_file(file).unwrap()), ""),
     ];
     for (change, until) in rows {
         let bench = project();

@@ -1,16 +1,17 @@
 //! A run that is stopped, and one that is killed: what was tracked is kept, and nothing else is hurt.
 
+use std::fs::File;
 use std::process::{Child, Stdio};
 
 use honami_tests::{Bench, by_track};
 use rusqlite::{Connection, OpenFlags};
 use rustix::process::{Pid, Signal, kill_process};
 
+use crate::isolated::has_cc;
+use crate::rebuilt;
+
 /// Frames of the clip: many more than are tracked before the signal comes.
 const N_FRAMES: u32 = 400;
-
-/// Frames that are kept at a time.
-const CHUNK: u64 = 64;
 
 /// Looks for new features, away from those of the first run.
 const NEW: &str = " --detect";
@@ -76,7 +77,7 @@ fn a_run_that_is_stopped_keeps_its_frames() {
     let (bench, child) = at_work(NEW);
     let track = stop(child);
     let end = track["frames"][1].as_u64().unwrap();
-    assert!((CHUNK..u64::from(N_FRAMES)).contains(&end), "{track}");
+    assert!((1..u64::from(N_FRAMES)).contains(&end), "{track}");
 
     let run = &bench.log("p.honami", "run")[1];
     assert_eq!((&run["state"], &run["frames"]), (&"stopped: stopped".into(), &track["frames"]));
@@ -106,7 +107,7 @@ fn a_run_that_is_killed_keeps_its_frames() {
     let run = &bench.log("p.honami", "run")[1];
     assert_eq!(run["state"], "interrupted");
     let end = run["frames"][1].as_u64().unwrap();
-    assert!(end >= CHUNK && end % CHUNK == 0 && end < u64::from(N_FRAMES), "{run}");
+    assert!((1..u64::from(N_FRAMES)).contains(&end), "{run}");
     let samples = bench.samples("p.honami");
     let found: Vec<_> = samples.into_iter().filter(|row| row["run"] == "2").collect();
     assert!(!found.is_empty());
@@ -121,6 +122,34 @@ fn a_run_that_is_killed_keeps_its_frames() {
     let now = edits(&bench.json("log p.honami"));
     let before = edits(&before);
     assert_eq!(now[..before.len()], before, "nothing that was done before is hurt");
+}
+
+#[test]
+fn a_run_that_is_killed_in_a_slow_frame_keeps_all_before_it() {
+    if !has_cc() {
+        return;
+    }
+    let bench = rebuilt::project();
+    rebuilt::build(&bench, &["-DWAIT=12"]);
+    let gate = bench.path("gate");
+    let mut command =
+        bench.command("track p.honami --with mine --plugin mine.so --points points.csv".split(' '));
+    command.args(["--set", &format!("gate={}", gate.display())]).env("HONAMI_NO_WATCHDOG", "1");
+    let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    let _within = rebuilt::Within::begin(&child, &gate);
+    // It is in frame 12 once it waits at the pipe, and stays there.
+    let _open = File::options().write(true).open(&gate).unwrap();
+    let run = || bench.log("p.honami", "run")[0].clone();
+    while run()["frames"] != serde_json::json!([0, 12]) {
+        assert_eq!(child.try_wait().unwrap(), None, "{}", run());
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let run = run();
+    assert_eq!((&run["state"], &run["frames"]), (&"interrupted".into(), &serde_json::json!([0, 12])));
+    // The next session shows them.
+    assert_eq!(bench.edit("p.honami", "key 1 5 40 50").code, Some(0));
+    assert_eq!(bench.samples("p.honami").len(), 3 * 12);
 }
 
 #[test]

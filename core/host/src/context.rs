@@ -42,6 +42,8 @@ pub struct Silence {
     pub since: Duration,
     /// Whether it is ended now, unless somebody is patient.
     pub is_too_long: bool,
+    /// After so long a silence it is.
+    pub at_most: Duration,
 }
 
 /// What becomes of a plugin that gives no sign of life.

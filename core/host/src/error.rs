@@ -114,11 +114,23 @@ pub enum HostError {
     },
 }
 
+impl HostError {
+    /// How the plugin's process ended, and what it last printed, where that is what went wrong:
+    /// `died of SIGABRT (it gave up); it last printed: no weights`.
+    #[must_use]
+    pub fn end(&self) -> Option<String> {
+        match self {
+            Self::Ended { how, last_words, .. } => Some(format!("{how}{}", after(last_words))),
+            _ => None,
+        }
+    }
+}
+
 fn of_frame(frame: Option<i64>) -> String {
     frame.map_or_else(String::new, |frame| format!(" of frame {frame}"))
 }
 
-fn after(last_words: &str) -> String {
+pub(crate) fn after(last_words: &str) -> String {
     if last_words.is_empty() { String::new() } else { format!("; it last printed: {last_words}") }
 }
 

@@ -286,8 +286,8 @@ impl Host {
                 }
                 let read = files_of(info, values);
                 let made = isolated::create(info, &copy.path, read, self.limits, cx);
-                if let (Err(HostError::Ended { how, .. }), Some(tally)) = (&made, tally) {
-                    tally.ended(how);
+                if let (Err(HostError::Ended { how, last_words, .. }), Some(tally)) = (&made, tally) {
+                    tally.ended(how, last_words);
                 }
                 let (instance, sandbox) = made?;
                 Ok((instance, copy.sha256, sandbox))

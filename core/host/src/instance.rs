@@ -129,8 +129,9 @@ impl Handle {
         let function = request.function();
         if let Some(how) = reply.ended.take() {
             self.failed = true;
+            let last_words = std::mem::take(&mut reply.last_words);
             if let Some(tally) = &self.tally {
-                tally.ended(&how);
+                tally.ended(&how, &last_words);
             }
             let plugin = self.plugin.clone();
             if how == Ended::Stopped {
@@ -140,7 +141,6 @@ impl Handle {
                 Request::Push(view) => Some(view.index),
                 _ => None,
             };
-            let last_words = std::mem::take(&mut reply.last_words);
             return Err(HostError::Ended { plugin, function, frame, how, last_words });
         }
         if let Some(what) = reply.faults.first() {

@@ -34,6 +34,9 @@ const LINES_A_LOOK: usize = 256;
 /// So many pieces of what it has printed are read after its end.
 const LAST_PRINTS: usize = 64;
 
+/// Letters of its last line that are told with its death.
+const LAST_WORDS_MAX: usize = 160;
+
 /// What a plugin may take in a process of its own.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
@@ -106,7 +109,8 @@ impl Isolated {
                 self.take(answer, schemas, reply);
             }
             Ok(Heard::End(how)) => {
-                (reply.ended, reply.last_words) = (Some(how), std::mem::take(&mut self.last_words));
+                let last_words = std::mem::take(&mut self.last_words);
+                (reply.ended, reply.last_words) = (Some(how), cut(last_words));
             }
             Ok(Heard::Refusal(_)) => reply.faults.push("its process refuses what it has begun".into()),
             Err(error) => {
@@ -161,11 +165,7 @@ impl Isolated {
                 }
             }
             if has_ended && is_quiet {
-                for _ in 0..LAST_PRINTS {
-                    if !self.overhear(cx) {
-                        break;
-                    }
-                }
+                self.overhear_last(cx);
                 return self.process.end().map(Heard::End);
             }
             has_ended = self.process.wait(TICK)?;
@@ -177,8 +177,22 @@ impl Isolated {
             }
             self.overhear(cx);
             if let Some(how) = self.watch(&mut watch, cx) {
+                self.overhear_last(cx);
                 return Ok(Heard::End(how));
             }
+        }
+    }
+
+    /// Tells the log what it has printed before it ended, a line that it did not end with it.
+    fn overhear_last(&mut self, cx: &CallContext<'_>) {
+        for _ in 0..LAST_PRINTS {
+            if !self.overhear(cx) {
+                break;
+            }
+        }
+        if let Some(line) = self.process.rest() {
+            (cx.log)(Level::Info, &line);
+            self.last_words = line;
         }
     }
 
@@ -191,6 +205,15 @@ impl Isolated {
         }
         has_heard
     }
+}
+
+/// As much of a line as is kept with a death.
+fn cut(mut line: String) -> String {
+    if let Some((end, _)) = line.char_indices().nth(LAST_WORDS_MAX) {
+        line.truncate(end);
+        line.push('…');
+    }
+    line
 }
 
 /// What a request led to.

@@ -7,7 +7,7 @@ mod trail;
 
 pub use trail::ended_well;
 
-use crate::error::HostError;
+use crate::error::{HostError, after};
 use crate::isolated::Ended;
 use crate::registry::PluginInfo;
 use std::fs::{self, File};
@@ -49,9 +49,9 @@ impl Tally {
     }
 
     /// Its process has ended; who was asked to stop has not died.
-    pub(crate) fn ended(&self, how: &Ended) {
+    pub(crate) fn ended(&self, how: &Ended, last_words: &str) {
         if *how != Ended::Stopped && !self.is_paused {
-            self.quarantine.blame(&self.sha256, how);
+            self.quarantine.blame(&self.sha256, &format!("{how}{}", after(last_words)));
         }
     }
 }
@@ -70,9 +70,9 @@ impl Quarantine {
     }
 
     /// Counts a death; after the last of too many the library is held. Where nothing can be written it never is.
-    fn blame(&self, sha256: &str, how: &Ended) {
+    fn blame(&self, sha256: &str, why: &str) {
         if self.count(sha256, SystemTime::now()).is_ok_and(|n| n >= FAILURES) {
-            fs::write(self.held(sha256), how.to_string()).unwrap_or_default();
+            fs::write(self.held(sha256), why).unwrap_or_default();
         }
     }
 

@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 
 use honami_exchange::flo::Flow;
-use honami_host::{CallContext, Host, HostError, Kind, Registry, Tracker, Values};
+use honami_host::{Host, HostError, Kind, Registry, Values};
 use honami_media::Media;
 use honami_model::track::{Quality, Sample, Source, Span, Status, TrackId};
 use honami_motion::accuracy::{Pair, accuracy, drift, histogram};
@@ -22,11 +22,13 @@ use crate::drive::{self, Plan, Rows, Seed};
 use crate::error::WorkbenchError;
 use crate::progress::{Named, Progress};
 use meter::Memory;
+use racer::Racer;
 
 mod field;
 mod keys;
 mod meter;
 mod points;
+mod racer;
 mod there_and_back;
 mod truth;
 
@@ -59,6 +61,9 @@ pub struct Row {
     /// Memory that an earlier tracker of the same comparison gave back only to this program does not grow again: to be
     /// exact a tracker is compared alone.
     pub peak_bytes: Option<u64>,
+    /// How often its process has died, and another one has gone on: a frame in which it died twice is lost, and what it
+    /// died of beside the run is not measured.
+    pub n_deaths: u32,
 }
 
 /// How trackers did on the same points.
@@ -195,40 +200,34 @@ impl Bench<'_> {
     fn tracker(&self, registry: &Registry, name: &str, params: &Values) -> Result<Row, WorkbenchError> {
         let plugin = registry.find(Kind::Tracker, name)?;
         let memory = Memory::begin();
-        let (mut tracker, _) = self.host.tracker(plugin, params, &CallContext::silent())?;
-        let (spans, time) = self.follow(&mut tracker)?;
+        let mut racer = Racer::start(self.host, plugin, params)?;
+        let (spans, time) = self.follow(&mut racer)?;
         let peak_bytes = memory.and_then(Memory::peak_bytes);
-        let row = Row { time, peak_bytes, ..self.judge(name, &spans)? };
-        let field = match &self.question.flow {
-            Some(flow) if plugin.offers("honami.field/1") => {
-                field::measure(self.media, &mut tracker, flow, self.question.frames.start)?
-            }
-            _ => None,
-        };
-        if !self.question.passes {
-            return Ok(Row { field, ..row });
+        let mut row = Row { time, peak_bytes, ..self.judge(name, &spans)? };
+        if let Some(flow) = self.question.flow.as_ref().filter(|_| plugin.offers("honami.field/1")) {
+            let first = self.question.frames.start;
+            row.field = racer.beside(|tracker| field::measure(self.media, tracker, flow, first))?;
         }
-        let back = Some(self.there_and_back(&mut tracker, &spans)?);
-        let left_out = keys::measure(self, &mut tracker)?;
-        Ok(Row { field, back, left_out, ..row })
+        if self.question.passes {
+            row.back = racer.beside(|tracker| self.there_and_back(tracker, &spans).map(Some))?;
+            row.left_out = keys::measure(self, &mut racer)?;
+        }
+        Ok(Row { n_deaths: racer.spare.n_deaths, ..row })
     }
 
     /// Runs a tracker over the frames: what it made of the points, and the time it took.
-    fn follow(
-        &self,
-        tracker: &mut Tracker,
-    ) -> Result<(BTreeMap<TrackId, Span>, Option<Time>), WorkbenchError> {
+    fn follow(&self, racer: &mut Racer) -> Result<(BTreeMap<TrackId, Span>, Option<Time>), WorkbenchError> {
         let (seeds, frames) = (self.question.points.clone(), self.question.frames.clone());
         let mut spans = BTreeMap::new();
         let step_secs =
-            self.drive(tracker, seeds, frames, "", &mut |frame, rows| gather(&mut spans, frame, rows))?;
+            self.drive(racer, seeds, frames, "", &mut |frame, rows| gather(&mut spans, frame, rows))?;
         Ok((spans, Time::of(&step_secs)))
     }
 
     /// Drives a tracker over all of these frames, in a pass of this name; the seconds that each took.
     fn drive(
         &self,
-        tracker: &mut Tracker,
+        Racer { tracker, spare }: &mut Racer,
         seeds: Vec<Seed>,
         frames: Range<u32>,
         pass: &str,
@@ -242,7 +241,8 @@ impl Bench<'_> {
         };
         let mut numbers = |_| Ok(0..0);
         let watch = self.pass(pass);
-        let driven = drive::drive(self.media, tracker, plan, &mut numbers, &mut collect, None, &watch)?;
+        let driven =
+            drive::drive(self.media, tracker, plan, &mut numbers, &mut collect, Some(spare), &watch)?;
         if driven.end < frames.end {
             return Err(WorkbenchError::Stopped);
         }

@@ -92,26 +92,32 @@ pub trait Relay {
     fn again(&mut self, seam: &Seam, death: Death) -> Result<Tracker, WorkbenchError>;
 
     /// One of a rebuilt file, where there is a new one. It is on trial for a few frames, which no sink is given
-    /// meanwhile.
-    fn rebuilt(&mut self) -> Option<Tracker>;
+    /// meanwhile. Who has none is told nothing of what follows.
+    fn rebuilt(&mut self) -> Option<Tracker> {
+        None
+    }
 
     /// That one cannot go on from where the other is, which goes on itself.
-    fn refused(&mut self, why: &HostError);
+    fn refused(&mut self, _why: &HostError) {}
 
     /// That one has taken over; this is the first frame of its own.
     ///
     /// # Errors
     /// When that cannot be kept; the drive ends then.
-    fn taken(&mut self, frame: u32) -> Result<(), WorkbenchError>;
+    fn taken(&mut self, _frame: u32) -> Result<(), WorkbenchError> {
+        Ok(())
+    }
 
     /// That one has failed on trial; from this frame on the one before tracks them all.
     ///
     /// # Errors
     /// When that cannot be kept; the drive ends then.
-    fn given_up(&mut self, frame: u32, why: &str) -> Result<(), WorkbenchError>;
+    fn given_up(&mut self, _frame: u32, _why: &str) -> Result<(), WorkbenchError> {
+        Ok(())
+    }
 
     /// That one is on trial no more.
-    fn proved(&mut self);
+    fn proved(&mut self) {}
 }
 
 /// So often a tracker may die in one frame, whatever is known of it otherwise.
@@ -192,11 +198,13 @@ pub fn drive(
         step_secs: Vec::new(),
         before: None,
     };
+    ear.at(first);
     let mut outcome = ear.call(0, total, |call| ride.begin(call));
     let mut frame = first;
     // After the last frame comes the end, which may have answers, too.
     while frame <= end && outcome.is_ok() {
         let done = u64::from(frame - first);
+        ear.at(frame.min(end - 1));
         outcome = if ear.is_told_to_stop(done, total) && frame < end {
             Err(WorkbenchError::Stopped)
         } else {

@@ -1,5 +1,6 @@
 //! Listening to a plugin at work: its progress and its words go on to whoever watches, its warnings are kept.
 
+use std::sync::atomic::{AtomicI64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use honami_host::{CallContext, Level};
@@ -15,13 +16,20 @@ pub(crate) struct Ear<'a> {
     plugin: String,
     progress: &'a dyn Progress,
     warnings: Mutex<Vec<String>>,
+    /// The frame that it is at; below 0 where it is at none.
+    frame: AtomicI64,
 }
 
 impl<'a> Ear<'a> {
     /// Listens to the plugin of this id.
     pub(crate) fn new(plugin: &str, progress: &'a dyn Progress) -> Self {
         let plugin = plugin.rsplit('.').next().unwrap_or(plugin).to_owned();
-        Self { plugin, progress, warnings: Mutex::default() }
+        Self { plugin, progress, warnings: Mutex::default(), frame: AtomicI64::new(-1) }
+    }
+
+    /// From now on it is at this frame of the clip.
+    pub(crate) fn at(&self, frame: u32) {
+        self.frame.store(i64::from(frame), Ordering::Relaxed);
     }
 
     /// Makes one call while `done` of `total` steps are done.
@@ -60,7 +68,8 @@ impl<'a> Ear<'a> {
     }
 
     fn hear(&self, level: Level, text: &str) {
-        self.progress.hear(&self.plugin, level, text);
+        let frame = u32::try_from(self.frame.load(Ordering::Relaxed)).ok();
+        self.progress.hear(&self.plugin, frame, level, text);
         let mut warnings = self.warnings.lock().unwrap_or_else(PoisonError::into_inner);
         let is_new = !warnings.iter().any(|known| known == text);
         if level >= Level::Warning && is_new && warnings.len() < MAX_WARNINGS {

@@ -11,8 +11,12 @@ pub trait Progress: Sync {
     /// A part of the job begins that takes a while and has a name: `klt, 2 of 3`.
     fn part(&self, _name: &str) {}
 
-    /// A plugin, by its short name, has logged or printed a line; called from any thread.
-    fn hear(&self, _plugin: &str, _level: Level, _line: &str) {}
+    /// A plugin, by its short name, has logged or printed a line while it was at this frame of the clip, where it is at
+    /// one; called from any thread.
+    fn hear(&self, _plugin: &str, _frame: Option<u32>, _level: Level, _line: &str) {}
+
+    /// The process of a plugin, by its short name, has ended in this frame, and how; another one is started.
+    fn died(&self, _plugin: &str, _frame: u32, _how: &str) {}
 
     /// Whether a plugin, which last said that it was at something, is waited for while it gives no sign of life; asked
     /// all the while, with `None` once it lives.
@@ -37,8 +41,12 @@ impl Progress for Named<'_> {
         self.progress.report(done, total, &self.name)
     }
 
-    fn hear(&self, plugin: &str, level: Level, line: &str) {
-        self.progress.hear(plugin, level, line);
+    fn hear(&self, plugin: &str, frame: Option<u32>, level: Level, line: &str) {
+        self.progress.hear(plugin, frame, level, line);
+    }
+
+    fn died(&self, plugin: &str, frame: u32, how: &str) {
+        self.progress.died(plugin, frame, how);
     }
 
     fn silent(&self, plugin: &str, at: &str, silence: Option<Silence>) -> Patience {

@@ -165,7 +165,7 @@ impl Lookout {
         };
         let cx = CallContext {
             progress: &watch,
-            log: &|level, text| progress.hear(&plugin.short_name, level, text),
+            log: &|level, text| progress.hear(&plugin.short_name, None, level, text),
             silent: &|_| Patience::Usual,
         };
         let (tracker, made) = self.first.start_anew(&self.host, &cx)?;

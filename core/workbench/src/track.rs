@@ -22,11 +22,13 @@ use crate::session::Session;
 use crate::stamp::{REBUILT, stamp};
 
 mod ends;
+mod frames;
 mod kept;
 mod resume;
 
 pub use ends::Ends;
-use kept::{Kept, Tracked};
+use frames::Kept;
+use kept::Tracked;
 use resume::Asked;
 pub use resume::{resume, unfinished};
 
@@ -84,6 +86,8 @@ pub struct TrackJob {
     writer: RunWriter,
     /// The run that it goes on with.
     resumes: Option<RunId>,
+    /// Tracks that are hidden in its first frame.
+    hidden: TrackSet,
 }
 
 /// A run that has ended; give it to [`finish`].
@@ -207,6 +211,7 @@ fn begin(
         plan: Plan { frames: request.frames.clone(), seeds, detect, max_threads },
         writer,
         resumes: None,
+        hidden: TrackSet::default(),
     })
 }
 
@@ -233,7 +238,7 @@ impl TrackJob {
         let begun = Instant::now();
         let frames = self.plan.frames.clone();
         let plugin = self.tracker.1.plugin.short_name.clone();
-        let mut kept = Kept::new(self.writer, frames.start);
+        let mut kept = Kept::new(self.writer, frames.start, self.hidden);
         let tracked = kept::track(&mut kept, &self.media, self.tracker, &self.host, self.plan, progress);
         let run = kept.writer.run();
         let reached = kept.first_frame;

@@ -28,6 +28,9 @@ pub struct Entrant {
     pub tracker: String,
     /// Content hash of its library.
     pub sha256: String,
+    /// Which build of its tracker it is, and when it began, where another run is of another build of the same:
+    /// `3f2a1c09, 2026-11-22 18:20`.
+    pub build: Option<String>,
     /// The parameters in which it differs from other runs of the same tracker: `radius=5`; empty where in none.
     pub params: String,
     /// The tracks it has samples of.
@@ -46,7 +49,8 @@ impl Entrant {
     pub fn name(&self) -> String {
         let gap = if self.params.is_empty() { "" } else { " " };
         let rebuilt = if self.is_beside { " rebuilt" } else { "" };
-        format!("run {} {}{rebuilt}{gap}{}", self.run, self.tracker, self.params)
+        let build = self.build.as_ref().map_or_else(String::new, |build| format!(" ({build})"));
+        format!("run {} {}{rebuilt}{gap}{}{build}", self.run, self.tracker, self.params)
     }
 
     /// Whether the same build of a tracker with the same parameters made both.
@@ -80,6 +84,7 @@ pub fn entrants(project: &Project) -> Result<Vec<Entrant>, WorkbenchError> {
             run: run.id,
             tracker: plugin_id.rsplit('.').next().unwrap_or(plugin_id).to_owned(),
             sha256: plugin_sha256.clone(),
+            build: build(&run.head.provenance, &made),
             is_beside: what == REBUILT,
             params: differing(&run.head.provenance, &made),
             is_shown: shown.contains(&run.id),
@@ -88,6 +93,27 @@ pub fn entrants(project: &Project) -> Result<Vec<Entrant>, WorkbenchError> {
         }
     };
     Ok(runs.into_iter().rev().map(entrant).collect())
+}
+
+/// Which build made a run, where other runs are of other builds of the same tracker.
+fn build(own: &Provenance, all: &[Provenance]) -> Option<String> {
+    let is_other =
+        |other: &Provenance| other.plugin_id == own.plugin_id && other.plugin_sha256 != own.plugin_sha256;
+    all.iter().any(is_other).then(|| {
+        let hash = own.plugin_sha256.get(..8).unwrap_or(&own.plugin_sha256);
+        // To the minute.
+        let date = own.date.get(..16).unwrap_or(&own.date).replace('T', " ");
+        format!("{hash}, {date}")
+    })
+}
+
+/// The last two builds of one tracker that followed the same tracks, the earlier one first; `None` where there are no two.
+#[must_use]
+pub fn last_builds(entrants: &[Entrant]) -> Option<[Entrant; 2]> {
+    entrants.iter().enumerate().find_map(|(at, b)| {
+        let is_before = |a: &&Entrant| a.tracker == b.tracker && a.sha256 != b.sha256 && a.shares_tracks(b);
+        Some([entrants[at + 1..].iter().find(is_before)?.clone(), b.clone()])
+    })
 }
 
 /// The parameters of a run that others of the same tracker have otherwise.

@@ -117,9 +117,9 @@ table! {
     Left "left" ["h" "Left"] [Review "" Place "1 px" Move "1 px" Form "change" Dial "turn" Slide "1 frame" Sketch "steer"]
         "left: the previous frame, one pixel, or a smaller value"
     Down "down" ["j" "Down"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "narrower" History "" Start "" Sketch "steer"]
-        "down: the next track, one pixel, or the next row"
+        "down: the next track, one pixel, or the next row; in the prints, the next line"
     Up "up" ["k" "Up"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "wider" History "" Start "" Sketch "steer"]
-        "up: the previous track, one pixel, or the previous row"
+        "up: the previous track, one pixel, or the previous row; in the prints, the line before"
     Right "right" ["l" "Right"] [Review "" Place "1 px" Move "1 px" Form "change" Dial "turn" Slide "1 frame" Sketch "steer"]
         "right: the next frame, one pixel, or a larger value"
     FineLeft "fine-left" ["H" "Shift-Left"] [Place ".25" Move ".25" Form "" Slide ".25" Sketch ""] "a quarter of a pixel left, or a tenth of a value's range down"

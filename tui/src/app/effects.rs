@@ -427,7 +427,7 @@ impl World {
             None => versus::usual(&entrants),
             Some([a, b]) => find(a).zip(find(b)).map(<[_; 2]>::from),
         };
-        Ok(vec![Fact::Versus(two)])
+        Ok(vec![Fact::Versus(two.map(Box::new))])
     }
 
     /// Has a tracker measure dense motion from now on.

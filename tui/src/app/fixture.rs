@@ -46,23 +46,19 @@ pub(super) fn state() -> State {
 
 /// What plugins print and log: of every level, from here and from elsewhere, long and short.
 pub(super) fn prints(state: &mut State) {
-    let print = |(t_s, plugin, level, text): (f64, &str, Level, &str)| Print {
-        t_s,
+    let print = |(frame, plugin, level, text): (Option<u32>, &str, Level, &str)| Print {
+        frame,
         plugin: plugin.to_owned(),
         level,
         text: text.to_owned(),
     };
     let lines = [
-        (0.01, "my-flow", Level::Debug, "window 21, levels 3"),
-        (0.02, "my-flow", Level::Info, "weights read from flow.onnx"),
-        (1.5, "", Level::Info, "[libgomp] cannot set affinity"),
-        (
-            12.25,
-            "my-very-long-flow",
-            Level::Warning,
-            "frame 40: 12 of 135 points have no texture around them",
-        ),
-        (103.9, "my-flow", Level::Error, "no memory for level 2"),
+        (None, "my-flow", Level::Debug, "window 21, levels 3"),
+        (None, "my-flow", Level::Info, "weights read from flow.onnx"),
+        (Some(0), "", Level::Info, "[libgomp] cannot set affinity"),
+        (Some(40), "my-very-long-flow", Level::Warning, "12 of 135 points have no texture around them"),
+        (Some(41), "my-flow", Level::Error, "died of SIGSEGV; it last printed: no memory for level 2"),
+        (Some(41), "my-flow", Level::Warning, "started again at frame 41"),
     ];
     state.prints.add(lines.map(print));
 }
@@ -213,6 +209,7 @@ pub(super) fn entrants() -> Vec<Entrant> {
         tracker: "klt".to_owned(),
         sha256: "3f2a".to_owned(),
         is_beside: false,
+        build: None,
         params: format!("radius={radius}"),
         tracks: [1, 2, 7].map(TrackId).into_iter().collect(),
         frames: 0..100,
@@ -226,7 +223,7 @@ pub(super) fn entrants() -> Vec<Entrant> {
 pub(super) fn versus(state: &mut State) {
     let [_, b, a] = <[Entrant; 3]>::try_from(entrants()).expect("three");
     let runs = [a.run, b.run];
-    update(state, Msg::Fact(Fact::Versus(Some([a, b]))));
+    update(state, Msg::Fact(Fact::Versus(Some(Box::new([a, b])))));
     let in_b = |row: &TrackRow| {
         let sample = |(frame, sample): (u32, &Sample)| {
             let bump = 9.0 * (-f64::from(frame.abs_diff(40)).powi(2) / 50.0).exp() as f32;

@@ -51,7 +51,6 @@ pub(super) struct Running {
 }
 
 struct Shared {
-    began: Instant,
     step: Mutex<(Step, Option<Instant>)>,
     /// What plugins have printed and nobody has asked for yet.
     prints: Mutex<VecDeque<Print>>,
@@ -83,14 +82,18 @@ impl Progress for Shared {
         self.waker.wake();
     }
 
-    fn hear(&self, plugin: &str, level: Level, line: &str) {
-        let t_s = self.began.elapsed().as_secs_f64();
-        let print = Print { t_s, plugin: plugin.to_owned(), level, text: line.to_owned() };
+    fn hear(&self, plugin: &str, frame: Option<u32>, level: Level, line: &str) {
+        let print = Print { frame, plugin: plugin.to_owned(), level, text: line.to_owned() };
         let mut prints = self.prints.lock().unwrap_or_else(PoisonError::into_inner);
         prints.push_back(print);
         if prints.len() > N_KEPT {
             prints.pop_front();
         }
+    }
+
+    fn died(&self, plugin: &str, frame: u32, how: &str) {
+        self.hear(plugin, Some(frame), Level::Error, how);
+        self.say(&format!("{plugin} {how}; it is started again at frame {frame}"));
     }
 }
 
@@ -106,13 +109,14 @@ struct Watch {
 impl Watch {
     /// Somebody is there to be asked: nothing is ended unless they say so.
     fn look(&mut self, plugin: &str, at: &str, silence: Option<Silence>) -> Patience {
-        let Some(Silence { since, is_too_long }) = silence else {
+        let Some(Silence { since, is_too_long, at_most }) = silence else {
             *self = Self::default();
             return Patience::Usual;
         };
         let is_asked = is_too_long && since >= self.waits;
         let (plugin, at) = (plugin.to_owned(), at.to_owned());
-        self.quiet = Some(Quiet { plugin, seconds: since.as_secs(), at, is_asked });
+        let (seconds, limit_s) = (since.as_secs(), at_most.as_secs());
+        self.quiet = Some(Quiet { plugin, seconds, limit_s, at, is_asked });
         if std::mem::take(&mut self.is_to_end) { Patience::End } else { Patience::Wait }
     }
 
@@ -120,8 +124,7 @@ impl Watch {
         let Some(quiet) = &self.quiet else { return };
         match patience {
             Patience::End => self.is_to_end = true,
-            // Twice as long, and then the question comes again.
-            _ => self.waits = 2 * Duration::from_secs(quiet.seconds.max(1)),
+            _ => self.waits = Duration::from_secs(quiet.again_s()),
         }
     }
 }
@@ -140,7 +143,6 @@ impl Running {
         work: impl FnOnce(&dyn Progress) -> Done + Send + 'static,
     ) -> std::io::Result<Self> {
         let shared = Arc::new(Shared {
-            began: Instant::now(),
             step: Mutex::default(),
             prints: Mutex::default(),
             watch: Mutex::default(),

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use honami_model::clip::FrameTimes;
 use honami_model::document::RunId;
 use honami_model::track::TrackId;
-use honami_workbench::versus::Entrant;
+use honami_workbench::versus::{Entrant, last_builds};
 
 use super::action::{Action, TABLE};
 use super::files::{Lead, Listing};
@@ -161,6 +161,14 @@ impl Menu {
                 choice: a.map_or(Choice::First(one.run), |a| Choice::Second(a, one.run)),
             }
         });
+        // Nobody wants to look for these two among all.
+        let builds = a.is_none().then(|| last_builds(entrants)).flatten().map(|[a, b]| Row {
+            label: format!("the last two builds of {}", b.tracker),
+            detail: format!("A {}, B {}", a.name(), b.name()),
+            keys: String::new(),
+            choice: Choice::Second(a.run, b.run),
+        });
+        let rows = builds.into_iter().chain(rows);
         let title = if a.is_none() { "A: the first of two runs" } else { "B: the run beside it" };
         Self::new(title, rows.collect(), Mode::Review)
     }

@@ -10,8 +10,8 @@ pub(super) const N_KEPT: usize = 1000;
 /// A line of a plugin's.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Print {
-    /// When, seconds since its job began.
-    pub t_s: f64,
+    /// The frame of the clip that it was at; `None` where it was at none.
+    pub frame: Option<u32>,
     /// Its short name; empty for what was printed in this process, where nobody knows by whom.
     pub plugin: String,
     /// How severe it is; what is printed is information.
@@ -25,6 +25,8 @@ pub struct Print {
 pub struct Prints {
     lines: VecDeque<Print>,
     n: u64,
+    /// The line that is looked at, counted from the first that has come; `None`: the newest, whichever that is.
+    at: Option<u64>,
 }
 
 impl Prints {
@@ -45,9 +47,30 @@ impl Prints {
         &self.lines
     }
 
+    /// The line that is looked at, among those that are kept.
+    #[must_use]
+    pub fn current(&self) -> Option<usize> {
+        let last = self.lines.len().checked_sub(1)?;
+        let Some(at) = self.at else { return Some(last) };
+        Some(usize::try_from(at.saturating_sub(self.n_gone())).map_or(last, |at| at.min(last)))
+    }
+
+    /// Looks at one of those that are kept: it stays in sight while others come, unless it is the newest.
+    pub fn look_at(&mut self, i: usize) {
+        self.at = (i + 1 < self.lines.len()).then(|| self.n_gone() + i as u64);
+    }
+
+    /// Those that came before the first that is kept.
+    fn n_gone(&self) -> u64 {
+        self.n - self.lines.len() as u64
+    }
+
     /// How many have come.
     #[must_use]
     pub fn n(&self) -> u64 {
         self.n
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -24,7 +24,7 @@ use super::plotted::{Lot, PlotRequest, Plotted};
 use super::prints::Print;
 use super::recent;
 use super::seat::Seat;
-use super::state::{Display, Link, Mode, Notice, State};
+use super::state::{Display, Job, Link, Mode, Notice, State};
 use super::stills::{self, Stills};
 use super::tally::Tally;
 use super::update::{Effect, Fact, Msg, update};
@@ -256,10 +256,9 @@ impl App {
 
     /// Takes in what was printed in this process: nothing of it is on the screen.
     fn overhear(&mut self, screen: &Screen) {
-        let since = self.state.job.as_ref().map_or(Duration::ZERO, |job| job.since);
-        let t_s = screen.now().saturating_sub(since).as_secs_f64();
+        let frame = self.state.job.as_ref().and_then(Job::frame);
         let print =
-            |line: String| Print { t_s, plugin: String::new(), level: Level::Info, text: plain(&line) };
+            |line: String| Print { frame, plugin: String::new(), level: Level::Info, text: plain(&line) };
         let prints: Vec<Print> = screen.printed().into_iter().map(print).collect();
         if !prints.is_empty() {
             update(&mut self.state, Msg::Fact(Fact::Printed(prints)));

@@ -242,6 +242,14 @@ pub struct Job {
     pub quiet: Option<Quiet>,
 }
 
+impl Job {
+    /// The frame of the clip that it is at; `None` where its steps are no frames.
+    #[must_use]
+    pub fn frame(&self) -> Option<u32> {
+        u32::try_from(self.first + self.done.0).ok().filter(|_| self.what == "frame")
+    }
+}
+
 /// A plugin that gives no sign of life.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Quiet {
@@ -249,10 +257,20 @@ pub struct Quiet {
     pub plugin: String,
     /// For how long, seconds.
     pub seconds: u64,
+    /// After so many seconds its user is asked.
+    pub limit_s: u64,
     /// What it last said that it was at.
     pub at: String,
     /// Whether it is asked what is to become of it.
     pub is_asked: bool,
+}
+
+impl Quiet {
+    /// Whoever waits for it is asked again after so many seconds of silence: twice as many as now, and as is usual.
+    #[must_use]
+    pub fn again_s(&self) -> u64 {
+        2 * self.seconds.max(self.limit_s)
+    }
 }
 
 /// What is known of the terminal.

@@ -1,10 +1,11 @@
 //! What a command says while it works: a progress bar on a terminal, a line a named part elsewhere.
 
 use std::io::{IsTerminal as _, Write as _};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
 
-use honami_workbench::progress::{Flow, Level, Progress};
+use honami_workbench::progress::{Flow, Level, Patience, Progress, Silence};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use signal_hook::consts::SIGINT;
 use signal_hook::{SigId, flag};
@@ -18,6 +19,8 @@ pub(super) struct Bar {
     verbose: bool,
     stop: Arc<AtomicBool>,
     handlers: Vec<SigId>,
+    /// A plugin that is silent is told of after so long a silence.
+    told: Mutex<Duration>,
 }
 
 impl Bar {
@@ -40,7 +43,8 @@ impl Bar {
             bar.suspend(|| say("Ctrl-C cannot be caught here: it ends the program at once"));
         }
         let verbose = common.verbose;
-        Self { bar, verbose, stop, handlers: [second, first].into_iter().flatten().collect() }
+        let handlers = [second, first].into_iter().flatten().collect();
+        Self { bar, verbose, stop, handlers, told: Mutex::default() }
     }
 }
 
@@ -66,7 +70,7 @@ impl Progress for Bar {
         if self.stop.load(Ordering::Relaxed) { Flow::Stop } else { Flow::Continue }
     }
 
-    fn hear(&self, plugin: &str, level: Level, line: &str) {
+    fn hear(&self, plugin: &str, _frame: Option<u32>, level: Level, line: &str) {
         if self.verbose {
             let word = match level {
                 Level::Debug | Level::Info => "",
@@ -75,6 +79,28 @@ impl Progress for Bar {
             };
             self.bar.suspend(|| say(&format!("{plugin}: {word}{line}")));
         }
+    }
+
+    fn died(&self, plugin: &str, frame: u32, how: &str) {
+        self.hear(plugin, Some(frame), Level::Error, &format!("{how}, in frame {frame}"));
+    }
+
+    fn silent(&self, plugin: &str, _at: &str, silence: Option<Silence>) -> Patience {
+        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
+        match silence {
+            None => *told = Duration::ZERO,
+            Some(Silence { since, at_most, .. }) if since >= *told => {
+                // Again when it has lasted twice as long.
+                *told = 2 * since;
+                let (what, done) = (self.bar.message(), self.bar.position());
+                let (since, at_most) = (since.as_secs_f64(), at_most.as_secs_f64());
+                self.say(&format!(
+                    "{plugin}, {what} {done}: no sign of life for {since:.0} s; after {at_most:.0} s it is ended"
+                ));
+            }
+            Some(_) => {}
+        }
+        Patience::Usual
     }
 
     fn part(&self, name: &str) {

@@ -1,12 +1,16 @@
 //! What others print while the terminal is ours: it comes through a pipe, and goes to a log file and to whoever asks.
 
 use std::fs::File;
-use std::io::{ErrorKind, Read as _, Write as _};
+use std::io::{ErrorKind, Read as _};
 use std::os::fd::OwnedFd;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::time::Duration;
 
 use super::signals::Waker;
+
+mod log;
+
+pub(super) use log::Log;
 
 /// Bytes that are read at once.
 const PIECE: usize = 1 << 14;
@@ -14,8 +18,6 @@ const PIECE: usize = 1 << 14;
 const LINE_MAX: usize = 1 << 12;
 /// So many lines wait at most until somebody asks for them; more of them are only in the log.
 const N_WAITING: usize = 1024;
-/// A log that grows longer than this begins anew, bytes.
-const LOG_MAX: usize = 1 << 20;
 /// What was printed last has so long to come into the log.
 const LAST_WORDS: Duration = Duration::from_millis(200);
 
@@ -29,7 +31,7 @@ pub(super) struct Prints {
 
 impl Prints {
     /// Reads what comes until nobody can print any more; lines wake the screen.
-    pub(super) fn begin(pipe: OwnedFd, log: File, waker: Waker) -> std::io::Result<Self> {
+    pub(super) fn begin(pipe: OwnedFd, log: Log, waker: Waker) -> std::io::Result<Self> {
         let (said, lines) = sync_channel(N_WAITING);
         let (end, alive) = sync_channel(1);
         std::thread::Builder::new().name("prints".to_owned()).spawn(move || {
@@ -51,8 +53,8 @@ impl Prints {
     }
 }
 
-fn read(mut pipe: File, mut log: File, said: &SyncSender<String>, waker: &Waker) {
-    let (mut piece, mut line, mut n_logged) = ([0; PIECE], Vec::new(), 0);
+fn read(mut pipe: File, mut log: Log, said: &SyncSender<String>, waker: &Waker) {
+    let (mut piece, mut line) = ([0; PIECE], Vec::new());
     let tell = |line: &mut Vec<u8>| {
         // Nobody may ask, and what is too much is in the log.
         said.try_send(String::from_utf8_lossy(line).into_owned()).unwrap_or_default();
@@ -66,11 +68,7 @@ fn read(mut pipe: File, mut log: File, said: &SyncSender<String>, waker: &Waker)
             Err(error) if error.kind() == ErrorKind::Interrupted => continue,
             Err(_) => break,
         };
-        if n_logged > LOG_MAX && log.set_len(0).is_ok() {
-            n_logged = 0;
-        }
-        // A disk that is full keeps nobody from printing.
-        n_logged += log.write_all(&piece[..n]).map_or(0, |()| n);
+        log.write(&piece[..n]);
         for &byte in &piece[..n] {
             if byte == b'\n' || line.len() >= LINE_MAX {
                 tell(&mut line);

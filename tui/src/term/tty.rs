@@ -3,10 +3,8 @@
 //! The terminal is opened anew (`/dev/tty`), so that non-blocking writes are ours alone and a plugin that prints
 //! does not print into the screen: descriptors 1 and 2 are a pipe for the session.
 
-use std::fs::{self, File};
 use std::io;
 use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
-use std::os::unix::fs::OpenOptionsExt as _;
 use std::path::Path;
 use std::sync::{Mutex, Once, PoisonError};
 use std::thread::ThreadId;
@@ -16,7 +14,7 @@ use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fs::{Mode, OFlags};
 use rustix::termios::{self, OptionalActions, Termios};
 
-use super::prints::Prints;
+use super::prints::{Log, Prints};
 use super::signals::Waker;
 
 /// Alternate screen, no cursor, mouse presses and drags, bracketed paste, unambiguous Esc where kitty's
@@ -35,8 +33,6 @@ pub const MOUSE_OFF: &[u8] = b"\x1b[?1006l\x1b[?1002l\x1b[?1000l";
 
 /// How long the terminal has for taking [`LEAVE`].
 const LEAVE_WITHIN: Duration = Duration::from_millis(500);
-/// A log longer than this begins anew, bytes.
-const LOG_MAX: u64 = 1 << 20;
 
 /// What is needed to give the terminal back; in one place, so that only one can take it.
 struct Saved {
@@ -72,7 +68,7 @@ impl Tty {
         let modes = termios::tcgetattr(&device)?;
         let spare = rustix::io::fcntl_dupfd_cloexec(&device, 3)?;
         let (pipe, print_to) = rustix::pipe::pipe_with(rustix::pipe::PipeFlags::CLOEXEC)?;
-        let prints = Prints::begin(pipe, open_any_log(log)?, waker)?;
+        let prints = Prints::begin(pipe, Log::open_any(log)?, waker)?;
         let stdout = redirect(rustix::stdio::stdout(), || rustix::stdio::dup2_stdout(&print_to))?;
         let stderr = match redirect(rustix::stdio::stderr(), || rustix::stdio::dup2_stderr(&print_to)) {
             Ok(stderr) => stderr,
@@ -168,32 +164,6 @@ fn write_all(fd: &OwnedFd, mut bytes: &[u8], patience: Duration) {
             Err(_) => return,
         }
     }
-}
-
-/// Opens the log, or another one where it cannot be written.
-fn open_any_log(path: &Path) -> io::Result<File> {
-    let name = format!("honami-{}-session.log", rustix::process::getuid().as_raw());
-    open_log(path)
-        .or_else(|_| open_log(&std::env::temp_dir().join(name)))
-        .or_else(|_| open_log(Path::new("/dev/null")))
-}
-
-/// Opens a log for appending, its folder made where missing; an overlong one begins anew.
-fn open_log(path: &Path) -> io::Result<File> {
-    let open = || {
-        if let Some(folder) = path.parent() {
-            fs::create_dir_all(folder)?;
-        }
-        if fs::metadata(path).is_ok_and(|m| m.len() > LOG_MAX) {
-            fs::remove_file(path)?;
-        }
-        // No link: in a folder that others write to it might lead anywhere.
-        let no_link = OFlags::NOFOLLOW.bits().cast_signed();
-        File::options().create(true).append(true).custom_flags(no_link).open(path)
-    };
-    open().map_err(|error| {
-        io::Error::new(error.kind(), format!("the log {} cannot be written: {error}", path.display()))
-    })
 }
 
 /// Points a standard descriptor elsewhere if it is a terminal; returns the old one.

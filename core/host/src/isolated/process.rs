@@ -275,6 +275,12 @@ impl Process {
         lines
     }
 
+    /// What it has printed of a line that it did not end.
+    pub(crate) fn rest(&mut self) -> Option<String> {
+        let rest = std::mem::take(&mut self.printed);
+        (!rest.is_empty()).then(|| plain(&String::from_utf8_lossy(&rest)))
+    }
+
     /// Whether a debugger holds it, or the program that it has started.
     pub(crate) fn is_traced(&self) -> bool {
         let pid = self.group.as_raw_nonzero().to_string();

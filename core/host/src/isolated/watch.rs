@@ -54,18 +54,25 @@ impl Isolated {
             self.is_asked_to_stop = true;
         }
         let is_too_long = silent > watch.at_most;
-        let silence = (silent >= self.limits.tell).then_some(Silence { since: silent, is_too_long });
+        let silence = (silent >= self.limits.tell).then_some(Silence {
+            since: silent,
+            is_too_long,
+            at_most: watch.at_most,
+        });
         let is_to_end = match (cx.silent)(silence) {
             Patience::Usual => is_too_long,
             Patience::Wait => false,
             Patience::End => silence.is_some(),
         };
-        let is_late = watch.asked.map_or(is_to_end, |asked| asked.elapsed() > self.limits.stop);
+        // What is aborted may take a while to end; it is gone when it must have stopped.
+        let to_end = ABORT.min(self.limits.stop / 3);
+        let to_stop = self.limits.stop.saturating_sub(to_end);
+        let is_late = watch.asked.map_or(is_to_end, |asked| asked.elapsed() > to_stop);
         if !is_late || std::env::var_os("HONAMI_NO_WATCHDOG").is_some() || self.process.is_traced() {
             return None;
         }
         self.process.signal(Signal::ABORT);
-        self.process.ends_within(ABORT);
+        self.process.ends_within(if watch.asked.is_some() { to_end } else { ABORT });
         self.process.kill();
         Some(if watch.asked.is_some() { Ended::Stopped } else { Ended::Silent(silent.as_secs()) })
     }

@@ -11,18 +11,18 @@ fn the_third_death_within_ten_minutes_holds_a_library_until_it_is_released() {
     let why = "died of SIGSEGV (it used memory that is not its own)";
     for wanted in [None, None, Some(why)] {
         // Neither who was asked to stop has died, nor who begins where another has.
-        tally.ended(&Ended::Stopped);
+        tally.ended(&Ended::Stopped, "");
         tally.pause(true);
-        tally.ended(&segfault);
+        tally.ended(&segfault, "");
         tally.pause(false);
-        tally.ended(&segfault);
+        tally.ended(&segfault, "");
         assert_eq!(tally.held().as_deref(), wanted);
     }
     assert_eq!(rebuilt.held(), None);
     for _ in 0..2 {
         quarantine.release("abc").unwrap();
     }
-    tally.ended(&segfault);
+    tally.ended(&segfault, "");
     assert_eq!(tally.held(), None);
 }
 

@@ -23,13 +23,17 @@ enum fault {
   UNASKED_CANCEL, AGAIN, SEED_RESULT, REFUSES_PARAMS, COMMIT_RESERVE_COMMIT,
   /* From here on in frame 2: */
   SEGFAULT, ABORTS, EXITS, LOOPS, SLEEPS, DEAF, FLOODS, ESCAPES, LEAKS, FORKS, SOCKET, FILES, WITHERS,
-  READS_ON, WAITS, CONNECTS, SCRIBBLES, CALLS,
+  READS_ON, WAITS, CONNECTS, SCRIBBLES, CALLS, SPEAKS,
   /* or before main: */
   CTOR_WRITES, CTOR_EXECS, CTOR_DIES
 };
 
 #ifndef FROM
 #define FROM 0
+#endif
+/* From this frame on every point but the first is hidden. */
+#ifndef HIDES
+#define HIDES 1000
 #endif
 #ifndef KNOWN
 #define KNOWN "\"honami\":1,\"abi\":[1,0],"
@@ -120,6 +124,7 @@ static honami_code misdeed(const honami_call *call, const honami_frame *frame) {
     case WAITS:
       sigemptyset(&set), sigaddset(&set, SIGUSR1), sigprocmask(SIG_BLOCK, &set, NULL);
       prctl(PR_SET_NAME, "waits");
+      puts("waits"), fflush(stdout);
       sigwait(&set, &number);
       break;
     case CONNECTS: return call->fail(call, HONAMI_E_IO, connects() ? "a socket" : "no socket");
@@ -127,6 +132,7 @@ static honami_code misdeed(const honami_call *call, const honami_frame *frame) {
       snprintf(place, sizeof place, "%s/scribble", getenv("TMPDIR") ? getenv("TMPDIR") : "/tmp");
       return call->fail(call, HONAMI_E_IO, open(place, O_CREAT | O_WRONLY, 0600) < 0 ? "no room" : place);
     case CALLS: return call->fail(call, HONAMI_E_IO, calls() ? calls() : "none of the calls");
+    case SPEAKS: fputs("read weights\nno weights for level 2", stderr), *nowhere = 1; break;
     default: break;
   }
   return HONAMI_OK;
@@ -194,7 +200,7 @@ static honami_code push(honami_instance *instance, const honami_call *call, cons
     ((uint32_t *)c[0].data)[i] = ids[i];
     ((float *)c[1].data)[i] = xs[i];
     ((float *)c[2].data)[i] = ys[i];
-    ((uint8_t *)c[3].data)[i] = HONAMI_TRACKED;
+    ((uint8_t *)c[3].data)[i] = i > 0 && frame->index >= HIDES ? HONAMI_OCCLUDED : HONAMI_TRACKED;
   }
   if (fault == NAN_POSITION) ((float *)c[2].data)[0] = NAN;
   if (fault == UNKNOWN_ID) ((uint32_t *)c[0].data)[0] = 999;

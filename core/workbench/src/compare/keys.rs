@@ -2,11 +2,10 @@
 
 use std::ops::Range;
 
-use honami_host::Tracker;
 use honami_model::track::TrackId;
 use honami_motion::accuracy::median;
 
-use super::Bench;
+use super::{Bench, Racer};
 use crate::drive::Seed;
 use crate::error::WorkbenchError;
 use crate::retrack::anchors;
@@ -67,7 +66,7 @@ fn ways(keys: &KeyPaths, frames: &Range<u32>) -> Vec<Way> {
 }
 
 /// Tracks from every key-frame to the next, all in one pass; `None` where there are no two.
-pub(super) fn measure(bench: &Bench<'_>, tracker: &mut Tracker) -> Result<Option<LeftOut>, WorkbenchError> {
+pub(super) fn measure(bench: &Bench<'_>, racer: &mut Racer) -> Result<Option<LeftOut>, WorkbenchError> {
     let ways = ways(&bench.question.keys, &bench.question.frames);
     let (Some(first), Some(last)) =
         (ways.iter().map(|way| way[0].0).min(), ways.iter().map(|way| way[1].0).max())
@@ -80,7 +79,7 @@ pub(super) fn measure(bench: &Bench<'_>, tracker: &mut Tracker) -> Result<Option
     };
     let seeds = (0..).zip(&ways).map(seed).collect();
     let mut far_px = vec![f64::INFINITY; ways.len()];
-    bench.drive(tracker, seeds, first..last + 1, ", key-frames left out", &mut |frame, rows| {
+    bench.drive(racer, seeds, first..last + 1, ", key-frames left out", &mut |frame, rows| {
         for (track, sample) in rows.iter().filter(|(_, sample)| sample.status.is_seen()) {
             let number = track.0 as usize;
             if let Some([_, (end, at)]) = ways.get(number)

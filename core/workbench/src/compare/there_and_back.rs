@@ -100,6 +100,7 @@ impl Bench<'_> {
             if watch.report(done, total, "frame") == Flow::Stop {
                 return Err(WorkbenchError::Stopped);
             }
+            ear.at(frame);
             let picture = self.media.frame(frame)?;
             let view = view(self.media, &picture, frame);
             ear.call(done, total, |call| tracker.push(&view, call))?.iter().for_each(&mut *take);

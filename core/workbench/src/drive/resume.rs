@@ -128,8 +128,9 @@ impl Ride<'_> {
         let (done, total) = (u64::from(frame - start), u64::from(end - start));
         let mut death = Death::First;
         for n_deaths in 1..=MAX_DEATHS {
-            let Err(WorkbenchError::Plugin(HostError::Ended { how, .. })) = &outcome else { break };
-            let seam = Seam { frame: self.board.end, why: how.to_string(), build: None };
+            let Err(WorkbenchError::Plugin(error)) = &outcome else { break };
+            let Some(why) = error.end() else { break };
+            let seam = Seam { frame: self.board.end, why, build: None };
             if n_deaths == MAX_DEATHS {
                 // What it carried may be what it dies of.
                 self.saved.forget();

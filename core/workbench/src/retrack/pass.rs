@@ -112,6 +112,7 @@ impl Rider<'_> {
         self.scene.meter.call(ear, |call| self.begin(pass, crop, call))?;
         for frame in pass.order() {
             self.scene.meter.tick()?;
+            ear.at(frame);
             let points = self.scene.meter.call(ear, |call| self.push(frame, crop, call))?;
             way.take(points);
             if way.end.is_some() {

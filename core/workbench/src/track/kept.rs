@@ -1,58 +1,17 @@
 //! A run while its tracker works: what is kept of it, and which other trackers go on where one cannot.
 
-use std::cell::RefCell;
-use std::collections::{BTreeSet, VecDeque};
-use std::sync::Arc;
+use std::collections::BTreeSet;
+use std::sync::{Arc, Mutex};
 
 use honami_host::{CallContext, Host, HostError, Tracker};
 use honami_media::Media;
-use honami_store::{RunWriter, Seam};
+use honami_store::Seam;
 
+use super::frames::{Keeper, Kept, hand};
 use crate::drive::{self, Death, Driven, Plan, Relay, Rows};
 use crate::error::WorkbenchError;
-use crate::progress::Progress;
+use crate::progress::{Level, Progress};
 use crate::rebuilt::{Beside, Found, Lookout, Made, Stretch};
-
-/// Frames that are written at a time.
-const CHUNK: usize = 64;
-/// Frames before a seam that a rebuilt tracker does again, to be compared.
-const BESIDE: usize = 50;
-
-/// Frames that are tracked, and the pen that keeps them a chunk at a time.
-pub(super) struct Kept {
-    pub(super) writer: RunWriter,
-    pub(super) first_frame: u32,
-    frames: Vec<Rows>,
-    /// The last frames.
-    recent: VecDeque<(u32, Rows)>,
-}
-
-impl Kept {
-    pub(super) fn new(writer: RunWriter, first_frame: u32) -> Self {
-        Self { writer, first_frame, frames: Vec::new(), recent: VecDeque::new() }
-    }
-
-    fn add(&mut self, frame: u32, rows: &Rows) -> Result<(), WorkbenchError> {
-        if self.recent.len() == BESIDE {
-            self.recent.pop_front();
-        }
-        self.recent.push_back((frame, rows.clone()));
-        self.frames.push(rows.clone());
-        if self.frames.len() == CHUNK { self.flush() } else { Ok(()) }
-    }
-
-    /// Of the last frames those from this one on.
-    fn recent(&self, from: u32) -> Vec<(u32, Rows)> {
-        self.recent.iter().filter(|(frame, _)| *frame >= from).cloned().collect()
-    }
-
-    fn flush(&mut self) -> Result<(), WorkbenchError> {
-        self.writer.append(self.first_frame, &self.frames)?;
-        self.first_frame += u32::try_from(self.frames.len()).unwrap_or(u32::MAX);
-        self.frames.clear();
-        Ok(())
-    }
-}
 
 /// How far a run came, and what a rebuilt tracker makes of the frames before it took over.
 pub(super) struct Tracked {
@@ -79,7 +38,7 @@ pub(super) fn track(
     let stretch = Stretch { rows: Vec::new(), seeds: plan.seeds.clone(), max_threads: plan.max_threads };
     let n_frames = u64::from(plan.frames.end - plan.frames.start);
     let lookout = Lookout::new(host.clone(), made.clone());
-    let kept = RefCell::new(kept);
+    let kept = Mutex::new(kept);
     let mut shift = Shift {
         kept: &kept,
         media,
@@ -96,13 +55,14 @@ pub(super) fn track(
         beside: None,
         said: Vec::new(),
     };
-    let mut numbers = |n| Ok(kept.borrow_mut().writer.reserve_tracks(n)?);
-    let mut sink = |frame: u32, rows: &Rows| kept.borrow_mut().add(frame, rows);
+    let mut numbers = |n| Ok(hand(&kept).writer.reserve_tracks(n)?);
+    let mut sink = |frame: u32, rows: &Rows| hand(&kept).add(frame, rows);
+    let keeper = Keeper { kept: &kept, progress };
     let driven = lookout.during(progress, || {
-        drive::drive(media, &mut tracker, plan, &mut numbers, &mut sink, Some(&mut shift), progress)
+        drive::drive(media, &mut tracker, plan, &mut numbers, &mut sink, Some(&mut shift), &keeper)
     });
     let Shift { beside, said, .. } = shift;
-    kept.borrow_mut().flush()?;
+    hand(&kept).flush()?;
     let mut driven = match driven {
         Ok(driven) => driven,
         Err(error) => {
@@ -120,7 +80,7 @@ pub(super) fn track(
 
 /// Gives a drive its other trackers, and tells the run of them.
 struct Shift<'a> {
-    kept: &'a RefCell<&'a mut Kept>,
+    kept: &'a Mutex<&'a mut Kept>,
     media: &'a Arc<Media>,
     host: &'a Host,
     lookout: &'a Lookout,
@@ -154,7 +114,7 @@ impl Shift<'_> {
     }
 
     fn write(&self, seam: &Seam) -> Result<(), WorkbenchError> {
-        Ok(self.kept.borrow_mut().writer.seam(seam)?)
+        Ok(hand(self.kept).writer.seam(seam)?)
     }
 
     /// A tracker of the file as it is now, or where that is no good of the copy that was kept of the build at work.
@@ -170,7 +130,13 @@ impl Shift<'_> {
 
 impl Relay for Shift<'_> {
     fn again(&mut self, seam: &Seam, death: Death) -> Result<Tracker, WorkbenchError> {
+        let name = self.made.plugin.short_name.clone();
+        if death == Death::First {
+            self.progress.died(&name, seam.frame, &seam.why);
+        }
         let (tracker, made) = self.another()?;
+        let again = format!("started again at frame {}", seam.frame);
+        self.progress.hear(&name, Some(seam.frame), Level::Warning, &again);
         let build = (!made.is(&self.made)).then(|| made.build());
         if build.is_some() {
             self.since = seam.frame;
@@ -204,7 +170,7 @@ impl Relay for Shift<'_> {
         self.write(&Seam { frame, why: "was rebuilt".to_owned(), build: Some(next.build()) })?;
         self.progress.say(&format!("{} tracks from frame {frame} on", next.build()));
         self.before = Some(std::mem::replace(&mut self.made, next));
-        self.stretch.rows = self.kept.borrow().recent(self.since);
+        self.stretch.rows = hand(self.kept).recent(self.since);
         self.seam = frame;
         Ok(())
     }

@@ -105,7 +105,7 @@ pub fn resume(session: &mut Session, run: RunId) -> Result<TrackJob, WorkbenchEr
     let registry = Arc::clone(&session.registry);
     let made = &info.head.provenance;
     let plugin = registry.find(Kind::Tracker, &made.plugin_id)?;
-    let last = seen_last(&session.project, run, session.media.clip())?;
+    let (last, hidden) = seen_last(&session.project, run, session.media.clip())?;
     let start = last.first().map_or(info.head.frames.start, |seed| seed.frame);
     let later = asked.seeds().filter(|seed| last.is_empty() || seed.frame > start);
     let seeds: Vec<Seed> = last.iter().copied().chain(later).collect();
@@ -133,24 +133,27 @@ pub fn resume(session: &mut Session, run: RunId) -> Result<TrackJob, WorkbenchEr
     let mut job = begin(session, plugin, &request, seeds, detect, &kept)?;
     let why = format!("ended in run {run}");
     job.writer.seam(&Seam { frame: start + 1, why, build: None })?;
-    job.resumes = Some(run);
+    (job.resumes, job.hidden) = (Some(run), hidden);
     Ok(job)
 }
 
 /// The features that a run saw in the last frame in which it saw any, and those that were hidden there, where it took them
-/// to be. What had left the picture is not among them.
-fn seen_last(project: &Project, run: RunId, clip: &Clip) -> Result<Vec<Seed>, StoreError> {
+/// to be; and which are these. What had left the picture is not among them.
+fn seen_last(project: &Project, run: RunId, clip: &Clip) -> Result<(Vec<Seed>, TrackSet), StoreError> {
     let spans = project.run_tracks(run)?;
     let seen = spans.iter().flat_map(|(_, span)| span.frames().zip(&span.samples));
     let seen = seen.filter(|(_, sample)| sample.status.is_seen());
-    let Some(frame) = seen.map(|(frame, _)| frame).max() else { return Ok(Vec::new()) };
-    let seed = |(track, span): &(TrackId, Span)| {
+    let Some(frame) = seen.map(|(frame, _)| frame).max() else { return Ok(Default::default()) };
+    let live = |(track, span): &(TrackId, Span)| {
         let sample = span.get(frame)?;
-        let is_live = sample.status.is_seen() || sample.status == Status::Occluded;
         let seed = Seed { frame, track: *track, x: sample.x, y: sample.y };
-        (is_live && is_inside(&seed, clip)).then_some(seed)
+        let is_live = sample.status.is_seen() || sample.status == Status::Occluded;
+        (is_live && is_inside(&seed, clip)).then_some((seed, sample.status))
     };
-    Ok(spans.iter().filter_map(seed).collect())
+    let live: Vec<(Seed, Status)> = spans.iter().filter_map(live).collect();
+    let hidden = live.iter().filter(|(_, status)| *status == Status::Occluded).map(|(seed, _)| seed.track);
+    let hidden = hidden.collect();
+    Ok((live.into_iter().map(|(seed, _)| seed).collect(), hidden))
 }
 
 /// Shows a run, and below it the one that it goes on with, where that is not shown yet.

@@ -35,7 +35,7 @@ fn what_a_plugin_prints_is_told_once_and_bounded() {
     let (waker, _woken) = signals::pair().unwrap();
     let running = Running::spawn(waker, |progress| {
         for n in 0..=N_KEPT {
-            progress.hear("mine", Level::Info, &n.to_string());
+            progress.hear("mine", Some(7), Level::Info, &n.to_string());
         }
         Done::Track(Box::new(Err(WorkbenchError::Stopped)))
     });
@@ -50,7 +50,9 @@ fn what_a_plugin_prints_is_told_once_and_bounded() {
 
 #[test]
 fn a_silent_plugin_is_asked_about_once_it_is_too_long_and_ended_when_its_user_says_so() {
-    let silence = |since, is_too_long| Some(Silence { since: Duration::from_secs(since), is_too_long });
+    let at_most = Duration::from_secs(10);
+    let silence =
+        |since, is_too_long| Some(Silence { since: Duration::from_secs(since), is_too_long, at_most });
     let mut watch = Watch::default();
     // Seconds of silence and whether that is too long, what the user then answers, whether they are asked before.
     let steps = [
@@ -68,5 +70,32 @@ fn a_silent_plugin_is_asked_about_once_it_is_too_long_and_ended_when_its_user_sa
         answer.into_iter().for_each(|answer| watch.answer(answer));
     }
     assert_eq!(watch.look("mine", "", None), Patience::Usual);
-    assert_eq!((watch.quiet, watch.waits), (None, Duration::ZERO));
+    assert_eq!((watch.quiet.take(), watch.waits), (None, Duration::ZERO));
+    // Who answers before they are asked is asked later.
+    for (since, is_too_long, answer, is_asked) in [
+        (3, false, Some(Patience::Wait), false),
+        (11, true, None, false),
+        (19, true, None, false),
+        (20, true, None, true),
+    ] {
+        assert_eq!(watch.look("mine", "", silence(since, is_too_long)), Patience::Wait, "{since} s");
+        assert_eq!(watch.quiet.as_ref().map(|quiet| quiet.is_asked), Some(is_asked), "{since} s");
+        answer.into_iter().for_each(|answer| watch.answer(answer));
+    }
+}
+
+#[test]
+fn a_death_is_told_at_once_and_among_what_was_printed() {
+    let (waker, _woken) = signals::pair().unwrap();
+    let running = Running::spawn(waker, |progress| {
+        progress.died("mine", 12, "died of SIGSEGV; it last printed: no weights");
+        Done::Track(Box::new(Err(WorkbenchError::Stopped)))
+    });
+    let running = running.unwrap();
+    assert!(running.ends_within(Duration::from_secs(60)));
+    let how = "died of SIGSEGV; it last printed: no weights";
+    let wanted =
+        Print { frame: Some(12), plugin: "mine".to_owned(), level: Level::Error, text: how.to_owned() };
+    assert_eq!(running.prints(), [wanted]);
+    assert_eq!(running.said(), [format!("mine {how}; it is started again at frame 12")]);
 }

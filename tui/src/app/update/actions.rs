@@ -4,8 +4,8 @@ use std::ops::Range;
 use std::path::PathBuf;
 
 use super::{
-    Action, Effect, Mode, State, choose, complain, edit, history, look, motion, moving, open_menu, pick,
-    queue, ranges, recovery, say, sketch, time, tracks, versus,
+    Action, Effect, Mode, State, choose, complain, edit, history, look, motion, mouse, moving, open_menu,
+    pick, queue, ranges, recovery, say, sketch, time, tracks, versus,
 };
 use honami_model::judgement::Verdict;
 use honami_model::track::{Status, TrackSet};
@@ -91,7 +91,7 @@ pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {
         Action::Help => open_menu(state, "what works here"),
         Action::Redraw => return vec![Effect::Redraw],
         Action::Suspend => return vec![Effect::Suspend],
-        Action::Mouse => return mouse(state),
+        Action::Mouse => return turn_mouse(state),
         Action::History => history::toggle(state),
         Action::SaveLog => return vec![Effect::SaveLog(state.log.text())],
         other => return look_about(state, other),
@@ -220,6 +220,8 @@ fn steer(state: &mut State, dx: f32, dy: f32, px: f32) -> Vec<Effect> {
     let by = [dx, dy].map(|d| d * px * n as f32);
     match &mut state.mode {
         Mode::Review if columns != 0 => time::step(state, columns),
+        // Nothing else goes through its lines.
+        Mode::Review if state.panel == Some(Panel::Prints) => mouse::step_list(state, rows),
         Mode::Review => time::step_track(state, rows),
         Mode::Place(at) => {
             let px = nudge_px(state.zoom);
@@ -386,7 +388,7 @@ fn next_theme(state: &mut State) {
 }
 
 /// Takes the mouse, or leaves it to the terminal, where it selects text.
-fn mouse(state: &mut State) -> Vec<Effect> {
+fn turn_mouse(state: &mut State) -> Vec<Effect> {
     state.mouse = !state.mouse;
     say(state, if state.mouse { "the mouse selects and places" } else { "the mouse is the terminal's" });
     vec![Effect::Mouse(state.mouse)]

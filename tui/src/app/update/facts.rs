@@ -74,7 +74,7 @@ pub enum Fact {
     /// Dense motion cannot be measured, for this reason.
     NotMeasured(String),
     /// These two runs are beside each other from now on; `None`: there are no two of the same tracks.
-    Versus(Option<[Entrant; 2]>),
+    Versus(Option<Box<[Entrant; 2]>>),
     /// These runs can be beside each other, or beside the one that was chosen first.
     Entrants(Option<RunId>, Vec<Entrant>),
     /// What became of comparing these two runs.
@@ -137,7 +137,7 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
             state.dense = None;
             happened(state, text, true);
         }
-        Fact::Versus(runs) => versus::on_runs(state, runs),
+        Fact::Versus(runs) => versus::on_runs(state, runs.map(|runs| *runs)),
         Fact::Entrants(first, entrants) => versus::on_entrants(state, first, entrants),
         Fact::Compared(runs, compared) => versus::on_compared(state, runs, compared),
         Fact::Ready(n) => state.n_ready = n,

@@ -19,7 +19,7 @@ pub(super) fn on_mouse(state: &mut State, mouse: Mouse) -> Vec<Effect> {
             match &mut state.mode {
                 Mode::Menu(menu) => menu.step(by),
                 Mode::Form(form) => form.step(by),
-                Mode::Review if layout.column.contains(here) => pick(state, column::pick_beside(state, by)),
+                Mode::Review if layout.column.contains(here) => step_list(state, by),
                 Mode::Review if layout.time.contains(here) => time::step(state, by),
                 Mode::Review | Mode::Place(_) | Mode::Move(_) | Mode::Sketch(_) => {
                     if let Some(point) = lens.point_of(mouse.column, mouse.row) {
@@ -83,8 +83,14 @@ fn pick(state: &mut State, picked: Option<Pick>) {
                 *at = row;
             }
         }
+        Some(Pick::Print(line)) => state.prints.look_at(line),
         None => {}
     }
+}
+
+/// Goes so many rows on in the list beside the picture.
+pub(super) fn step_list(state: &mut State, by: i64) {
+    pick(state, column::pick_beside(state, by));
 }
 
 /// Selects the track nearest to a point of the frame that is shown.

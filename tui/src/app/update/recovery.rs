@@ -21,11 +21,19 @@ pub(super) fn go_on(state: &mut State) -> Vec<Effect> {
     }
 }
 
-/// Answers whether a silent plugin is waited for.
+/// Answers whether a silent plugin is waited for, asked or not.
 pub(super) fn answer(state: &mut State, patience: Patience) -> Vec<Effect> {
-    if state.job.as_ref().is_some_and(|job| job.quiet.is_some()) {
-        return vec![Effect::Silent(patience)];
-    }
-    say(state, "no plugin is silent");
-    Vec::new()
+    let Some(quiet) = state.job.as_ref().and_then(|job| job.quiet.as_ref()) else {
+        say(state, "no plugin is silent");
+        return Vec::new();
+    };
+    let plugin = &quiet.plugin;
+    let line = match patience {
+        Patience::End => format!("{plugin} is ended after {} s without a sign of life", quiet.seconds),
+        _ => {
+            format!("{plugin} is waited for: asked again after {} s without a sign of life", quiet.again_s())
+        }
+    };
+    say(state, line);
+    vec![Effect::Silent(patience)]
 }

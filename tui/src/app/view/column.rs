@@ -39,6 +39,8 @@ pub enum Pick {
     Frame(u32),
     /// A row of the undo tree.
     Entry(usize),
+    /// A line that a plugin printed.
+    Print(usize),
 }
 
 /// A panel that lists something.

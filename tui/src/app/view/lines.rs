@@ -59,8 +59,11 @@ fn facts(state: &State, nth: usize) -> Vec<(u8, String)> {
 /// Which runs are beside each other, and which of them are drawn.
 fn runs_words(versus: &Versus) -> String {
     let name = |side: usize| {
-        let Entrant { run, tracker, .. } = &versus.runs[side];
-        format!("{} run {run} {tracker}", LETTERS[side])
+        let Entrant { run, tracker, build, .. } = &versus.runs[side];
+        // As much of it as tells the two apart.
+        let hash = build.as_deref().and_then(|build| build.split(',').next());
+        let hash = hash.map_or_else(String::new, |hash| format!(" {hash}"));
+        format!("{} run {run} {tracker}{hash}", LETTERS[side])
     };
     match versus.sides {
         Sides::Both => format!("{} · {}", name(0), name(1)),
@@ -574,7 +577,7 @@ fn recovery_line(recovery: &Recovery, state: &State) -> Line<'static> {
 
 /// `my-flow, frame 212/378: no sign of life for 12 s   W waits   I ends it   Esc stops`.
 fn quiet_words(job: &Job, quiet: &Quiet, state: &State) -> String {
-    let Quiet { plugin, seconds, at, is_asked } = quiet;
+    let Quiet { plugin, seconds, at, is_asked, .. } = quiet;
     let [now, end] = [job.done.0, job.done.1].map(|n| job.first + n);
     let mut words = format!("{plugin}, {} {now}/{end}: no sign of life for {seconds} s", job.what);
     if !at.is_empty() && !is_asked {

@@ -26,6 +26,7 @@ fn entry(row: &Row) -> Value {
         "ms_median": row.time.map(|time| time.median_ms),
         "ms_p95": row.time.map(|time| time.p95_ms),
         "peak_bytes": row.peak_bytes,
+        "deaths": row.n_deaths,
         "back": row.back.map(|back| json!({
             "median_px": back.median_px,
             "within_1px": back.within_1px,

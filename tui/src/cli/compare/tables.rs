@@ -52,7 +52,9 @@ fn costs(rows: &[Row], with_truth: bool) -> String {
     let of_truth: &[&str] = if with_truth { &["vis", "prec", "rec", "lost"] } else { &[] };
     let with_keys = rows.iter().any(|row| row.left_out.is_some());
     let keys: &[&str] = if with_keys { &["keys"] } else { &[] };
-    let head = [of_truth, &["kept", "back", "home"], keys, &["ms", "ms95", "MB"]].concat();
+    let with_deaths = rows.iter().any(|row| row.n_deaths > 0);
+    let deaths: &[&str] = if with_deaths { &["died"] } else { &[] };
+    let head = [of_truth, &["kept", "back", "home"], keys, &["ms", "ms95", "MB"], deaths].concat();
     table(&head, rows, |row| {
         let mut cells = Vec::new();
         if with_truth {
@@ -70,6 +72,9 @@ fn costs(rows: &[Row], with_truth: bool) -> String {
         cells.push(ms(row.time.map(|time| time.mean_ms)));
         cells.push(ms(row.time.map(|time| time.p95_ms)));
         cells.push(row.peak_bytes.map_or_else(none, |bytes| format!("{:.0}", bytes as f64 / 1e6)));
+        if with_deaths {
+            cells.push(row.n_deaths.to_string());
+        }
         cells
     })
 }

@@ -50,6 +50,7 @@ fn row(tracker: &str, skill: f64, n_drift: u32) -> Row {
         left_out: None,
         time: Some(Time { mean_ms: 3.25, median_ms: 3.0, p95_ms: 12.5 }),
         peak_bytes: Some(7_654_321),
+        n_deaths: 0,
     }
 }
 
@@ -68,6 +69,7 @@ fn clip() -> Vec<Row> {
     let out = |median_px| Some(LeftOut { n: 14, n_found: 9, median_px });
     let bare = |row: Row| Row { accuracy: None, errors: None, left_out: out(Some(2.25)), ..row };
     let mut rows: Vec<Row> = rows.into_iter().map(bare).collect();
+    rows[0].n_deaths = 2;
     rows[1].left_out = out(None);
     rows
 }

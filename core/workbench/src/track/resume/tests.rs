@@ -102,7 +102,8 @@ fn hidden_features_are_gone_on_with_and_those_that_are_lost_or_outside_are_not()
     let clip = session.media.clip();
     let seed = |track: u32| Seed { frame: 3, track: TrackId(track), x: 5.0 * track as f32, y: 3.0 };
     // In frame 4 none is seen.
-    assert_eq!(seen_last(&session.project, run, clip).unwrap(), [seed(1), seed(2)]);
+    let hidden: TrackSet = [TrackId(2)].into_iter().collect();
+    assert_eq!(seen_last(&session.project, run, clip).unwrap(), (vec![seed(1), seed(2)], hidden));
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! What plugins print and log, the newest line in sight.
+//! What plugins print and log, with the frame they were at; the newest line is in sight, or the one that is looked at.
 
 use honami_workbench::plugins::Level;
 use ratatui::style::Style;
@@ -15,7 +15,7 @@ pub(super) struct PrintList<'a>(pub(super) &'a State);
 
 impl List for PrintList<'_> {
     fn heading(&self) -> String {
-        format!("{:>7} {} {} lines", "s", padded("plugin", NAME), self.0.prints.n())
+        format!("{:>6} {} {} lines", "frame", padded("plugin", NAME), self.0.prints.n())
     }
 
     fn nothing(&self) -> &'static str {
@@ -27,7 +27,7 @@ impl List for PrintList<'_> {
     }
 
     fn current(&self) -> Option<usize> {
-        self.len().checked_sub(1)
+        self.0.prints.current()
     }
 
     fn row(&self, i: usize) -> Line<'static> {
@@ -39,11 +39,12 @@ impl List for PrintList<'_> {
             Level::Error => ("error: ", style::ERROR),
         };
         let name = if line.plugin.is_empty() { "here" } else { &line.plugin };
-        let time = Span::styled(format!("{:>6.1} {} ", line.t_s, fitted(name, NAME)), style::DIM);
-        Line::from(vec![time, Span::styled(format!("{word}{}", line.text), of_level)])
+        let frame = line.frame.map_or_else(String::new, |frame| frame.to_string());
+        let whose = Span::styled(format!("{frame:>5} {} ", fitted(name, NAME)), style::DIM);
+        Line::from(vec![whose, Span::styled(format!("{word}{}", line.text), of_level)])
     }
 
-    fn pick(&self, _: usize) -> Option<Pick> {
-        None
+    fn pick(&self, i: usize) -> Option<Pick> {
+        Some(Pick::Print(i))
     }
 }

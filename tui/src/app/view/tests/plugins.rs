@@ -13,14 +13,18 @@ use crate::app::update::Effect;
 #[test]
 fn what_plugins_print() {
     check("prints_80x24", (80, 24), "P o", fixture::prints);
+    check("prints_40x12", (40, 12), "P o", fixture::prints);
     check("prints_120x40", (120, 40), "P o P w", fixture::prints);
+    // A line is looked at while many others come.
+    let many = |state: &mut State| (0..9).for_each(|_| fixture::prints(state));
+    check("prints_before_80x24", (80, 24), "P o 2 0 k", many);
 }
 
 /// A run in frame 40 whose plugin has been silent for so long.
 fn silent(seconds: u64, is_asked: bool) -> impl FnOnce(&mut State) {
     move |state| {
         let (plugin, at) = ("my-flow".to_owned(), "level 2".to_owned());
-        let quiet = Some(Quiet { plugin: plugin.clone(), seconds, at, is_asked });
+        let quiet = Some(Quiet { plugin: plugin.clone(), seconds, limit_s: 10, at, is_asked });
         let (what, since) = ("frame".to_owned(), Duration::ZERO);
         // The frames 10 to 99 of the clip.
         let (done, first) = ((30, 90), 10);
@@ -34,6 +38,9 @@ fn a_plugin_that_is_silent() {
     check("silent_80x24", (80, 24), "", silent(4, false));
     check("silent_asked_80x24", (80, 24), "", silent(12, true));
     check("silent_asked_40x12", (40, 12), "", silent(12, true));
+    // Both answers are taken before the question comes, too.
+    check("silent_waits_80x24", (80, 24), "W", silent(4, false));
+    check("silent_ended_80x24", (80, 24), "I", silent(12, true));
 }
 
 #[test]

@@ -22,6 +22,9 @@ pub(super) fn of(rows: &[Row]) -> String {
     if any(|row| row.peak_bytes.is_some()) {
         lines.push(("MB", "memory it took at most, 10^6 bytes"));
     }
+    if any(|row| row.n_deaths > 0) {
+        lines.push(("died", "times its process died; a frame it died in twice is lost"));
+    }
     if any(|row| row.field.is_some()) {
         lines.extend(OF_FIELD);
     }

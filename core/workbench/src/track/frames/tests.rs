@@ -1,0 +1,108 @@
+//! When frames are written, and what is told of those that are not. No test waits: what is due is told by the test's clock.
+
+use honami_model::provenance::Provenance;
+use honami_model::track::{Quality, Sample, Source, TrackId};
+use honami_store::RunHead;
+use honami_synth::Settings;
+use tempfile::TempDir;
+
+use super::*;
+use crate::generate::generate;
+use crate::session::Session;
+
+fn kept(hidden: TrackSet) -> (TempDir, Session, Kept) {
+    let folder = tempfile::tempdir().unwrap();
+    let clip = folder.path().join("clip.y4m");
+    let settings = Settings { width: 64, height: 48, n_frames: 4, n_leaves: 2, ..Settings::default() };
+    generate(&settings, &clip, &()).unwrap();
+    let session = Session::create(&folder.path().join("clip.honami"), &clip, None, &Default::default());
+    let mut session = session.unwrap();
+    let word = || "test".to_owned();
+    let provenance = Provenance {
+        what: "track".to_owned(),
+        plugin_id: word(),
+        plugin_version: word(),
+        plugin_sha256: word(),
+        abi: (1, 0),
+        params: std::iter::empty().collect(),
+        seed: 0,
+        input_revision: 0,
+        sandbox: word(),
+        simd: word(),
+        date: word(),
+        honami_version: word(),
+    };
+    let tracks: TrackSet = [TrackId(1), TrackId(2)].into_iter().collect();
+    session.project.claim_tracks(&tracks).unwrap();
+    let head = RunHead { provenance, tracks, frames: 0..400 };
+    let writer = session.project.begin_run(&head).unwrap();
+    (folder, session, Kept::new(writer, 0, hidden))
+}
+
+fn rows() -> Rows {
+    let (status, source, quality) = (Status::Tracked, Source::Tracked, Quality::default());
+    [1, 2].map(|track| (TrackId(track), Sample { x: 1.0, y: 2.0, status, source, quality })).to_vec()
+}
+
+/// How many frames the project has of the run.
+fn n_written(session: &Session, kept: &Kept) -> u32 {
+    session.project.run(kept.writer.run()).unwrap().found.end
+}
+
+#[test]
+fn frames_are_written_when_it_is_time_or_there_are_many() {
+    let (_folder, session, mut kept) = kept(TrackSet::default());
+    let before = Instant::now();
+    kept.add(0, &rows()).unwrap();
+    assert_eq!((kept.look(before), n_written(&session, &kept)), (0, 1), "the first at once");
+    for frame in 1..4 {
+        kept.add(frame, &rows()).unwrap();
+    }
+    // Whatever the write took, a quarter of a second has not passed by this clock, and the longest wait has by the other.
+    assert_eq!((kept.look(before), n_written(&session, &kept)), (3, 1));
+    let later = Instant::now() + WAIT_MAX;
+    assert_eq!((kept.look(later), n_written(&session, &kept)), (0, 4));
+    for frame in 4..4 + CHUNK as u32 {
+        kept.add(frame, &rows()).unwrap();
+    }
+    assert_eq!((kept.look(before), n_written(&session, &kept)), (0, 4 + CHUNK as u32), "many at once");
+}
+
+#[test]
+fn only_what_is_written_is_told() {
+    struct Heard(Mutex<Vec<u64>>);
+    impl Progress for Heard {
+        fn report(&self, done: u64, _: u64, _: &str) -> Flow {
+            hand(&self.0).push(done);
+            Flow::Continue
+        }
+    }
+    let (_folder, _session, mut kept) = kept(TrackSet::default());
+    let heard = Heard(Mutex::default());
+    kept.due = Some(Instant::now() + Duration::from_secs(3600));
+    for frame in 0..3 {
+        kept.add(frame, &rows()).unwrap();
+    }
+    let kept = Mutex::new(&mut kept);
+    let keeper = Keeper { kept: &kept, progress: &heard };
+    assert_eq!(keeper.report(3, 400, "frame"), Flow::Continue);
+    hand(&kept).due = None;
+    assert_eq!(keeper.report(3, 400, "frame"), Flow::Continue);
+    // Of a tracker that gives its answers at the end there is nothing to write meanwhile.
+    assert_eq!(keeper.report(10, 400, "frame"), Flow::Continue);
+    assert_eq!(*hand(&heard.0), [0, 3, 10]);
+}
+
+#[test]
+fn what_was_hidden_is_so_in_the_first_frame() {
+    let (_folder, session, mut kept) = kept([TrackId(2)].into_iter().collect());
+    for frame in 0..3 {
+        kept.add(frame, &rows()).unwrap();
+    }
+    kept.flush().unwrap();
+    let spans = session.project.run_tracks(kept.writer.run()).unwrap();
+    let statuses: Vec<Vec<Status>> =
+        spans.iter().map(|(_, span)| span.samples.iter().map(|sample| sample.status).collect()).collect();
+    let (seen, hidden) = (Status::Tracked, Status::Occluded);
+    assert_eq!(statuses, [[seen; 3], [hidden, seen, seen]]);
+}
