@@ -1,5 +1,5 @@
-/* honami.hpp - trackers in C++17, over honami.h: derive from honami::Tracker, and name the class in HONAMI_LIBRARY.
- * examples/template_tracker.cpp is a complete plugin:
+/* honami.hpp - plugins in C++17, over honami.h: derive from honami::Tracker or honami::Clusterer, and name the class in
+ * HONAMI_LIBRARY. examples/template_tracker.cpp is a complete plugin:
  *
  *   c++ -std=c++17 -O2 -shared -fPIC -fvisibility=hidden -fvisibility-inlines-hidden template_tracker.cpp -o t.so
  *
@@ -11,6 +11,23 @@
  *     static constexpr honami::Param params[] = {honami::integer("radius", 7, 2, 30, "px", "Half the side.")};
  *     Mine(const honami::Values &values, const honami::Stream &stream);   // a stream begins
  *
+ * A tracker may have more, which the manifest then says:
+ *
+ *     static std::vector<honami::Feature> detect(const honami::Values &, const honami::Wanted &, const honami::Call &);
+ *     static honami::Field field(const honami::Values &, const honami::Frame &from, const honami::Frame &to,
+ *                                const honami::Call &);
+ *     std::string save() const;               // all that later frames depend on: when its process has died, another,
+ *     void load(const std::string &saved);    // which has just begun, goes on from there with the same numbers
+ *     static constexpr uint32_t state_version = 1;   // another one when the bytes mean something else; 0 if left out
+ *
+ * A clusterer has a constructor from the values, and run:
+ *
+ *     class Groups : public honami::Clusterer {
+ *     public:
+ *       static constexpr honami::Info info{"org.me.groups", "My groups"};
+ *       explicit Groups(const honami::Values &values);
+ *       honami::Tree run(const honami::Tracks &tracks, const honami::Call &call) override;
+ *
  * Whatever a member function throws ends the stream, and is told to the user in the words of its what(): honami::Error
  * for input that cannot be worked on, anything else for a fault of the plugin's own. Call::progress throws when the
  * user wants to stop: let that pass. What a function is given is gone when it returns: copy what you keep.
@@ -18,8 +35,9 @@
 #ifndef HONAMI_HPP
 #define HONAMI_HPP
 
-#include "honami.h"
+#include "honami_manifest.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <memory>
@@ -31,46 +49,6 @@
 #include <vector>
 
 namespace honami {
-
-/* ------------------------------------------------------------------------------------- what a plugin declares --- */
-
-/* What a plugin is called. The last part of the id is its short name; the id is yours for ever. */
-struct Info {
-  const char *id, *name;
-  const char *doc = "";
-  bool deterministic = true, parallel_instances = true;
-};
-
-/* One of several, by the id that projects keep. */
-struct Entry {
-  const char *id, *label;
-};
-
-/* A parameter; made by integer, number, flag, choice and file. */
-struct Param {
-  const char *id;
-  uint32_t kind;
-  double standard, min, max;
-  const char *unit, *doc;
-  const Entry *entries;
-  std::size_t n_entries;
-};
-
-constexpr Param integer(const char *id, int standard, int min, int max, const char *unit, const char *doc) {
-  return {id, HONAMI_INT, double(standard), double(min), double(max), unit, doc, nullptr, 0};
-}
-constexpr Param number(const char *id, double standard, double min, double max, const char *unit, const char *doc) {
-  return {id, HONAMI_FLOAT, standard, min, max, unit, doc, nullptr, 0};
-}
-constexpr Param flag(const char *id, bool standard, const char *doc) {
-  return {id, HONAMI_BOOL, standard ? 1.0 : 0.0, 0, 1, "", doc, nullptr, 0};
-}
-/* The first entry is the default. */
-template <std::size_t N> constexpr Param choice(const char *id, const Entry (&entries)[N], const char *doc) {
-  return {id, HONAMI_TEXT, 0, 0, 0, "", doc, entries, N};
-}
-/* A file that the plugin reads; it can open no others. */
-constexpr Param file(const char *id, const char *doc) { return {id, HONAMI_TEXT, 0, 0, 0, "", doc, nullptr, 0}; }
 
 /* --------------------------------------------------------------------------------------- what a plugin is given --- */
 
@@ -123,6 +101,11 @@ public:
         if (std::strcmp(declared[k].id, given[i].id) == 0) values[k] = of(declared[k], given[i]);
   }
 
+  /* Adds what was chosen to a sum. */
+  template <class Sum> void add_to(Sum &sum) const {
+    for (const Value &value : values) sum.number(value.number), sum.text(value.text);
+  }
+
 private:
   struct Value {
     double number = 0;
@@ -160,6 +143,9 @@ struct Frame {
   double time_s;
   const honami_frame *raw; /* with the colour, behind HONAMI_HAS */
 
+  static Frame of(const honami_frame *raw) {
+    return {int(raw->width), int(raw->height), std::ptrdiff_t(raw->stride), raw->data, raw->index, raw->time_s, raw};
+  }
   const uint8_t *row(int y) const { return data + y * stride; }
   uint8_t at(int x, int y) const { return row(y)[x]; }
   /* Pixels of the window of radius r around the pixel nearest to (x, y), row by row; none where it leaves the frame. */
@@ -200,17 +186,59 @@ struct Point {
   float x, y;
 };
 
+namespace detail {
+
+inline uint32_t dtype(uint8_t) { return HONAMI_U8; }
+inline uint32_t dtype(uint32_t) { return HONAMI_U32; }
+inline uint32_t dtype(int64_t) { return HONAMI_I64; }
+inline uint32_t dtype(uint64_t) { return HONAMI_U64; }
+inline uint32_t dtype(float) { return HONAMI_F32; }
+inline uint32_t dtype(double) { return HONAMI_F64; }
+
+/* The column of this name, which must be there. */
+template <class T> const T *column(const honami_table *table, const char *name) {
+  for (uint32_t i = 0; i < table->ncols; i++) {
+    const honami_column &c = table->cols[i];
+    if (!std::strcmp(c.name, name) && c.dtype == dtype(T())) return static_cast<const T *>(c.data);
+  }
+  throw Error(std::string(table->schema) + " needs a column " + name, HONAMI_E_ARGUMENT);
+}
+
+/* A column that is to be handed over. */
+struct Column {
+  template <class T>
+  Column(const char *name, const std::vector<T> &values)
+      : name(name), dtype(detail::dtype(T())), data(values.data()), rows(values.size()), bytes(rows * sizeof(T)) {}
+  const char *name;
+  uint32_t dtype;
+  const void *data;
+  std::size_t rows, bytes;
+};
+
+/* Lays a table into the host's memory. */
+inline honami_code lay(const honami_call *call, const char *schema, const std::vector<Column> &columns) {
+  std::vector<honami_column> out;
+  for (const Column &column : columns) {
+    if (column.rows != columns[0].rows) throw std::logic_error(std::string("columns of ") + schema + " differ in length");
+    out.push_back({column.name, column.dtype, 1, nullptr, 0});
+  }
+  const honami_code code = call->reserve(call, schema, columns[0].rows, uint32_t(out.size()), out.data());
+  if (code < 0) return code;
+  for (std::size_t k = 0; k < out.size(); k++)
+    if (columns[k].bytes) std::memcpy(out[k].data, columns[k].data, columns[k].bytes);
+  return call->commit(call, schema, columns[0].rows);
+}
+
+} // namespace detail
+
 /* Points to follow: for (auto [id, x, y] : points). */
 class Points {
 public:
-  explicit Points(const honami_table *table) : n(table->rows) {
-    for (uint32_t i = 0; i < table->ncols; i++) {
-      const honami_column &c = table->cols[i];
-      if (!std::strcmp(c.name, "id") && c.dtype == HONAMI_U32) ids = static_cast<const uint32_t *>(c.data);
-      if (!std::strcmp(c.name, "x") && c.dtype == HONAMI_F32) xs = static_cast<const float *>(c.data);
-      if (!std::strcmp(c.name, "y") && c.dtype == HONAMI_F32) ys = static_cast<const float *>(c.data);
-    }
-    if (n && !(ids && xs && ys)) throw Error("points need id, x and y", HONAMI_E_ARGUMENT);
+  explicit Points(const honami_table *table) : n(table ? table->rows : 0) {
+    if (n == 0) return;
+    ids = detail::column<uint32_t>(table, "id");
+    xs = detail::column<float>(table, "x");
+    ys = detail::column<float>(table, "y");
   }
   std::size_t size() const { return std::size_t(n); }
   Point operator[](std::size_t k) const { return {ids[k], xs[k], ys[k]}; }
@@ -246,41 +274,136 @@ class Rows {
 public:
   /* Positions are finite, also of lost points. If measured: fb, error there and back, pixels; ncc, likeness, -1 to 1. */
   void add(uint32_t id, float x, float y, Status status, float fb = HONAMI_FB_NONE, float ncc = HONAMI_NCC_NONE) {
-    rows.push_back({id, x, y, fb, ncc, status});
+    ids.push_back(id), xs.push_back(x), ys.push_back(y), states.push_back(status), fbs.push_back(fb), nccs.push_back(ncc);
     has_fb = has_fb || fb != HONAMI_FB_NONE;
     has_ncc = has_ncc || ncc != HONAMI_NCC_NONE;
   }
 
   /* Lays them into the host's memory. */
   honami_code commit(const honami_call *call) const {
-    honami_column columns[6] = {column("id", HONAMI_U32), column("x", HONAMI_F32), column("y", HONAMI_F32),
-                                column("status", HONAMI_U8)};
-    uint32_t n = 4;
-    const uint32_t fb = has_fb ? n++ : 0, ncc = has_ncc ? n++ : 0;
-    if (has_fb) columns[fb] = column("fb", HONAMI_F32);
-    if (has_ncc) columns[ncc] = column("ncc", HONAMI_F32);
-    const honami_code code = call->reserve(call, HONAMI_POINTS, rows.size(), n, columns);
-    if (code < 0) return code;
-    for (std::size_t k = 0; k < rows.size(); k++) {
-      static_cast<uint32_t *>(columns[0].data)[k] = rows[k].id;
-      static_cast<float *>(columns[1].data)[k] = rows[k].x;
-      static_cast<float *>(columns[2].data)[k] = rows[k].y;
-      static_cast<uint8_t *>(columns[3].data)[k] = rows[k].status;
-      if (has_fb) static_cast<float *>(columns[fb].data)[k] = rows[k].fb;
-      if (has_ncc) static_cast<float *>(columns[ncc].data)[k] = rows[k].ncc;
-    }
-    return call->commit(call, HONAMI_POINTS, rows.size());
+    std::vector<detail::Column> columns{{"id", ids}, {"x", xs}, {"y", ys}, {"status", states}};
+    if (has_fb) columns.emplace_back("fb", fbs);
+    if (has_ncc) columns.emplace_back("ncc", nccs);
+    return detail::lay(call, HONAMI_POINTS, columns);
   }
 
 private:
-  struct Row {
-    uint32_t id;
-    float x, y, fb, ncc;
-    uint8_t status;
-  };
-  static honami_column column(const char *name, uint32_t dtype) { return {name, dtype, 1, nullptr, 0}; }
-  std::vector<Row> rows;
+  std::vector<uint32_t> ids;
+  std::vector<float> xs, ys, fbs, nccs;
+  std::vector<uint8_t> states;
   bool has_fb = false, has_ncc = false;
+};
+
+/* Where features are wanted. */
+struct Wanted {
+  Frame frame;
+  std::size_t max_features; /* at most so many, the best ones first; more are left out */
+  Points points;            /* keep your distance from these */
+  uint32_t max_threads;
+  uint64_t seed;
+  const uint8_t *mask; /* null: everywhere */
+  std::ptrdiff_t mask_stride;
+
+  bool may(int x, int y) const { return !mask || mask[y * mask_stride + x]; }
+};
+
+/* A place worth following: the larger the score, the better. */
+struct Feature {
+  float x, y, score;
+};
+
+/* Dense motion: node (i, j) of the grid lies at (x + i * step, y + j * step), and what is there moves by (u, v), pixels. */
+struct Field {
+  Field(float x, float y, float step, uint32_t nx, uint32_t ny)
+      : x(x), y(y), step(step), nx(nx), ny(ny), u(std::size_t(nx) * ny), v(u.size()), known(u.size(), 1) {}
+  float x, y, step;
+  uint32_t nx, ny;
+  std::vector<float> u, v;    /* row by row */
+  std::vector<uint8_t> known; /* 0 where nothing could be measured */
+
+  void set(uint32_t i, uint32_t j, float right, float down) {
+    u[std::size_t(j) * nx + i] = right, v[std::size_t(j) * nx + i] = down;
+  }
+};
+
+/* A track: a sample a frame, from frame `first` on. */
+struct Track {
+  uint32_t id;
+  int64_t first;
+  std::size_t n;
+  const float *x, *y;
+  const uint8_t *status;
+
+  bool is_seen(std::size_t k) const { return status[k] == TRACKED || status[k] == NEWBORN; }
+};
+
+/* Tracks to group. */
+class Tracks {
+public:
+  explicit Tracks(const honami_clusterer_input *input)
+      : width(input->width), height(input->height), max_threads(input->max_threads), seed(input->seed),
+        n(std::size_t(input->tracks->rows)), n_times(std::size_t(input->times->rows)) {
+    frames = detail::column<int64_t>(input->times, "frame");
+    times = detail::column<double>(input->times, "time_s");
+    ids = detail::column<uint32_t>(input->tracks, "id");
+    firsts = detail::column<int64_t>(input->tracks, "frame0");
+    lens = detail::column<uint32_t>(input->tracks, "len");
+    offsets = detail::column<uint64_t>(input->tracks, "offset");
+    xs = detail::column<float>(input->tracks, "x");
+    ys = detail::column<float>(input->tracks, "y");
+    states = detail::column<uint8_t>(input->tracks, "status");
+  }
+  std::size_t size() const { return n; }
+  Track operator[](std::size_t k) const {
+    const std::size_t at = std::size_t(offsets[k]);
+    return {ids[k], firsts[k], lens[k], xs + at, ys + at, states + at};
+  }
+  /* Frames, from the first to the last of the tracks: the number and the time of each. */
+  std::size_t n_frames() const { return n_times; }
+  int64_t frame(std::size_t k) const { return frames[k]; }
+  double time_s(std::size_t k) const { return times[k]; }
+
+  const uint32_t width, height, max_threads;
+  const uint64_t seed;
+
+private:
+  std::size_t n, n_times;
+  const int64_t *frames, *firsts;
+  const double *times;
+  const uint32_t *ids, *lens;
+  const uint64_t *offsets;
+  const float *xs, *ys;
+  const uint8_t *states;
+};
+
+/* What a clusterer hands back: n - 1 merges over n tracks. Track k is cluster k, and merge r makes cluster n + r: SciPy's
+ * linkage matrix. Frames may be judged: all of those in the tracks' times, in their order. */
+class Tree {
+public:
+  void merge(std::size_t a, std::size_t b, double height) {
+    as.push_back(uint32_t(a)), bs.push_back(uint32_t(b)), heights.push_back(height);
+  }
+  void judge(int64_t frame, bool is_outlier, double distance) {
+    frames.push_back(frame), outliers.push_back(is_outlier), distances.push_back(distance);
+  }
+
+  /* Lays it into the host's memory. */
+  honami_code commit(const honami_call *call) const {
+    const std::size_t n = as.size() + 1;
+    std::vector<uint32_t> sizes(n, 1);
+    for (std::size_t r = 0; r < as.size(); r++) sizes.push_back(sizes.at(as[r]) + sizes.at(bs[r]));
+    sizes.erase(sizes.begin(), sizes.begin() + std::ptrdiff_t(n));
+    const honami_code code =
+        detail::lay(call, HONAMI_DENDROGRAM, {{"a", as}, {"b", bs}, {"height", heights}, {"size", sizes}});
+    if (code < 0 || frames.empty()) return code;
+    return detail::lay(call, HONAMI_FRAMES, {{"frame", frames}, {"outlier", outliers}, {"distance", distances}});
+  }
+
+private:
+  std::vector<uint32_t> as, bs;
+  std::vector<double> heights, distances;
+  std::vector<int64_t> frames;
+  std::vector<uint8_t> outliers;
 };
 
 /* Follows points through a stream; one object a stream. The order of calls: push (frame 0), seed, push (frame 1), push,
@@ -288,6 +411,7 @@ private:
  * frame, where push reports them as they were seeded. Seeding a live id moves it: a correction by hand. */
 class Tracker {
 public:
+  static constexpr const char *kind = "tracker";
   virtual ~Tracker() = default;
   /* Adds points, or moves those that are live. */
   virtual void seed(const Points &points, const Call &call) = 0;
@@ -297,179 +421,53 @@ public:
   virtual void push(const Frame &frame, Rows &out, const Call &call) = 0;
 };
 
+/* Groups tracks; one object a grouping. */
+class Clusterer {
+public:
+  static constexpr const char *kind = "clusterer";
+  virtual ~Clusterer() = default;
+  /* The hierarchy of these tracks. */
+  virtual Tree run(const Tracks &tracks, const Call &call) = 0;
+};
+
 /* --------------------------------------------------------------------------------------------------- the border --- */
 
 namespace detail {
 
-/* JSON under construction, by the compiler. With N = 0 it only counts, which gives the N of the second pass. */
-template <std::size_t N> struct Json {
-  char text[N + 1] = {};
-  std::size_t n = 0;
-
-  constexpr void byte(char c) {
-    if (n < N) text[n] = c;
-    n++;
-  }
-  constexpr void raw(const char *s) {
-    while (*s) byte(*s++);
-  }
-  constexpr void string(const char *s) {
-    byte('"');
-    for (; *s; s++) {
-      if (*s == '\n') {
-        raw("\\n");
-        continue;
-      }
-      if (*s == '"' || *s == '\\') byte('\\');
-      byte(*s);
-    }
-    byte('"');
-  }
-  constexpr void member(const char *key, const char *value) {
-    byte(',');
-    string(key);
-    byte(':');
-    string(value);
-  }
-  constexpr void whole(unsigned long long v) {
-    if (v > 9) whole(v / 10);
-    byte(char('0' + v % 10));
-  }
-  /* With 15 digits, which every decimal number of so many comes back from. */
-  constexpr void real(double v) {
-    if (v < 0) byte('-'), v = -v;
-    int exponent = 0;
-    if (v > 0) {
-      for (; v >= 10; v /= 10) exponent++;
-      for (; v < 1; v *= 10) exponent--;
-    }
-    const auto digits = static_cast<unsigned long long>(v * 1e14 + 0.5);
-    whole(digits / 100000000000000);
-    byte('.');
-    unsigned long long rest = digits % 100000000000000;
-    for (unsigned long long unit = 10000000000000; unit; rest %= unit, unit /= 10) byte(char('0' + rest / unit));
-    byte('e');
-    if (exponent < 0) byte('-');
-    whole(static_cast<unsigned long long>(exponent < 0 ? -exponent : exponent));
-  }
-  constexpr void member(const char *key, double value, bool is_whole) {
-    byte(',');
-    string(key);
-    byte(':');
-    if (!is_whole) return real(value);
-    if (value < 0) byte('-');
-    whole(static_cast<unsigned long long>(value < 0 ? -value : value));
-  }
-  constexpr void param(const Param &p) {
-    raw("{\"id\":");
-    string(p.id);
-    const bool is_whole = p.kind == HONAMI_INT;
-    if (p.kind == HONAMI_BOOL) {
-      raw(",\"type\":\"bool\",\"default\":");
-      raw(p.standard != 0 ? "true" : "false");
-    } else if (p.entries) choice(p);
-    else if (p.kind == HONAMI_TEXT) raw(",\"type\":\"path\",\"mode\":\"open\",\"default\":\"\"");
-    else {
-      raw(is_whole ? ",\"type\":\"int\"" : ",\"type\":\"float\"");
-      member("default", p.standard, is_whole);
-      member("min", p.min, is_whole);
-      member("max", p.max, is_whole);
-      member("unit", p.unit);
-    }
-    member("doc", p.doc);
-    byte('}');
-  }
-  constexpr void choice(const Param &p) {
-    raw(",\"type\":\"enum\"");
-    member("default", p.entries[0].id);
-    raw(",\"entries\":[");
-    for (std::size_t k = 0; k < p.n_entries; k++) {
-      raw(k ? ",{\"id\":" : "{\"id\":");
-      string(p.entries[k].id);
-      member("label", p.entries[k].label);
-      byte('}');
-    }
-    byte(']');
-  }
-};
-
-template <class T, class = void> struct Declared {
-  template <std::size_t N> static constexpr void write(Json<N> &) {}
-  static Values values() { return Values(); }
-};
-template <class T> struct Declared<T, std::void_t<decltype(T::params)>> {
-  template <std::size_t N> static constexpr void write(Json<N> &json) {
-    bool is_first = true;
-    for (const Param &param : T::params) {
-      if (!is_first) json.byte(',');
-      json.param(param);
-      is_first = false;
-    }
-  }
-  static Values values() { return Values(T::params); }
-};
-
-template <class T, std::size_t N> constexpr void write_plugin(Json<N> &json, bool is_first) {
-  json.raw(is_first ? "{\"id\":" : ",{\"id\":");
-  json.string(T::info.id);
-  json.member("kind", "tracker");
-  json.member("name", T::info.name);
-  json.member("doc", T::info.doc);
-  json.raw(",\"interfaces\":[\"" HONAMI_TRACKER "\"],");
-  json.raw("\"caps\":{\"latency\":0,\"pixels\":[\"gray8\"],\"deterministic\":");
-  json.raw(T::info.deterministic ? "true" : "false");
-  json.raw(T::info.parallel_instances ? ",\"parallel_instances\":true}" : ",\"parallel_instances\":false}");
-  json.raw(",\"params\":[");
-  Declared<T>::write(json);
-  json.raw("]}");
+template <class T> Values values_of() {
+  if constexpr (has_params<T>) return Values(T::params);
+  else return Values();
 }
 
-template <std::size_t N, class About, class... Plugins> constexpr Json<N> manifest() {
-  Json<N> json;
-  json.raw("{\"honami\":1,\"abi\":[");
-  json.whole(HONAMI_ABI_MAJOR);
-  json.byte(',');
-  json.whole(HONAMI_ABI_MINOR);
-  json.raw("],\"library\":{\"id\":");
-  json.string(About::id);
-  json.member("version", About::version);
-  json.member("license", About::license);
-  json.raw("},\"plugins\":[");
-  bool is_first = true;
-  ((write_plugin<Plugins>(json, is_first), is_first = false), ...);
-  json.raw("]}");
-  return json;
-}
+template <class T, class = void> inline constexpr uint32_t state_version = 0;
+template <class T> inline constexpr uint32_t state_version<T, std::void_t<decltype(T::state_version)>> = T::state_version;
 
-template <class About, class... Plugins> constexpr std::size_t manifest_len = manifest<0, About, Plugins...>().n;
-
-/* The ELF note that carries the manifest. */
-template <std::size_t N> struct Note {
-  uint32_t name_len, text_len, type;
-  char name[8], text[N + 1];
+/* FNV-1a, by 64 bits: no byte can be changed without the sum. */
+class Sum {
+public:
+  void bytes(const void *data, std::size_t n) {
+    for (std::size_t k = 0; k < n; k++) sum = (sum ^ static_cast<const uint8_t *>(data)[k]) * 1099511628211u;
+  }
+  void text(const std::string &text) { bytes(text.c_str(), text.size() + 1); }
+  template <class N> void number(N number) { bytes(&number, sizeof number); }
+  uint64_t sum = 14695981039346656037u;
 };
 
-template <class About, class... Plugins> constexpr auto note() {
-  constexpr std::size_t n = manifest_len<About, Plugins...>;
-  const Json<n> json = manifest<n, About, Plugins...>();
-  Note<n> note{7, n + 1, 1, "honami", {}};
-  for (std::size_t k = 0; k < n; k++) note.text[k] = json.text[k];
-  return note;
-}
-
-/* A tracker at work, as honami.h sees it. */
+/* A plugin at work, as honami.h sees it. */
 template <class T> class Instance {
 public:
   static honami_instance *create() { return &(new Instance)->face; }
 
 private:
-  Instance() : values(Declared<T>::values()) {
+  Instance() : values(values_of<T>()) {
     face = {HONAMI_SIZE_TO(honami_instance, get_interface), 0, this, destroy, set_params, get_interface};
   }
   static Instance &of(honami_instance *instance) { return *static_cast<Instance *>(instance->self); }
 
-  /* The one door: nothing is thrown through it, and what ended a stream once has ended it. */
-  template <class F> static honami_code guard(honami_instance *instance, const honami_call *call, F work) noexcept {
+  /* The one door: nothing is thrown through it, and what ended a stream once has ended it. Of what `is_aside` a refusal
+   * leaves the stream as it is. */
+  template <class F>
+  static honami_code guard(honami_instance *instance, const honami_call *call, F work, bool is_aside = false) noexcept {
     Instance &self = of(instance);
     if (self.has_failed) return call->fail(call, HONAMI_E_STATE, "has failed before");
     honami_code code = HONAMI_E_INTERNAL;
@@ -486,8 +484,8 @@ private:
     } catch (...) {
       code = call->fail(call, HONAMI_E_INTERNAL, "threw what is no std::exception");
     }
-    self.running.reset();
     self.has_failed = code == HONAMI_E_INTERNAL;
+    if (!is_aside || self.has_failed) self.running.reset();
     return code;
   }
   T &stream() {
@@ -514,6 +512,7 @@ private:
       if (stream->pixel != HONAMI_GRAY8) throw Error("only 8-bit gray frames", HONAMI_E_UNSUPPORTED);
       if (self.running) throw Error("a stream is running: end it first", HONAMI_E_STATE);
       self.running = std::make_unique<T>(self.values, *stream);
+      self.begun = *stream;
       return HONAMI_OK;
     });
   }
@@ -535,11 +534,8 @@ private:
 
   static honami_code push(honami_instance *instance, const honami_call *call, const honami_frame *frame) noexcept {
     return guard(instance, call, [&](Instance &self) {
-      const Frame view{int(frame->width), int(frame->height), std::ptrdiff_t(frame->stride),
-                       frame->data,       frame->index,       frame->time_s,
-                       frame};
       Rows rows;
-      self.stream().push(view, rows, Call(call));
+      self.stream().push(Frame::of(frame), rows, Call(call));
       return rows.commit(call);
     });
   }
@@ -552,14 +548,115 @@ private:
     });
   }
 
+  static honami_code detect(honami_instance *instance, const honami_call *call,
+                            const honami_detect_input *input) noexcept {
+    return guard(instance, call, [&](Instance &self) {
+      const Wanted wanted{Frame::of(input->frame), input->max_features, Points(input->points),
+                          input->max_threads,      input->seed,         input->mask,
+                          std::ptrdiff_t(input->mask_stride)};
+      std::vector<Feature> found = T::detect(self.values, wanted, Call(call));
+      if (found.size() > wanted.max_features) found.erase(found.begin() + std::ptrdiff_t(wanted.max_features), found.end());
+      std::vector<float> x, y, score;
+      for (const Feature &feature : found)
+        x.push_back(feature.x), y.push_back(feature.y), score.push_back(feature.score);
+      return lay(call, HONAMI_FEATURES, {{"x", x}, {"y", y}, {"score", score}});
+    });
+  }
+
+  static honami_code field(honami_instance *instance, const honami_call *call,
+                           const honami_field_input *input) noexcept {
+    return guard(instance, call, [&](Instance &self) {
+      const Field found = T::field(self.values, Frame::of(input->from), Frame::of(input->to), Call(call));
+      const honami_code code =
+          lay(call, HONAMI_VECTORS, {{"u", found.u}, {"v", found.v}, {"known", found.known}});
+      if (code < 0) return code;
+      const std::vector<float> gx{found.x}, gy{found.y}, step{found.step};
+      const std::vector<uint32_t> nx{found.nx}, ny{found.ny};
+      return lay(call, HONAMI_GRID, {{"gx", gx}, {"gy", gy}, {"step", step}, {"nx", nx}, {"ny", ny}});
+    });
+  }
+
+  /* Whose saved bytes are, and under which parameters and stream. */
+  uint64_t setting() const {
+    Sum sum;
+    sum.text(T::info.id);
+    sum.number(state_version<T>);
+    values.add_to(sum);
+    sum.number(begun.width), sum.number(begun.height), sum.number(begun.direction), sum.number(begun.seed);
+    sum.number(begun.birth_first), sum.number(begun.birth_count);
+    return sum.sum;
+  }
+
+  /* Before the plugin's own bytes lie the setting, and the sum of both. */
+  static honami_code save(honami_instance *instance, const honami_call *call) noexcept {
+    return guard(instance, call, [&](Instance &self) {
+      const std::string own = self.stream().save();
+      const uint64_t setting = self.setting();
+      Sum sum;
+      sum.number(setting);
+      sum.bytes(own.data(), own.size());
+      std::vector<uint8_t> bytes(2 * sizeof(uint64_t) + own.size());
+      std::memcpy(bytes.data(), &sum.sum, sizeof(uint64_t));
+      std::memcpy(bytes.data() + sizeof(uint64_t), &setting, sizeof(uint64_t));
+      std::copy(own.begin(), own.end(), bytes.begin() + 2 * sizeof(uint64_t));
+      return lay(call, HONAMI_STATE, {{"bytes", bytes}});
+    }, true);
+  }
+
+  static honami_code load(honami_instance *instance, const honami_call *call, const uint8_t *bytes,
+                          uint64_t n) noexcept {
+    return guard(instance, call, [&](Instance &self) {
+      self.stream();
+      uint64_t head[2] = {0, 0};
+      if (n < sizeof head) throw Error("what was saved is cut");
+      std::memcpy(head, bytes, sizeof head);
+      Sum sum;
+      sum.bytes(bytes + sizeof(uint64_t), std::size_t(n) - sizeof(uint64_t));
+      if (sum.sum != head[0]) throw Error("what was saved is cut or damaged");
+      if (head[1] != self.setting())
+        throw Error("what was saved is of another plugin or version, of other parameters or another stream");
+      auto loaded = std::make_unique<T>(self.values, self.begun);
+      loaded->load(std::string(bytes + sizeof head, bytes + n));
+      self.running = std::move(loaded);
+      return HONAMI_OK;
+    }, true);
+  }
+
+  static honami_code run(honami_instance *instance, const honami_call *call,
+                         const honami_clusterer_input *input) noexcept {
+    return guard(instance, call, [&](Instance &self) {
+      return T(self.values).run(Tracks(input), Call(call)).commit(call);
+    });
+  }
+
   static const void *get_interface(honami_instance *, const char *id) noexcept {
-    static const honami_tracker_v1 tracker = {HONAMI_SIZE_TO(honami_tracker_v1, end), 0, begin, seed, retire, push,
-                                              end};
-    return std::strcmp(id, HONAMI_TRACKER) == 0 ? &tracker : nullptr;
+    const auto is = [&](const char *known) { return std::strcmp(id, known) == 0; };
+    if constexpr (std::is_base_of_v<Clusterer, T>) {
+      static const honami_clusterer_v1 clusterer = {HONAMI_SIZE_TO(honami_clusterer_v1, run), 0, run};
+      return is(HONAMI_CLUSTERER) ? &clusterer : nullptr;
+    } else {
+      static const honami_tracker_v1 tracker = {HONAMI_SIZE_TO(honami_tracker_v1, end), 0, begin, seed, retire, push,
+                                                end};
+      if (is(HONAMI_TRACKER)) return &tracker;
+    }
+    if constexpr (has_detect<T>) {
+      static const honami_detect_v1 detecting = {HONAMI_SIZE_TO(honami_detect_v1, detect), 0, detect};
+      if (is(HONAMI_DETECT)) return &detecting;
+    }
+    if constexpr (has_field<T>) {
+      static const honami_field_v1 measuring = {HONAMI_SIZE_TO(honami_field_v1, field), 0, field};
+      if (is(HONAMI_FIELD)) return &measuring;
+    }
+    if constexpr (has_state<T>) {
+      static const honami_state_v1 saving = {HONAMI_SIZE_TO(honami_state_v1, load), 0, save, load};
+      if (is(HONAMI_STATE)) return &saving;
+    }
+    return nullptr;
   }
 
   honami_instance face;
   Values values;
+  Stream begun{};
   std::unique_ptr<T> running;
   bool has_failed = false;
 };

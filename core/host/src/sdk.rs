@@ -106,8 +106,10 @@ pub fn begin(name: &str, kind: Kind, language: Language) -> Result<Begun, String
         (Language::Cpp, Kind::Tracker) => {
             let text = include_str!("../../abi/examples/template_tracker.cpp");
             let class = ("honami.hpp".to_owned(), include_str!("../../abi/include/honami.hpp").to_owned());
+            let manifest = include_str!("../../abi/include/honami_manifest.hpp").to_owned();
+            let manifest = ("honami_manifest.hpp".to_owned(), manifest);
             Ok(Begun {
-                files: vec![(format!("{name}.cpp"), own(text)), class, header],
+                files: vec![(format!("{name}.cpp"), own(text)), class, manifest, header],
                 build: format!(
                     "c++ -std=c++17 -O2 -shared -fPIC -fvisibility=hidden -fvisibility-inlines-hidden \
                      {name}/{name}.cpp -o {name}/{name}.so"
@@ -116,7 +118,7 @@ pub fn begin(name: &str, kind: Kind, language: Language) -> Result<Begun, String
             })
         }
         (Language::C | Language::Cpp, Kind::Clusterer) => Err(
-            "a clusterer can be begun in Python and in Rust; in C, core/abi/include/honami.h says what it is"
+            "a clusterer can be begun in Python and in Rust; honami.hpp (C++) and honami.h (C) say what it is"
                 .into(),
         ),
         (_, Kind::Structure | Kind::Simulator) => Err(format!("there is no template of a {kind} yet")),
