@@ -422,6 +422,7 @@ pub(super) fn on_plugins(state: &mut State, plugins: Vec<Plugin>) {
         plugins.iter().filter(is_new).map(|p| format!("{} {}", p.name, p.version)).collect();
     let gone = state.plugins.iter().filter(|old| !plugins.iter().any(|new| name(new) == name(old)));
     let gone: Vec<String> = gone.map(|old| format!("{} is gone", old.name)).collect();
+    let has_names = !(new.is_empty() && gone.is_empty());
     let what = match (new.is_empty(), gone.is_empty()) {
         (true, true) => "a plugin was rebuilt".to_owned(),
         (true, false) => gone.join(", "),
@@ -436,7 +437,11 @@ pub(super) fn on_plugins(state: &mut State, plugins: Vec<Plugin>) {
         });
         state.mode = mode.unwrap_or(Mode::Review);
     }
-    state.notice = Some(Notice { text: what, is_error: false });
+    let notice = Notice { text: what, is_error: false };
+    // What says no more than that something changed replaces nothing, such as how a run has ended.
+    if has_names || state.notice.is_none() {
+        state.notice = Some(notice);
+    }
 }
 
 /// The form of a task, as it is likely to be filled in; `None` where no plugin does it.
