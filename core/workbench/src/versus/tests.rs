@@ -22,9 +22,11 @@ fn project() -> (TempDir, Session) {
     (folder, session.unwrap())
 }
 
-/// A run of some tracks, each `off` pixels below where it is without; every third sample of the last track is lost.
+/// A run of some tracks by a plugin, or a build of it (`klt@4d5e`), each `off` pixels below where it is without; every
+/// third sample of the last track is lost.
 fn run(session: &mut Session, plugin: &str, radius: i64, tracks: Range<u32>, off: f32) -> RunId {
     let word = || "test".to_owned();
+    let (plugin, build) = plugin.split_once('@').unwrap_or((plugin, "test"));
     let provenance = Provenance {
         what: match plugin {
             "pass" => "retrack",
@@ -34,14 +36,14 @@ fn run(session: &mut Session, plugin: &str, radius: i64, tracks: Range<u32>, off
         .to_owned(),
         plugin_id: format!("org.honami.{plugin}"),
         plugin_version: "0.1.0".to_owned(),
-        plugin_sha256: word(),
+        plugin_sha256: build.to_owned(),
         abi: (1, 0),
         params: [("radius", radius), ("levels", 4)].map(|(id, n)| (id.to_owned(), Value::Int(n))).into(),
         seed: 0,
         input_revision: 0,
         sandbox: word(),
         simd: word(),
-        date: word(),
+        date: "2026-11-22T18:20:33Z".to_owned(),
         honami_version: word(),
     };
     let last = tracks.end - 1;
@@ -103,6 +105,25 @@ fn the_newest_runs_of_different_trackers_are_compared() {
     assert_eq!(usual_of(&session), named("run 3 klt radius=5", "run 8 klt radius=7"), "something newer");
     let all: Vec<RunId> = entrants(&session.project).unwrap().into_iter().map(|one| one.run).collect();
     assert_eq!(all, [8, 7, 6, 5, 3, 2, 1].map(RunId), "the newest first, without the pass");
+}
+
+#[test]
+fn builds_of_a_plugin_are_told_apart_and_the_last_two_are_offered() {
+    let (_folder, mut session) = project();
+    let last_two = |session: &Session| {
+        last_builds(&entrants(&session.project).unwrap()).map(|two| two.map(|one| one.name()))
+    };
+    let named = |a: &str, b: &str| Some([a.to_owned(), b.to_owned()]);
+    run(&mut session, "flow@aa", 5, 1..4, 0.0);
+    run(&mut session, "flow@aa", 5, 1..4, 0.0);
+    assert_eq!(last_two(&session), None, "one build");
+    run(&mut session, "flow@0123456789abcdef", 5, 1..4, 0.0);
+    run(&mut session, "klt", 5, 1..4, 0.0);
+    let [a, b] = ["run 2 flow (aa, 2026-11-22 18:20)", "run 3 flow (01234567, 2026-11-22 18:20)"];
+    assert_eq!(last_two(&session), named(a, b));
+    assert_eq!(usual_of(&session), named(b, "run 4 klt"), "only where there are several");
+    run(&mut session, "flow@cc", 5, 7..9, 0.0);
+    assert_eq!(last_two(&session), named(a, b), "the newest has no track that another has");
 }
 
 #[test]
