@@ -15,6 +15,7 @@ mod locks;
 mod offers;
 mod opencv;
 mod outlived;
+mod plants;
 mod python;
 mod real_clips;
 mod rebuilt;

@@ -88,7 +88,10 @@ fn what_honami_died_with_works_apart_from_then_on_until_it_is_rebuilt_or_let_in_
     // It is told once, and costs a frame instead of honami.
     assert_eq!([bad; 2].map(track), [(Some(false), true), (Some(false), false)]);
     let list = settled(&bench, settings, "plugin list --plugin bad.so", &[]).stdout;
-    assert!(list.contains("honami has died with it inside, `honami plugin retry bad.so` lets it in"), "{list}");
+    assert!(
+        list.contains("honami has died with it inside, `honami plugin retry bad.so` lets it in"),
+        "{list}"
+    );
     // What did come with honami leaves no trail, nor does what ends well.
     assert_eq!(track("--with klt"), (Some(true), false));
     let retried = settled(&bench, settings, "plugin retry bad.so", &[]);

@@ -2,6 +2,7 @@
 
 mod args;
 mod begin;
+mod bench;
 mod check;
 mod compare;
 mod edit;
@@ -14,6 +15,7 @@ mod project;
 mod replay;
 mod report;
 mod review;
+mod simulate;
 mod spectrum;
 mod synth;
 mod track;
@@ -131,10 +133,15 @@ fn is_usage(error: &anyhow::Error) -> bool {
     };
     error.chain().any(|cause| {
         let wrapped = cause.downcast_ref::<WorkbenchError>();
+        let of_plant = |error: &WorkbenchError| {
+            matches!(error, WorkbenchError::NoPlant { .. } | WorkbenchError::Weather { .. })
+        };
         cause.is::<Usage>()
             || cause.is::<ValueError>()
             || cause.downcast_ref::<HostError>().is_some_and(by_plugin)
-            || wrapped.is_some_and(|error| matches!(error, WorkbenchError::Plugin(error) if by_plugin(error)))
+            || wrapped.is_some_and(|error| {
+                of_plant(error) || matches!(error, WorkbenchError::Plugin(error) if by_plugin(error))
+            })
     })
 }
 
@@ -172,6 +179,7 @@ fn run(command: Command, common: &Common) -> anyhow::Result<Outcome> {
         }
         Command::Compare(args) => compare::compare(&args, common)?,
         Command::Spectrum(args) => spectrum::spectrum(&args)?,
+        Command::Simulate(args) => simulate::simulate(&args)?,
         Command::Export(args) => exchange::export(&args)?,
         Command::Import(args) => exchange::import(&args)?,
         Command::Synth(args) => synth::synth(&args)?,
@@ -182,6 +190,7 @@ fn run(command: Command, common: &Common) -> anyhow::Result<Outcome> {
         Command::Log(args) => log::log(&args)?,
         Command::Replay(args) => replay::replay(&args, common)?,
         Command::Keys(args) => keys::keys(&args),
+        Command::Bench(args::plant::Bench::Forest(args)) => bench::forest(&args)?,
         Command::Doctor => help::doctor(common),
         Command::Completions { shell } => help::completions(shell),
         Command::Man { folder } => help::manual(&folder)?,

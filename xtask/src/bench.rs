@@ -5,12 +5,12 @@ use std::fs;
 use anyhow::Context as _;
 
 use crate::shell::{Step, cargo, target_dir};
-use crate::{BUILD, accuracy};
+use crate::{BUILD, accuracy, forest};
 
 /// Name, what it measures, and how to run it.
 type Bench = (&'static str, &'static str, fn(&[&str]) -> anyhow::Result<()>);
 
-const BENCHES: [Bench; 13] = [
+const BENCHES: [Bench; 14] = [
     ("encode", "the encoder's time, bytes and likeness: `bench encode [BYTES] [CLIP…]`", encode),
     ("trackers", "KLT against OpenCV's calcOpticalFlowPyrLK, same frames, alternating", trackers),
     ("box", "box matching against OpenCV's matchTemplate: `bench box [CLIP…]`", box_matching),
@@ -18,6 +18,11 @@ const BENCHES: [Bench; 13] = [
         "accuracy",
         "every tracker on everything whose answer is known: `bench accuracy [SET…] [--with NAME…]`",
         accuracy::run,
+    ),
+    (
+        "forest",
+        "forests in the wind beside numpy's product of matrices: `bench forest [--json] [KxNxM…]`",
+        forest::run,
     ),
     ("cluster", "composite distance + Ward, N = 2000, T = 500, against SciPy's linkage", cluster),
     ("media", "decoding, seeking, stepping back: `bench media CLIP`", media),

@@ -3,6 +3,7 @@
 
 mod accuracy;
 mod bench;
+mod forest;
 mod opencv;
 mod shell;
 mod system;

@@ -1,6 +1,13 @@
 //! Plants as others have measured them, in.
 
+pub mod anemometer;
 pub mod mtg;
+pub mod qsm;
+mod rooted;
+mod sway_table;
+pub mod swc;
+
+pub use sway_table::SwayRow;
 
 use honami_model::plant::{Plant, PlantError};
 use std::path::PathBuf;

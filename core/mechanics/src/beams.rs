@@ -150,6 +150,25 @@ impl Beams {
         self.n_stubby
     }
 
+    /// Where a node is at rest, metres.
+    ///
+    /// # Panics
+    /// When there is no such node.
+    #[must_use]
+    pub fn position(&self, node: usize) -> Vector3<f64> {
+        self.nodes[node].position
+    }
+
+    /// Nodes that bear no other.
+    #[must_use]
+    pub fn ends(&self) -> Vec<u32> {
+        let mut is_end = vec![true; self.nodes.len()];
+        for parent in self.nodes.iter().filter_map(|node| node.parent) {
+            is_end[parent as usize] = false;
+        }
+        (0..self.nodes.len() as u32).filter(|node| is_end[*node as usize]).collect()
+    }
+
     pub(crate) fn nodes(&self) -> &[Beam] {
         &self.nodes
     }

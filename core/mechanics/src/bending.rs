@@ -103,6 +103,11 @@ impl Bending {
         matches!(self.form, Form::Mode(_)).then(|| self.b[0])
     }
 
+    /// Whether all nodes have the same argument: then they move by a product of matrices.
+    pub(crate) fn is_product(&self) -> bool {
+        self.form != Form::Node
+    }
+
     /// Displacements of all nodes for each power of s.
     #[must_use]
     pub fn powers(&self) -> &[Vec<Vector3<f64>>] {

@@ -129,6 +129,14 @@ impl Modes {
         self.part(mode, node, 3)
     }
 
+    /// Amplitude at which the node that turns most turns by so many radians. A rod whose tip moves by 30 % of its length
+    /// under its own weight turns there by 0.4.
+    #[must_use]
+    pub fn amplitude(&self, mode: usize, turn: f64) -> f64 {
+        let most = (0..=self.n_nodes).map(|node| self.rotation(mode, node).norm()).fold(0.0, f64::max);
+        turn / most.max(f64::MIN_POSITIVE)
+    }
+
     fn part(&self, mode: usize, node: usize, first: usize) -> Vector3<f64> {
         node.checked_sub(1).map_or_else(Vector3::zeros, |node| {
             Vector3::from_column_slice(&self.shape(mode)[DOF * node + first..][..3])

@@ -3,6 +3,8 @@
 #[cfg(test)]
 mod tests;
 
+use std::f64::consts::TAU;
+
 /// Rayleigh's damping (6.11) and what scales the mass (6.36): chosen while it runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Damping {
@@ -30,6 +32,38 @@ pub struct Oscillator {
     pub gamma: f64,
     /// Modal mass.
     pub mass: f64,
+}
+
+/// A method to go on in time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Integrator {
+    /// Exact for a force that stays, stable whatever the step.
+    #[default]
+    Exact,
+    /// The thesis's (errata E41), up to its limit.
+    Symplectic,
+    /// Newmark's with constant mean acceleration.
+    Newmark,
+}
+
+/// A step that a method does not bear.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum LimitError {
+    /// No time at all, or backward.
+    #[error("a step takes more than 0 s, not {0} s")]
+    Step(f64),
+    /// A method that is not stable for it.
+    #[error(
+        "symplectic Euler grows without bound in steps of {step} s at {hz:.3} Hz: less than {limit:.6} s is wanted, or another method"
+    )]
+    Limit {
+        /// Asked for, seconds.
+        step: f64,
+        /// The longest that is borne, seconds.
+        limit: f64,
+        /// Frequency of the mode.
+        hz: f64,
+    },
 }
 
 /// Where a mode is and how fast it moves.
@@ -78,6 +112,35 @@ impl Oscillator {
         }
     }
 
+    /// The matrix of a step by a method, under a force that stays.
+    ///
+    /// # Errors
+    /// [`LimitError`] where it is not stable.
+    pub fn step_by(&self, integrator: Integrator, dt: f64) -> Result<Step, LimitError> {
+        if !(dt.is_finite() && dt > 0.0) {
+            return Err(LimitError::Step(dt));
+        }
+        let of = |next: &dyn Fn(State, f64) -> State| {
+            let [of_q, of_speed] = [(1.0, 0.0), (0.0, 1.0)].map(|(q, speed)| next(State { q, speed }, 0.0));
+            let of_force = next(State::default(), 1.0);
+            Step {
+                q_of_q: of_q.q,
+                q_of_speed: of_speed.q,
+                q_of_force: of_force.q,
+                speed_of_q: of_q.speed,
+                speed_of_speed: of_speed.speed,
+                speed_of_force: of_force.speed,
+            }
+        };
+        let limit = symplectic_limit(self);
+        match integrator {
+            Integrator::Exact => Ok(self.step(dt)),
+            Integrator::Newmark => Ok(of(&|state, force| self.newmark(state, force, force, dt))),
+            Integrator::Symplectic if dt < limit => Ok(of(&|state, force| self.symplectic(state, force, dt))),
+            Integrator::Symplectic => Err(LimitError::Limit { step: dt, limit, hz: self.omega / TAU }),
+        }
+    }
+
     /// A step of the thesis (6.19 - 6.21), which is the symplectic Euler's (errata E41), under a force that stays.
     #[must_use]
     pub fn symplectic(&self, state: State, force: f64, dt: f64) -> State {
@@ -118,6 +181,19 @@ pub struct Step {
 }
 
 impl Step {
+    /// What q is multiplied by, its speed and the force for the next q; then the same for the next speed.
+    #[must_use]
+    pub fn numbers(&self) -> [f64; 6] {
+        [
+            self.q_of_q,
+            self.q_of_speed,
+            self.q_of_force,
+            self.speed_of_q,
+            self.speed_of_speed,
+            self.speed_of_force,
+        ]
+    }
+
     /// The state after the step.
     #[must_use]
     pub fn next(&self, State { q, speed }: State, force: f64) -> State {

@@ -3,17 +3,20 @@
 //! U = S V (thesis 6.4.1): a row of S are the amplitudes of a copy's modes, or powers of their arc tangents, V their
 //! displacements. V lies in tiles that stay in the nearest cache while the sums of some copies stay in registers.
 
+mod arc;
 #[cfg(test)]
 mod tests;
 mod tile;
 
-use crate::beams::Beams;
-use crate::bending::{Bending, Form};
-use crate::modes::Modes;
+use crate::bending::Bending;
+use crate::threads::Threads;
+use arc::arc_tangent;
+use nalgebra::Vector3;
+use pulp::Arch;
 use tile::Tiles;
 
 /// Copies that one thread poses before it goes through all tiles again: their rows of S stay in the cache.
-const BATCH: usize = 48;
+pub(crate) const BATCH: usize = 48;
 
 /// A plant ready to be posed.
 #[derive(Clone, Debug)]
@@ -26,21 +29,24 @@ pub struct Rig {
 }
 
 impl Rig {
-    /// The nodes of beams with modes up to the amplitudes `q_max`, a number a mode, linear or by powers of one arc tangent
-    /// a mode ([`Form::Node`] has no such product and is taken as [`Form::Mode`] with two).
+    /// Some nodes of the beams, by how all of them bend in every mode: linear or by powers of one arc tangent a mode, the
+    /// same number in all modes.
+    ///
+    /// # Panics
+    /// When a mode has an arc tangent a node ([`Form::Node`](crate::Form::Node)), of which there is no such product.
     #[must_use]
-    pub fn new(beams: &Beams, modes: &Modes, q_max: &[f64], form: Form) -> Self {
-        let form = if form == Form::Node { Form::Mode(2) } else { form };
-        let bendings: Vec<Bending> =
-            q_max.iter().enumerate().map(|(mode, q)| Bending::new(beams, modes, mode, *q, form)).collect();
+    pub fn new(bendings: &[Bending], nodes: &[u32]) -> Self {
+        assert!(bendings.iter().all(Bending::is_product), "one arc tangent a mode, or none");
         let n_powers = bendings.first().map_or(1, |bending| bending.powers().len());
         // Row by row: all modes of the first power, then of the next.
         let rows =
             (0..n_powers).flat_map(|power| bendings.iter().map(move |bending| &bending.powers()[power]));
-        let rows: Vec<Vec<f32>> =
-            rows.map(|row| row.iter().flat_map(|v| v.iter().map(|v| *v as f32)).collect()).collect();
+        let numbers = |row: &Vec<Vector3<f64>>| -> Vec<f32> {
+            nodes.iter().flat_map(|&node| row[node as usize].iter().map(|v| *v as f32)).collect()
+        };
+        let rows: Vec<Vec<f32>> = rows.map(numbers).collect();
         let b = bendings.iter().map(|bending| bending.b().unwrap_or(0.0) as f32).collect();
-        Self { n_nodes: beams.len(), b, n_powers, tiles: Tiles::new(&rows, 3 * beams.len()) }
+        Self { n_nodes: nodes.len(), b, n_powers, tiles: Tiles::new(&rows, 3 * nodes.len()) }
     }
 
     /// Modes.
@@ -55,39 +61,74 @@ impl Rig {
         3 * self.n_nodes
     }
 
+    /// Memory of the matrix, bytes.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        self.tiles.bytes()
+    }
+
     /// Displacements of all nodes of all copies, metres, `(n_copies, n_nodes, 3)`, from the amplitudes of their modes,
-    /// `(n_copies, n_modes)`; on so many threads, with the same bits whatever their number.
+    /// `(n_copies, n_modes)`; the same bits on any number of threads.
     ///
     /// # Panics
     /// When sizes do not fit.
-    pub fn pose(&self, amplitudes: &[f32], n_threads: usize, displacements: &mut [f32]) {
+    pub fn pose(&self, amplitudes: &[f32], threads: &Threads, displacements: &mut [f32]) {
         let (n_modes, n_columns) = (self.n_modes(), self.n_columns());
         assert_eq!(amplitudes.len() / n_modes * n_columns, displacements.len(), "a row a copy");
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads.max(1)).build();
         let batches = amplitudes.chunks(BATCH * n_modes).zip(displacements.chunks_mut(BATCH * n_columns));
-        match pool {
-            Ok(pool) if n_threads > 1 => pool.scope(|scope| {
-                for (amplitudes, displacements) in batches {
-                    scope.spawn(move |_| self.pose_batch(amplitudes, displacements));
-                }
-            }),
-            _ => batches.for_each(|(amplitudes, displacements)| self.pose_batch(amplitudes, displacements)),
-        }
+        threads.each(batches, |(amplitudes, displacements)| {
+            self.pose_batch(amplitudes.chunks(n_modes), displacements);
+        });
     }
 
-    fn pose_batch(&self, amplitudes: &[f32], displacements: &mut [f32]) {
-        let n_modes = self.n_modes();
-        let mut shares = Vec::with_capacity(amplitudes.len() * self.n_powers);
-        for row in amplitudes.chunks(n_modes) {
-            let first = shares.len();
-            shares.extend(row.iter().zip(&self.b).map(|(q, b)| if *b == 0.0 { *q } else { (b * q).atan() }));
+    /// Displacements of some copies by rows of amplitudes, of which the first count where there are more than modes.
+    pub(crate) fn pose_batch<'a>(
+        &self,
+        amplitudes: impl Iterator<Item = &'a [f32]>,
+        displacements: &mut [f32],
+    ) {
+        let mut shares = Vec::with_capacity(BATCH * self.n_modes() * self.n_powers);
+        let mut turned = vec![0.0; self.n_modes()];
+        for row in amplitudes {
+            self.arcs(row, &mut turned);
+            shares.extend_from_slice(&turned);
             for _ in 1..self.n_powers {
-                for mode in 0..n_modes {
-                    let last = shares[shares.len() - n_modes];
-                    shares.push(last * shares[first + mode]);
-                }
+                let last = shares.len() - turned.len();
+                shares.extend_from_within(last..);
+                let next = &mut shares[last + turned.len()..];
+                next.iter_mut().zip(&turned).for_each(|(power, s)| *power *= s);
             }
         }
         self.tiles.multiply(&shares, displacements);
+    }
+
+    /// s of every mode.
+    fn arcs(&self, row: &[f32], turned: &mut [f32]) {
+        let bent = self.n_powers > 1;
+        Arch::new().dispatch(
+            #[inline(always)]
+            || {
+                for ((s, q), b) in turned.iter_mut().zip(row).zip(&self.b) {
+                    *s = if bent { arc_tangent(b * q) } else { *q };
+                }
+            },
+        );
+    }
+
+    /// Displacement of one node of one copy, metres, by the amplitudes of its modes.
+    ///
+    /// # Panics
+    /// When there is no such node.
+    #[must_use]
+    pub fn displacement(&self, amplitudes: &[f32], node: usize) -> [f32; 3] {
+        let mut turned = vec![0.0; self.n_modes()];
+        self.arcs(amplitudes, &mut turned);
+        std::array::from_fn(|axis| {
+            let share = |(row, s): (usize, &f32)| {
+                let power = (row / turned.len()) as i32 + 1;
+                s.powi(power) * self.tiles.at(row, 3 * node + axis)
+            };
+            (0..self.n_powers).flat_map(|_| &turned).enumerate().map(share).sum()
+        })
     }
 }

@@ -1,5 +1,6 @@
 //! Air that moves: what blows on plants (thesis 5.2). Metres per second; z up.
 
+mod field;
 mod flow;
 mod gust;
 mod noise;
@@ -7,6 +8,7 @@ mod spectrum;
 #[cfg(test)]
 mod tests;
 
+pub use field::{Draw, Field};
 pub use flow::{Primitive, Shape};
 pub use gust::{Frozen, Mask, Series};
 pub use noise::Noise;

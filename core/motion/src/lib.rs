@@ -11,6 +11,7 @@ pub mod overlay;
 pub mod positions;
 pub mod score;
 pub mod spectrum;
+pub mod swing;
 
 pub use composite::{Composite, composite};
 pub use linkage::{Criterion, linkage};

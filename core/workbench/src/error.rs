@@ -295,6 +295,70 @@ pub enum WorkbenchError {
     /// A correction cannot be done.
     #[error(transparent)]
     Refused(#[from] honami_model::correct::Refused),
+    /// A file of a plant or of a wind could not be read.
+    #[error(transparent)]
+    PlantFile(#[from] honami_exchange::plant::PlantFileError),
+    /// Neither a file of a plant nor the name of one.
+    #[error(
+        "{source_name:?} is no plant: a file whose name ends in .mtg, .swc, .csv or .mat is wanted, or \
+         synth::tree:NODES,SEED"
+    )]
+    NoPlant {
+        /// As given.
+        source_name: String,
+    },
+    /// A plant cannot become beams.
+    #[error(transparent)]
+    Beams(#[from] honami_mechanics::BeamsError),
+    /// A plant has no such modes.
+    #[error(transparent)]
+    Modes(#[from] honami_mechanics::ModesError),
+    /// A forest cannot be, or does not go on.
+    #[error(transparent)]
+    Forest(#[from] honami_mechanics::ForestError),
+    /// The system gives no threads.
+    #[error(transparent)]
+    Threads(#[from] honami_mechanics::ThreadsError),
+    /// Units that nothing is measured in.
+    #[error("units are more than 0: not {unit} m of length, nor {diameters} of diameter to one of length")]
+    Units {
+        /// Metres.
+        unit: f64,
+        /// Of diameter, to one of length.
+        diameters: f64,
+    },
+    /// Leaves that nothing weighs less than.
+    #[error("leaves weigh 0 kg or more and have a drag area of 0 m2 or more, not {mass} kg and {drag} m2")]
+    Leaves {
+        /// Kilograms.
+        mass: f64,
+        /// Square metres.
+        drag: f64,
+    },
+    /// Frames that do not follow one another.
+    #[error(
+        "a motion has more than 0 frames per second and one step a frame at least, not {fps} and {n_substeps}"
+    )]
+    Pace {
+        /// Asked for.
+        fps: f64,
+        /// Steps a frame.
+        n_substeps: u32,
+    },
+    /// A file is no table of series.
+    #[error("{}: {what}", path.display())]
+    Series {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        what: String,
+    },
+    /// No wind of that name, or not with those values.
+    #[error("{what}")]
+    Weather {
+        /// What is wrong, and what there is.
+        what: String,
+    },
     /// A thread of the program has panicked.
     #[error("a fault of the program's own; the session's log has its report")]
     Fault,

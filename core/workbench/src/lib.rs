@@ -16,6 +16,7 @@ pub mod generate;
 mod ground;
 pub mod import;
 pub mod offer;
+pub mod plant;
 pub mod plots;
 pub mod progress;
 pub mod rebuilt;
@@ -26,6 +27,7 @@ pub mod session;
 pub mod simulate;
 pub mod spectra;
 mod stamp;
+pub mod sways;
 pub mod track;
 pub mod used;
 pub mod versus;
@@ -39,6 +41,8 @@ pub use honami_exchange::foreign;
 pub use honami_exchange::origin;
 /// Plugins and their parameters.
 pub use honami_host as plugins;
+/// Plants as beams, in the wind.
+pub use honami_mechanics as mechanics;
 /// Clips and their frames.
 pub use honami_media as media;
 /// Motion as colour.

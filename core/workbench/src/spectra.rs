@@ -14,11 +14,17 @@ use honami_store::Project;
 pub use honami_motion::spectrum::Peak;
 
 use crate::error::WorkbenchError;
+use crate::sways::{self, Swing};
 
 /// How many times the noise around it the power of a peak of one track must be: foliage has broad peaks.
 pub(crate) const OVER_FLOOR: f64 = 3.0;
 /// The same for the median of several tracks: its noise is quieter, and its peaks are broader.
 pub(crate) const OVER_FLOOR_OF_MANY: f64 = 1.5;
+
+/// Of more tracks than this some are taken for how they swing: a fit takes longer than a spectrum.
+const MOST_SWINGS: usize = 100;
+/// A swing lies within this factor of its peak.
+const ABOUT: f64 = 1.3;
 
 /// What sways.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,6 +46,8 @@ pub struct Line {
     pub n_tracks: usize,
     /// Strongest first.
     pub peaks: Vec<Peak>,
+    /// How fast and how long it swings at the strongest: of several tracks the median.
+    pub swing: Option<Swing>,
 }
 
 /// Frequencies of a project or of a table of tracks.
@@ -108,24 +116,33 @@ fn of(
         .iter()
         .filter_map(|(id, span)| Some((*id, analyser.track(&positions(span, times.len())).ok()?)))
         .collect();
-    let median = |subject, of: Vec<Spectrum>| {
+    let spans: BTreeMap<TrackId, &Span> = tracks.iter().map(|(id, span)| (*id, &**span)).collect();
+    let fps = spectra.first().and_then(|(_, spectrum)| spectrum.even_fps);
+    let swing = |ids: &[TrackId], peaks: &[Peak]| swing_of(&spans, ids, fps?, peaks.first()?.hz);
+    let median = |subject, of: Vec<Spectrum>, ids: &[TrackId]| {
         let median = Spectrum::median(&of)?;
-        Some(Line { subject, n_tracks: median.n_tracks, peaks: median.peaks(n_peaks, OVER_FLOOR_OF_MANY) })
+        let peaks = median.peaks(n_peaks, OVER_FLOOR_OF_MANY);
+        let swing = swing(ids, &peaks);
+        Some(Line { subject, n_tracks: median.n_tracks, peaks, swing })
     };
     let all: Vec<Spectrum> = spectra.iter().map(|(_, spectrum)| spectrum.clone()).collect();
     let first = all.first().cloned().ok_or(WorkbenchError::TooBrief)?;
-    let mut groups = BTreeMap::<u32, Vec<Spectrum>>::new();
+    let ids: Vec<TrackId> = spectra.iter().map(|(id, _)| *id).collect();
+    let mut groups = BTreeMap::<u32, (Vec<Spectrum>, Vec<TrackId>)>::new();
     for (id, spectrum) in &spectra {
         if let Some(&group) = group_of.get(id) {
-            groups.entry(group).or_default().push(spectrum.clone());
+            let (spectra, ids) = groups.entry(group).or_default();
+            spectra.push(spectrum.clone());
+            ids.push(*id);
         }
     }
-    let mut lines: Vec<Line> = median(Subject::All, all).into_iter().collect();
-    lines.extend(groups.into_iter().filter_map(|(group, of)| median(Subject::Group(group), of)));
-    lines.extend(spectra.iter().map(|(id, spectrum)| Line {
-        subject: Subject::Track(*id),
-        n_tracks: 1,
-        peaks: spectrum.peaks(n_peaks, OVER_FLOOR),
+    let mut lines: Vec<Line> = median(Subject::All, all, &ids).into_iter().collect();
+    lines.extend(groups.into_iter().filter_map(|(group, (of, ids))| median(Subject::Group(group), of, &ids)));
+    let are_few = ids.len() <= MOST_SWINGS;
+    lines.extend(spectra.iter().map(|(id, spectrum)| {
+        let peaks = spectrum.peaks(n_peaks, OVER_FLOOR);
+        let swing = if are_few { swing(&[*id], &peaks) } else { None };
+        Line { subject: Subject::Track(*id), n_tracks: 1, peaks, swing }
     }));
     Ok(Spectra {
         resolution_hz: first.resolution_hz,
@@ -134,6 +151,25 @@ fn of(
         n_brief: tracks.len() - spectra.len(),
         lines,
     })
+}
+
+/// How tracks swing about a frequency, each in the direction in which it moves most: the median of those that were seen
+/// without a gap.
+fn swing_of(spans: &BTreeMap<TrackId, &Span>, ids: &[TrackId], fps: f64, hz: f64) -> Option<Swing> {
+    let about = [hz / ABOUT, hz * ABOUT];
+    let every = ids.len().div_ceil(MOST_SWINGS).max(1);
+    let of_track = |id: &TrackId| {
+        let span = spans.get(id)?;
+        let samples: Vec<[f64; 2]> = span
+            .samples
+            .iter()
+            .map(|s| s.status.is_seen().then_some([f64::from(s.x), f64::from(s.y)]))
+            .collect::<Option<_>>()?;
+        let axes = [0, 1].map(|axis| samples.iter().map(|at| at[axis]).collect::<Vec<f64>>());
+        let most = axes.into_iter().max_by(|a, b| sways::variance(a).total_cmp(&sways::variance(b)))?;
+        honami_motion::swing::swing(&most, fps, about)
+    };
+    sways::median(ids.iter().step_by(every).filter_map(of_track).collect())
 }
 
 /// The position in every frame of the clip where the track is seen.

@@ -1,5 +1,7 @@
 //! The command line as typed. Stable: scripts and tests use it.
 
+pub(super) mod plant;
+
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -64,6 +66,8 @@ pub(super) enum Command {
     Compare(Compare),
     /// Frequencies of tracks and groups, in Hz from the frame times.
     Spectrum(Spectrum),
+    /// Vibration modes of a plant, and how it, or a forest of it, moves in the wind.
+    Simulate(plant::Simulate),
     /// Write what was measured for other programs; docs/formats.md says what each format keeps.
     Export(Export),
     /// Read somebody else's tracks into a project: one run, and key-frames where the file has them.
@@ -89,6 +93,9 @@ pub(super) enum Command {
     Replay(Replay),
     /// The keys of the terminal UI as they are now, your own included.
     Keys(Keys),
+    /// How fast it is here what theses have tables of.
+    #[command(subcommand)]
+    Bench(plant::Bench),
     /// What this machine has, what each missing piece would add, and how to install it.
     Doctor,
     /// Shell completions, on standard output.
@@ -237,8 +244,12 @@ pub(super) struct Compare {
 
 #[derive(Args, Debug)]
 pub(super) struct Spectrum {
-    /// Project file (.honami), or a table of tracks (.csv).
+    /// Project file (.honami), a table of tracks (.csv), of sensors as `simulate` writes it (.csv), or, with --fps, columns
+    /// of numbers.
     pub(super) project: PathBuf,
+    /// It is columns of numbers, so many rows a second: strain, tilt or whatever was recorded of what swings.
+    #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = frames_per_second)]
+    pub(super) fps: Option<f64>,
     /// Only this track.
     #[arg(long, value_name = "ID")]
     pub(super) track: Option<u32>,

@@ -2,6 +2,7 @@
 
 use honami_workbench::review;
 use honami_workbench::spectra::{self, Line, Peak, Spectra, Subject};
+use honami_workbench::sways::{self, Sways, Swing};
 use serde_json::json;
 
 use super::args::Spectrum;
@@ -12,6 +13,12 @@ const LISTED: usize = 12;
 
 /// Prints the peaks of everything, of the groups, and of tracks.
 pub(super) fn spectrum(args: &Spectrum) -> anyhow::Result<Answer> {
+    if let Some(fps) = args.fps {
+        return Ok(swings(&sways::of_columns(&args.project, fps)?));
+    }
+    if sways::is_sensors(&args.project) {
+        return Ok(swings(&sways::of_sensors(&args.project)?));
+    }
     let is_table = args.project.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
     let mut spectra = if is_table {
         spectra::of_table(&args.project, args.peaks)?
@@ -30,6 +37,37 @@ pub(super) fn spectrum(args: &Spectrum) -> anyhow::Result<Answer> {
     Ok(describe(&spectra))
 }
 
+/// Series that are no tracks: what each swings at, and how soon it comes to rest.
+fn swings(sways: &Sways) -> Answer {
+    let mut rows = vec![["", "Hz", "damping %", "log decrement"].map(str::to_owned).to_vec()];
+    let mut row = |name: &str, swing: Option<Swing>| {
+        let none = || ["nothing swings", "", ""].map(str::to_owned).to_vec();
+        let cells = swing.map_or_else(none, |swing| {
+            vec![
+                format!("{:.4}", swing.hz),
+                format!("{:.2}", 100.0 * swing.ratio),
+                format!("{:.4}", swing.log_decrement()),
+            ]
+        });
+        rows.push(std::iter::once(name.to_owned()).chain(cells).collect());
+    };
+    row("median", sways.median);
+    sways.series.iter().for_each(|(name, swing)| row(name, *swing));
+    let text = format!("{} samples, {:.2} a second\n{}", sways.n_samples, sways.fps, report::table(&rows));
+    let series = sways.series.iter().map(|(name, swing)| json!({ "name": name, "swing": swing.map(swung) }));
+    let json = json!({
+        "fps": sways.fps,
+        "samples": sways.n_samples,
+        "median": sways.median.map(swung),
+        "series": series.collect::<Vec<_>>(),
+    });
+    Answer { json, text, done: true }
+}
+
+fn swung(swing: Swing) -> serde_json::Value {
+    json!({ "hz": swing.hz, "damping": swing.ratio, "log_decrement": swing.log_decrement() })
+}
+
 /// What was never looked at may be no movement of the plant: says so.
 fn warn(n_doubtful: usize) {
     let who = match n_doubtful {
@@ -46,14 +84,15 @@ fn describe(spectra: &Spectra) -> Answer {
         "{rate}: nothing above {:.2} Hz can be seen, nothing closer than {:.3} Hz told apart",
         spectra.nyquist_hz, spectra.resolution_hz
     );
-    let mut rows = vec![["", "tracks", "peaks: Hz (px)"].map(str::to_owned).to_vec()];
+    let mut rows = vec![["", "tracks", "damping %", "peaks: Hz (px)"].map(str::to_owned).to_vec()];
     let is_track = |line: &&Line| matches!(line.subject, Subject::Track(_));
     let n_tracks = spectra.lines.iter().filter(is_track).count();
     let shown = spectra.lines.len() - n_tracks.saturating_sub(LISTED);
     for line in &spectra.lines[..shown] {
         let peaks: Vec<String> = line.peaks.iter().map(peak).collect();
         let peaks = if peaks.is_empty() { "nothing stands out".to_owned() } else { peaks.join("   ") };
-        rows.push(vec![name(line.subject), line.n_tracks.to_string(), peaks]);
+        let damping = line.swing.map_or_else(String::new, |swing| format!("{:.1}", 100.0 * swing.ratio));
+        rows.push(vec![name(line.subject), line.n_tracks.to_string(), damping, peaks]);
     }
     text += &format!("\n{}", report::table(&rows));
     if n_tracks > LISTED {
@@ -113,5 +152,6 @@ fn entry(line: &Line) -> serde_json::Value {
             })
         })
         .collect();
-    json!({ "subject": name(line.subject), "tracks": line.n_tracks, "peaks": peaks })
+    let swing = line.swing.map(swung);
+    json!({ "subject": name(line.subject), "tracks": line.n_tracks, "peaks": peaks, "swing": swing })
 }

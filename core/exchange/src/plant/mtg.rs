@@ -76,14 +76,14 @@ pub fn parse(text: &str, options: &Options) -> Result<Measured, PlantFileError> 
         nodes.push(Node { parent, position, radius });
     }
     let plant = largest(nodes, &mut notes)?;
-    let mut note = |n: usize, what: &str| {
-        if n > 0 {
-            notes.push(format!("{n} {what}"));
-        }
+    let mut note = |n: usize, what: &str| match n {
+        0 => {}
+        1 => notes.push(format!("1 part {what}")),
+        n => notes.push(format!("{n} parts {what}")),
     };
-    note(n_other, "parts of other classes were left out");
-    note(n_nowhere, "parts without a position were left out, and what they bear stands on what bears them");
-    note(n_thin, "parts without a diameter took that of the part before them");
+    note(n_other, "of other classes left out");
+    note(n_nowhere, "without a position left out: what they bear stands on what bears them");
+    note(n_thin, "without a diameter taken as thick as the part before");
     Ok(Measured { plant, notes })
 }
 
@@ -120,10 +120,13 @@ fn largest(nodes: Vec<Node>, notes: &mut Vec<String>) -> Result<Plant, PlantFile
     let best = (0..sizes.len()).rev().max_by_key(|tree| sizes[*tree]).unwrap_or(0);
     let n_orphans = nodes.len() - sizes.get(best).copied().unwrap_or(0);
     if n_orphans > 0 {
-        let n_trees = sizes.len() - 1;
-        notes.push(format!(
-            "{n_trees} more trees of {n_orphans} nodes in all stand on nothing and were left out"
-        ));
+        let trees = if sizes.len() == 2 {
+            "1 more tree".to_owned()
+        } else {
+            format!("{} more trees", sizes.len() - 1)
+        };
+        let nodes = if n_orphans == 1 { "1 node".to_owned() } else { format!("{n_orphans} nodes in all") };
+        notes.push(format!("{trees} of {nodes} left out: on nothing that the largest stands on"));
     }
     let mut moved = vec![0; nodes.len()];
     let mut kept = Vec::with_capacity(nodes.len() - n_orphans);

@@ -11,12 +11,6 @@ fn plant(seed: u64) -> (Beams, Modes) {
     (beams, modes)
 }
 
-/// Amplitude at which the node that turns most turns by so many radians. A rod whose tip moves by 30 % of its length
-/// under its own weight turns there by 0.4.
-fn amplitude(beams: &Beams, modes: &Modes, mode: usize, turn: f64) -> f64 {
-    turn / (0..beams.len()).map(|node| modes.rotation(mode, node).norm()).fold(0.0, f64::max)
-}
-
 /// Relative error of lengths, root of the mean square over segments.
 fn stretch(beams: &Beams, moved: &[Vector3<f64>]) -> f64 {
     let errors = beams.segments().map(|(base, tip, section, direction)| {
@@ -31,7 +25,7 @@ fn stretch(beams: &Beams, moved: &[Vector3<f64>]) -> f64 {
 fn what_is_pulled_back_keeps_every_length() {
     let (beams, modes) = plant(1);
     for mode in 0..12 {
-        let moved = unstretched(&beams, &modes, mode, amplitude(&beams, &modes, mode, 0.4));
+        let moved = unstretched(&beams, &modes, mode, modes.amplitude(mode, 0.4));
         assert!(stretch(&beams, &moved) < 1e-14);
         assert_eq!(moved[0], Vector3::zeros());
     }
@@ -46,7 +40,7 @@ fn one_arc_tangent_a_mode_with_three_powers_is_as_near_as_one_a_node() {
     for seed in [1, 2] {
         let (beams, modes) = plant(seed);
         for mode in 0..12 {
-            let q_max = amplitude(&beams, &modes, mode, 0.4);
+            let q_max = modes.amplitude(mode, 0.4);
             let wanted = unstretched(&beams, &modes, mode, q_max);
             let size = wanted.iter().map(Vector3::norm_squared).sum::<f64>().sqrt();
             for (form, worst) in forms.iter().zip(&mut worst) {
@@ -67,7 +61,7 @@ fn one_arc_tangent_a_mode_with_three_powers_is_as_near_as_one_a_node() {
 #[test]
 fn small_amplitudes_are_those_of_the_mode() {
     let (beams, modes) = plant(3);
-    let q_max = amplitude(&beams, &modes, 0, 0.2);
+    let q_max = modes.amplitude(0, 0.2);
     let bending = Bending::new(&beams, &modes, 0, q_max, Form::Mode(3));
     for node in (0..beams.len()).step_by(20) {
         let linear = modes.displacement(0, node) * (q_max * 1e-3);

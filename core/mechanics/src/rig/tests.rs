@@ -1,7 +1,7 @@
 //! Poses against the curves that they are made of.
 
-use super::Rig;
-use crate::{Beams, Bending, Form, Modes, Options};
+use super::{Rig, arc::arc_tangent};
+use crate::{Beams, Bending, Form, Modes, Options, Threads};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
@@ -14,11 +14,12 @@ fn a_pose_is_the_sum_of_what_every_mode_does() {
         let mut chance = Pcg64::seed_from_u64(1);
         let amplitudes: Vec<f32> = (0..n_copies * n_modes).map(|_| chance.random_range(-1.0..1.0)).collect();
         for form in [Form::Linear, Form::Mode(2), Form::Mode(3)] {
-            let rig = Rig::new(&beams, &modes, &q_max, form);
-            let mut poses = vec![f32::NAN; n_copies * rig.n_columns()];
-            rig.pose(&amplitudes, 1, &mut poses);
             let bendings: Vec<Bending> =
                 (0..n_modes).map(|mode| Bending::new(&beams, &modes, mode, q_max[mode], form)).collect();
+            let nodes: Vec<u32> = (0..beams.len() as u32).collect();
+            let rig = Rig::new(&bendings, &nodes);
+            let mut poses = vec![f32::NAN; n_copies * rig.n_columns()];
+            rig.pose(&amplitudes, &Threads::new(1).unwrap(), &mut poses);
             for (copy, pose) in poses.chunks(rig.n_columns()).enumerate() {
                 let of_copy = &amplitudes[copy * n_modes..(copy + 1) * n_modes];
                 for (node, got) in pose.as_chunks::<3>().0.iter().enumerate() {
@@ -26,6 +27,8 @@ fn a_pose_is_the_sum_of_what_every_mode_does() {
                     let wanted: nalgebra::Vector3<f64> =
                         moves.map(|(b, q)| b.displacement(node, f64::from(*q))).sum();
                     let size = wanted.norm().max(1e-3);
+                    let alone = rig.displacement(of_copy, node);
+                    assert!((0..3).all(|axis| (alone[axis] - got[axis]).abs() < 1e-5 * size as f32));
                     for axis in 0..3 {
                         assert!(
                             (f64::from(got[axis]) - wanted[axis]).abs() < 1e-5 * size,
@@ -35,11 +38,35 @@ fn a_pose_is_the_sum_of_what_every_mode_does() {
                 }
             }
             let mut again = vec![f32::NAN; poses.len()];
-            rig.pose(&amplitudes, 3, &mut again);
+            rig.pose(&amplitudes, &Threads::new(3).unwrap(), &mut again);
             assert!(
                 poses.iter().zip(&again).all(|(a, b)| a.to_bits() == b.to_bits()),
                 "the same bits on 3 threads"
             );
         }
+    }
+}
+
+#[test]
+fn arc_tangents_are_right_to_seven_digits() {
+    for k in -40_000..=40_000 {
+        let x = f64::from(k).powi(3) * 1e-11;
+        let off = f64::from(arc_tangent(x as f32)) - f64::from(x as f32).atan();
+        assert!(off.abs() < 3e-7, "{x}: {off:e}");
+    }
+}
+
+#[test]
+fn a_rig_of_some_nodes_moves_them_as_all_do() {
+    let beams = Beams::new(&honami_synth::tree(80, 1).unwrap(), &Options::default()).unwrap();
+    let modes = Modes::new(&beams, 4, 1).unwrap();
+    let bendings: Vec<Bending> =
+        (0..4).map(|mode| Bending::new(&beams, &modes, mode, 2.0, Form::Mode(3))).collect();
+    let all: Vec<u32> = (0..80).collect();
+    let (whole, part) = (Rig::new(&bendings, &all), Rig::new(&bendings[..2], &[0, 7, 41, 79]));
+    let amplitudes = [0.3, -0.8, 0.0, 0.0];
+    for (k, node) in [0, 7, 41, 79].into_iter().enumerate() {
+        let (few, many) = (part.displacement(&amplitudes[..2], k), whole.displacement(&amplitudes, node));
+        assert!((0..3).all(|axis| (few[axis] - many[axis]).abs() < 1e-6), "{few:?} {many:?}");
     }
 }

@@ -25,6 +25,14 @@ impl Tiles {
         Self { n_rows: rows.len(), n_columns, numbers }
     }
 
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(self.numbers.as_slice())
+    }
+
+    pub(super) fn at(&self, row: usize, column: usize) -> f32 {
+        self.numbers[(column / COLUMNS * self.n_rows + row) * COLUMNS + column % COLUMNS]
+    }
+
     /// `left` times this: `(n, n_rows)` to `(n, n_columns)`.
     pub(super) fn multiply(&self, left: &[f32], product: &mut [f32]) {
         Arch::new().dispatch(Multiply { tiles: self, left, product });

@@ -1,7 +1,8 @@
 //! Winds against what defines them.
 
 use super::{
-    Constant, Frozen, Kaimal, Mask, Noise, Power, Primitive, Series, Shape, Sine, Spectrum, Sum, Wind, series,
+    Constant, Draw, Field, Frozen, Kaimal, Mask, Noise, Power, Primitive, Series, Shape, Sine, Spectrum, Sum,
+    Wind, series,
 };
 use nalgebra::Vector3;
 use realfft::RealFftPlanner;
@@ -162,4 +163,55 @@ fn winds_add_up_and_a_mask_travels() {
     assert!((squall.sample(&Vector3::new(8.0, 5.0, 1.0), 4.0).y - 9.0 / std::f64::consts::E).abs() < 1e-12);
     let sum = Sum(vec![Box::new(Constant(Vector3::z())), Box::new(wave)]);
     assert!((sum.sample(&crest(0.0), 0.0) - Vector3::new(1.0, 0.0, 1.0)).norm() < 1e-12);
+}
+
+/// Coherence of stations is exp(-c f d / U), the spectrum of each is what was asked for, and it is carried by the mean.
+#[test]
+fn places_across_the_wind_are_alike_as_far_as_davenport_says() {
+    let mean = Vector3::new(3.0, 4.0, 0.0);
+    let (n, step) = (64, 0.5);
+    let spectrum = Kaimal::along(1.0, 5.0, 30.0);
+    let df = 1.0 / (n as f64 * step);
+    let bins = [2, 5, 9];
+    // Cross and own spectra of stations 0, 1 and 3 at a few frequencies, over many draws.
+    let (mut cross, mut own) = ([[0.0; 3]; 3], [0.0; 3]);
+    let n_draws = 3000;
+    for seed in 0..n_draws {
+        let draw = Draw { mean, decay: 10.0, n_stations: 4, spacing: 6.0, n_samples: n, step, seed };
+        let field = Field::new(&draw, [&spectrum, &spectrum, &spectrum]);
+        let along = mean.normalize();
+        let waves: Vec<_> = [0, 1, 3]
+            .map(|station| {
+                let forward = RealFftPlanner::<f64>::new().plan_fft_forward(n);
+                let samples = &field.stations()[station].samples;
+                let mut input: Vec<f64> = samples.iter().map(|v| (v - mean).dot(&along)).collect();
+                let mut output = forward.make_output_vec();
+                forward.process(&mut input, &mut output).unwrap();
+                output
+            })
+            .to_vec();
+        for (b, bin) in bins.into_iter().enumerate() {
+            own[b] += waves[2][bin].norm_sqr();
+            for (k, wave) in waves.iter().enumerate() {
+                cross[b][k] += (wave[bin] * waves[0][bin].conj()).re;
+            }
+        }
+    }
+    for (b, bin) in bins.into_iter().enumerate() {
+        let hz = bin as f64 * df;
+        let density = 2.0 * own[b] / f64::from(n_draws as u32) / (n as f64).powi(2) / df;
+        assert!((density / spectrum.density(hz) - 1.0).abs() < 0.06, "{hz} Hz: {density}");
+        for (k, apart) in [(1, 6.0), (2, 18.0)] {
+            let wanted = (-10.0 * hz * apart / 5.0_f64).exp();
+            let got = cross[b][k] / cross[b][0];
+            assert!((got - wanted).abs() < 0.05, "{hz} Hz, {apart} m: {got} {wanted}");
+        }
+    }
+    let draw = Draw { mean, decay: 10.0, n_stations: 4, spacing: 6.0, n_samples: n, step, seed: 1 };
+    let field = Field::new(&draw, [&spectrum, &spectrum, &spectrum]);
+    for place in PLACES.map(Vector3::from) {
+        for d in [0.1, 2.0, -5.0] {
+            assert!((field.sample(&(place + mean * d), 3.0 + d) - field.sample(&place, 3.0)).norm() < 1e-9);
+        }
+    }
 }

@@ -44,7 +44,7 @@ fn columns_and_carets_say_what_grows_on_what() {
     let wood = Options { classes: vec!["S".into()], ..all };
     let (nodes, notes) = tree(&lines, &wood).unwrap();
     assert_eq!(nodes, [(None, 0.0), (Some(0), 10.0), (Some(1), 15.0), (Some(1), 20.0), (Some(3), 33.0)]);
-    assert_eq!(notes, ["1 parts of other classes were left out"]);
+    assert_eq!(notes, ["1 part of other classes left out"]);
 }
 
 #[test]
@@ -55,8 +55,8 @@ fn a_series_has_a_place_at_its_end_alone() {
     assert_eq!(
         notes,
         [
-            "4 parts without a position were left out, and what they bear stands on what bears them",
-            "1 parts without a diameter took that of the part before them"
+            "4 parts without a position left out: what they bear stands on what bears them",
+            "1 part without a diameter taken as thick as the part before"
         ]
     );
 }
@@ -66,7 +66,7 @@ fn what_is_no_plant_is_named_with_its_line() {
     let orphan = ["/P1", "\t/A1/S1\t\t0\t0\t10\t4", "\t^<S2\t\t0\t0\t20\t4", "/P2", "\t/A1/S1\t\t9\t9\t9\t4"];
     let (nodes, notes) = tree(&orphan, &Options::default()).unwrap();
     assert_eq!(nodes, [(None, 10.0), (Some(0), 20.0)]);
-    assert_eq!(notes, ["1 more trees of 1 nodes in all stand on nothing and were left out"]);
+    assert_eq!(notes, ["1 more tree of 1 node left out: on nothing that the largest stands on"]);
     let cases: [(&[&str], &str); 8] = [
         (&["/P1", "\t\t+S1\t0\t0\t1\t1"], "line 20: \"+S1\" stands under nothing"),
         (&["/P1", "\tS1"], "line 20: \"S1\" is no word such as /S1, <S2 or +A1"),

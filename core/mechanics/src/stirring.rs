@@ -1,0 +1,81 @@
+//! All that a plant's motion in the wind is worked out from, once it is known.
+
+use crate::beams::Beams;
+use crate::bending::{Bending, Form};
+use crate::modes::Modes;
+use crate::wind_basis::WindBasis;
+use nalgebra::Vector3;
+
+/// Up to so many radians the node that turns most turns in each mode where its curves are fitted: as a rod does whose
+/// tip its own weight moves by 30 % of its length.
+const TURN: f64 = 0.4;
+/// A ball about half the height holds all nodes in the wind: so many times its radius at rest.
+const SWAY: f64 = 1.3;
+
+/// A plant ready to be moved: at rest, its modes, what wind does to them and how they bend it.
+#[derive(Clone, Debug)]
+pub struct Stirring {
+    pub(crate) omegas: Vec<f64>,
+    pub(crate) basis: WindBasis,
+    pub(crate) bendings: Vec<Bending>,
+    pub(crate) rest: Vec<Vector3<f64>>,
+    /// Nodes by how much wood they bear, the root first: each after its parent.
+    pub(crate) by_wood: Vec<u32>,
+    pub(crate) height: f64,
+    pub(crate) reach: f64,
+}
+
+impl Stirring {
+    /// Fits how every mode bends the plant: linear, or by powers of one arc tangent a mode. [`Form::Node`] is taken as two
+    /// powers.
+    #[must_use]
+    pub fn new(beams: &Beams, modes: &Modes, basis: WindBasis, form: Form) -> Self {
+        let form = if form == Form::Node { Form::Mode(2) } else { form };
+        let bendings = (0..modes.len())
+            .map(|mode| Bending::new(beams, modes, mode, modes.amplitude(mode, TURN), form))
+            .collect();
+        let root = beams.nodes()[0].position;
+        let rest: Vec<Vector3<f64>> = beams.nodes().iter().map(|node| node.position - root).collect();
+        let mut wood = vec![0.0; rest.len()];
+        for (base, tip, section, _) in beams.segments().collect::<Vec<_>>().into_iter().rev() {
+            wood[tip] += section.area() * section.length;
+            wood[base] += wood[tip];
+        }
+        let mut by_wood: Vec<u32> = (0..rest.len() as u32).collect();
+        by_wood.sort_by(|a, b| wood[*b as usize].total_cmp(&wood[*a as usize]).then(a.cmp(b)));
+        let height = rest.iter().map(|at| at.z).fold(0.0, f64::max);
+        let centre = Vector3::z() * (height / 2.0);
+        let reach = rest.iter().map(|at| (at - centre).norm()).fold(0.0, f64::max) * SWAY;
+        Self { omegas: modes.omegas.clone(), basis, bendings, rest, by_wood, height, reach }
+    }
+
+    /// Nodes, the root included.
+    #[must_use]
+    pub fn n_nodes(&self) -> usize {
+        self.rest.len()
+    }
+
+    /// Modes.
+    #[must_use]
+    pub fn n_modes(&self) -> usize {
+        self.omegas.len()
+    }
+
+    /// Numbers that a mode has for each coordinate of a node: 1 by straight lines.
+    #[must_use]
+    pub fn n_powers(&self) -> usize {
+        self.bendings.first().map_or(1, |bending| bending.powers().len())
+    }
+
+    /// Nodes at rest, metres from the root.
+    #[must_use]
+    pub fn rest(&self) -> &[Vector3<f64>] {
+        &self.rest
+    }
+
+    /// From the root to the highest node, metres.
+    #[must_use]
+    pub fn height(&self) -> f64 {
+        self.height
+    }
+}

@@ -1,0 +1,184 @@
+//! Plants: from whatever they were measured as to their vibration modes, and how they move in the wind.
+
+pub mod bench;
+pub mod sway;
+pub mod weather;
+
+use std::fs;
+use std::path::Path;
+use std::time::Instant;
+
+use honami_exchange::plant::{Measured, PlantFileError, mtg, qsm, swc};
+use honami_mechanics::{Beams, Drag, Modes, Options, WindBasis};
+use honami_model::plant::RadiusRule;
+
+use crate::error::WorkbenchError;
+
+/// What makes a tree to calculate with, in place of a file: `synth::tree:NODES,SEED`.
+const GENERATED: &str = "synth::tree:";
+
+/// What is wanted of a plant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Wish {
+    /// A file, or `synth::tree:NODES,SEED`.
+    pub source: String,
+    /// Metres of a unit of length, where a file does not say; `None`: as usual in files of its kind.
+    pub unit: Option<f64>,
+    /// Of a multiscale tree graph: so many units of diameter are one of length.
+    pub diameters: f64,
+    /// Of a multiscale tree graph: classes of parts that are wood; empty: all.
+    pub classes: Vec<String>,
+    /// How it becomes beams.
+    pub beams: Options,
+    /// What all its leaves weigh, kilograms, shared by the ends of its branches.
+    pub leaf_mass: f64,
+    /// Their area times their drag coefficient, square metres, shared alike.
+    pub leaf_drag: f64,
+    /// How many modes.
+    pub n_modes: usize,
+    /// Of the search for modes; they do not depend on it but for the last digits.
+    pub seed: u64,
+}
+
+impl Wish {
+    /// Of a plant, as it is, with so many modes.
+    #[must_use]
+    pub fn of(source: &str, n_modes: usize) -> Self {
+        Self {
+            source: source.to_owned(),
+            unit: None,
+            diameters: mtg::Options::default().diameters,
+            classes: Vec::new(),
+            beams: Options::default(),
+            leaf_mass: 0.0,
+            leaf_drag: 0.0,
+            n_modes,
+            seed: 1,
+        }
+    }
+}
+
+/// A plant with its modes.
+#[derive(Clone, Debug)]
+pub struct Vibrating {
+    /// Nodes that the plant was measured with.
+    pub n_measured: usize,
+    /// From the root to the highest node, metres.
+    pub height: f64,
+    /// What it bends as.
+    pub beams: Beams,
+    /// How it swings, slowest first: none below the last was missed.
+    pub modes: Modes,
+    /// What wind does to them.
+    pub basis: WindBasis,
+    /// What was merged, dropped or guessed, and what is rough; a sentence each.
+    pub notes: Vec<String>,
+    /// What finding the modes took.
+    pub seconds: f64,
+}
+
+/// Reads a plant and finds its modes.
+///
+/// # Errors
+/// What is wrong with the file or with numbers of the wish.
+pub fn vibrate(wish: &Wish) -> Result<Vibrating, WorkbenchError> {
+    let Measured { plant, mut notes } = read(wish)?;
+    let mut beams = Beams::new(&plant, &wish.beams)?;
+    let mut note = |n: usize, one: &str, many: &str| {
+        if n > 0 {
+            notes.push(if n == 1 { format!("1 {one}") } else { format!("{n} {many}") });
+        }
+    };
+    note(
+        beams.n_merged(),
+        "node lies where its parent lies: they are one",
+        "nodes lie where their parents lie: they are one",
+    );
+    note(
+        beams.n_stubby(),
+        "segment is thicker than long, of which a beam is a rough model",
+        "segments are thicker than long, of which beams are a rough model",
+    );
+    let drag = leaves(&mut beams, &plant, wish)?;
+    let begun = Instant::now();
+    let modes = Modes::new(&beams, wish.n_modes, wish.seed)?;
+    let seconds = begun.elapsed().as_secs_f64();
+    let basis = WindBasis::new(&beams, &modes, &drag);
+    let (n_measured, height) = (plant.nodes().len(), plant.height());
+    Ok(Vibrating { n_measured, height, beams, modes, basis, notes, seconds })
+}
+
+/// In words: how thick a segment is.
+#[must_use]
+pub fn words(rule: RadiusRule) -> &'static str {
+    match rule {
+        RadiusRule::Mean => "the mean of its ends, the base at most 1.5 times the tip",
+        RadiusRule::Tip => "that of its tip",
+    }
+}
+
+/// Reads a plant from a file by its ending, or makes one.
+///
+/// # Errors
+/// What is wrong with the file or the name.
+pub fn read(wish: &Wish) -> Result<Measured, WorkbenchError> {
+    let source = &wish.source;
+    let unknown = || WorkbenchError::NoPlant { source_name: source.clone() };
+    if let Some(numbers) = source.strip_prefix(GENERATED) {
+        let (n, seed) = numbers.split_once(',').unwrap_or((numbers, "1"));
+        let (Ok(n), Ok(seed)) = (n.trim().parse(), seed.trim().parse()) else { return Err(unknown()) };
+        let plant = honami_synth::tree(n, seed).map_err(PlantFileError::from)?;
+        return Ok(Measured { plant, notes: Vec::new() });
+    }
+    let diameters = wish.diameters;
+    if ![wish.unit.unwrap_or(1.0), diameters].iter().all(|v| v.is_finite() && *v > 0.0) {
+        return Err(WorkbenchError::Units { unit: wish.unit.unwrap_or(1.0), diameters });
+    }
+    let path = Path::new(source);
+    let bytes = || fs::read(path).map_err(|source| PlantFileError::Io { path: path.to_owned(), source });
+    // Some are in Latin-1: only remarks and names of people have such letters.
+    let text = || bytes().map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    match ending.as_deref() {
+        Some("mtg") => {
+            let unit = wish.unit.unwrap_or(mtg::Options::default().unit);
+            let options = mtg::Options { unit, diameters, classes: wish.classes.clone() };
+            let mut measured = mtg::parse(&text()?, &options)?;
+            let thick = unit / diameters;
+            let note = format!("the file names no units: lengths taken in {unit} m, diameters in {thick} m");
+            measured.notes.push(note);
+            Ok(measured)
+        }
+        Some("swc") => {
+            let unit = wish.unit.unwrap_or(1.0);
+            let mut measured = swc::parse(&text()?, unit)?;
+            measured.notes.push(format!("the file names no units: lengths taken in {unit} m"));
+            Ok(measured)
+        }
+        Some("csv") => Ok(qsm::parse_table(&text()?)?),
+        Some("mat") => Ok(qsm::parse_mat(&bytes()?)?),
+        _ => Err(unknown()),
+    }
+}
+
+/// Hangs leaves on the ends of branches; what the wind has of them.
+fn leaves(
+    beams: &mut Beams,
+    plant: &honami_model::plant::Plant,
+    wish: &Wish,
+) -> Result<Drag, WorkbenchError> {
+    let Wish { leaf_mass: mass, leaf_drag: drag, .. } = *wish;
+    if ![mass, drag].iter().all(|v| v.is_finite() && *v >= 0.0) {
+        return Err(WorkbenchError::Leaves { mass, drag });
+    }
+    let mut is_end = vec![true; plant.nodes().len()];
+    for parent in plant.nodes().iter().filter_map(|node| node.parent) {
+        is_end[parent as usize] = false;
+    }
+    let ends: Vec<usize> = (0..is_end.len()).filter(|row| is_end[*row]).collect();
+    let share = 1.0 / ends.len().max(1) as f64;
+    beams.load(ends.iter().map(|row| (*row, mass * share)));
+    let of_end = |row: &usize| (beams.of_plant()[*row] as usize, drag * share);
+    let leaves = if drag > 0.0 { ends.iter().map(of_end).collect() } else { Vec::new() };
+    Ok(Drag { leaves, ..Drag::default() })
+}

@@ -1,0 +1,227 @@
+//! Plants in the wind, through the real program: modes against closed forms and another program, motion, refusals.
+
+use std::fmt::Write as _;
+use std::fs;
+
+use honami_tests::{Bench, data, rows};
+use serde_json::Value;
+
+/// A rod of 1 m and 2 cm radius as a digitised plant: centimetres, and tenths of them for diameters.
+fn rod(n: u32) -> String {
+    let mut text =
+        "CODE:\tFORM-A\n\nCLASSES:\nSYMBOL\tSCALE\nP\t1\nS\t2\n\nMTG:\nENTITY-CODE\t\tXX\tYY\tZZ\tTopDia\n"
+            .to_owned();
+    text += "/P1\n\t/S0\t0\t0\t0\t40\n";
+    for k in 1..=n {
+        writeln!(text, "\t^<S{k}\t0\t0\t{}\t40", f64::from(k) * 100.0 / f64::from(n)).unwrap();
+    }
+    text
+}
+
+fn hz(answer: &Value) -> Vec<f64> {
+    answer["modes"].as_array().unwrap().iter().map(|mode| mode["hz"].as_f64().unwrap()).collect()
+}
+
+#[test]
+fn a_digitised_rod_swings_as_its_formula_says() {
+    let bench = Bench::new();
+    let text = rod(20).replace("\t^<S7\t", "\t^<S7\t0\t0\t30\t40\n\t^<S77\t");
+    fs::write(bench.path("rod.mtg"), text).unwrap();
+    let answer = bench.json("simulate rod.mtg --modes 4");
+    // (1.8751^2, 4.6941^2) / 2 pi * sqrt(E r^2 / 4 rho), in both planes.
+    for (got, wanted) in hz(&answer).iter().zip([17.695_83, 17.695_83, 110.897_86, 110.897_86]) {
+        assert!((got / wanted - 1.0).abs() < 1e-5, "{got} {wanted}");
+    }
+    assert_eq!(answer["certified"], true);
+    assert_eq!((&answer["nodes"], &answer["beam_nodes"]), (&22.into(), &21.into()));
+    let notes = answer["notes"].to_string();
+    assert!(notes.contains("1 node lies where its parent lies"), "{notes}");
+    let heavier = bench.json("simulate rod.mtg --modes 1 --heavier 4");
+    assert!((hz(&heavier)[0] * 2.0 / 17.695_83 - 1.0).abs() < 1e-5);
+    let text = bench.text("simulate rod.mtg --modes 2");
+    assert!(text.contains("says that none below 17.6958 Hz was missed"), "{text}");
+}
+
+/// The oracle's numbers: with mean radii as published for this tree, with those of the tips as OpenSees finds them.
+#[test]
+fn the_digitised_walnut_swings_as_measured_and_as_another_program_says() {
+    let Some(walnut) = data("trees/openalea_mtg/noylum2.mtg") else { return };
+    let bench = Bench::new();
+    let args = |radius: &str| {
+        let args = ["simulate", walnut.to_str().unwrap(), "--classes", "S", "--radius", radius, "--json"];
+        bench.run(args).json()
+    };
+    let mean = args("mean");
+    assert_eq!((&mean["nodes"], &mean["beam_nodes"]), (&2999.into(), &2740.into()));
+    let found = hz(&mean);
+    assert!((found[0] / 1.491 - 1.0).abs() < 1e-3 && (found[24] / 2.998 - 1.0).abs() < 1e-3, "{found:?}");
+    for (got, wanted) in hz(&args("tip")).iter().zip([1.338, 1.349, 1.802]) {
+        assert!((got - wanted).abs() < 6e-4, "{got} {wanted}");
+    }
+    let worst = mean["modes"].as_array().unwrap().iter().map(|mode| mode["residual"].as_f64().unwrap());
+    assert!(worst.fold(0.0, f64::max) < 1e-9);
+    let notes = mean["notes"].as_array().unwrap();
+    assert!(notes.len() >= 4, "{notes:?}");
+}
+
+/// Pulled out and let go, the first mode swings at its frequency and falls by its damping.
+#[test]
+fn a_plant_that_is_pulled_and_let_go_swings_and_comes_to_rest() {
+    let bench = Bench::new();
+    let line = "simulate synth::tree:80,1 --modes 3 --pull 0.2 --seconds 30 --fps 50 --sensors 3 --out sway.csv \
+                --bend linear";
+    let answer = bench.json(line);
+    let motion = &answer["motion"];
+    assert_eq!((&motion["frames"], &motion["copies"]), (&1500.into(), &1.into()));
+    let table = rows(&bench.path("sway.csv"));
+    assert_eq!(table.len(), 3 * 1500);
+    let path: Vec<f64> =
+        table.iter().filter(|row| row["sensor"] == "0").map(|row| row["x"].parse().unwrap()).collect();
+    let rest = path[path.len() - 300..].iter().sum::<f64>() / 300.0;
+    let mode = &answer["modes"][0];
+    let (hz, ratio) = (mode["hz"].as_f64().unwrap(), mode["damping"].as_f64().unwrap());
+    let omega = 2.0 * std::f64::consts::PI * hz;
+    let damped = omega * (1.0 - ratio * ratio).sqrt();
+    for (k, x) in path.iter().enumerate() {
+        let t = k as f64 / 50.0;
+        let swing = (damped * t).cos() + ratio * omega / damped * (damped * t).sin();
+        let wanted = (path[0] - rest) * (-ratio * omega * t).exp() * swing;
+        assert!((x - rest - wanted).abs() < 0.01 * (path[0] - rest).abs(), "{t} s: {x}");
+    }
+}
+
+/// A skeleton and a tree of cylinders that are the same plant swing alike; radii that were not measured are guessed.
+#[test]
+fn skeletons_and_cylinders_are_plants_too() {
+    let bench = Bench::new();
+    let head = "radius,length,start_x,start_y,start_z,axis_x,axis_y,axis_z,parent\n";
+    let cylinders = "0.03,1,0,0,0,0,0,1,0\n0.02,1,0,0,1,0,0,1,1\n0.01,0.5,0,0,1,1,0,0,1\n";
+    fs::write(bench.path("tree.csv"), format!("{head}{cylinders}")).unwrap();
+    let nodes = "1 1 0 0 0 30 -1\n2 1 0 0 1000 30 1\n3 1 0 0 2000 20 2\n4 1 500 0 1000 10 2\n";
+    fs::write(bench.path("tree.swc"), nodes).unwrap();
+    let of = |line: &str| bench.json(&format!("simulate {line} --modes 6 --radius tip"));
+    let (csv, swc) = (of("tree.csv"), of("tree.swc --unit 0.001"));
+    for (a, b) in hz(&csv).iter().zip(hz(&swc)) {
+        assert!((a / b - 1.0).abs() < 1e-9, "{a} {b}");
+    }
+    assert!(swc["notes"].to_string().contains("lengths taken in 0.001 m"));
+    fs::write(bench.path("bare.swc"), "1 1 0 0 0 0 -1\n2 1 0 0 1 0 1\n").unwrap();
+    let notes = of("bare.swc")["notes"].to_string();
+    assert!(notes.contains("pipe model"), "{notes}");
+}
+
+/// Trees that a laser scanner has seen swing within a factor of two of what was measured of them and of one another.
+#[test]
+fn scanned_trees_swing_as_trees_do() {
+    for name in ["Tf12_Validation", "Tf20_LeafOff_Validation", "Tf3_LeafOff_Validation"] {
+        let Some(tree) = data(&format!("trees/wytham_qsm/cyl_data_{name}_1_1.mat")) else { return };
+        let wood = ["--young", "7e9", "--density", "800", "--modes", "5", "--json"];
+        let answer = Bench::new().run(["simulate", tree.to_str().unwrap()].into_iter().chain(wood)).json();
+        let first = hz(&answer)[0];
+        assert!((0.1..1.0).contains(&first) && answer["certified"] == true, "{name}: {first} Hz");
+    }
+}
+
+/// What simulate writes, spectrum reads: frequency and damping come back.
+#[test]
+fn a_swing_has_its_frequency_and_damping_back_from_its_sensors() {
+    let bench = Bench::new();
+    let made = bench.json(
+        "simulate synth::tree:80,1 --modes 1 --pull 0.2 --seconds 40 --sensors 4 --out sway.csv --bend linear",
+    );
+    let (mode, found) = (&made["modes"][0], &bench.json("spectrum sway.csv")["median"]);
+    for (name, tolerance) in [("hz", 1e-3), ("damping", 0.02)] {
+        let (wanted, got) = (mode[name].as_f64().unwrap(), found[name].as_f64().unwrap());
+        assert!((got / wanted - 1.0).abs() < tolerance, "{name}: {got} {wanted}");
+    }
+    fs::write(bench.path("odd.txt"), "1 2\n3\n").unwrap();
+    let ran = bench.line("spectrum odd.txt --fps 4");
+    assert!(
+        ran.code == Some(1) && ran.stderr.contains("line 2: wanted 2 numbers as before, came 1"),
+        "{ran:?}"
+    );
+}
+
+/// Strain of a real tree after it was pulled and let go, as published: 0.29 Hz in winter, 0.22 to 0.23 Hz in leaf.
+#[test]
+fn a_real_tree_that_was_pulled_swings_as_published() {
+    for (name, wanted) in
+        [("P1_winter", 0.29), ("P2_winter", 0.29), ("P1_summer", 0.225), ("P2_summer", 0.225)]
+    {
+        let Some(series) = data(&format!("sway/pull_and_release/T3_{name}.txt")) else { return };
+        let answer = Bench::new().run(["spectrum", series.to_str().unwrap(), "--fps", "4", "--json"]).json();
+        let got = answer["median"]["hz"].as_f64().unwrap();
+        assert!((got / wanted - 1.0).abs() < 0.06, "{name}: {got}");
+    }
+}
+
+/// The thesis's cells are named, and what is slow on this machine is no failure of the program.
+#[test]
+fn a_benchmark_of_a_forest_prints_its_cell_beside_the_thesis() {
+    let bench = Bench::new();
+    let answer = bench.json("bench forest --cell 100x1000x25 --runs 1 --seconds 0 --threads 2");
+    let cell = &answer["cells"][0];
+    assert_eq!((&cell["trees"], &cell["nodes"], &cell["modes"]), (&100.into(), &1000.into(), &25.into()));
+    assert_eq!(cell["thesis_fps"], 712.0);
+    for key in ["fps", "corrected_fps"] {
+        assert!(cell[key].as_f64().unwrap() > 0.0, "{cell}");
+    }
+    assert!(bench.text("bench forest --cell 10x20x3 --runs 1 --seconds 0").contains("GFLOP/s"));
+    assert_eq!(bench.line("bench forest --cell 10x20").code, Some(2));
+}
+
+#[test]
+fn a_forest_in_the_wind_is_the_same_on_any_number_of_threads() {
+    let bench = Bench::new();
+    for threads in [1, 3] {
+        let line = format!(
+            "simulate synth::tree:60,2 --modes 6 --forest 200 --wind wind:seed=4 --seconds 2 --threads {threads} \
+             --out {threads}.csv"
+        );
+        let motion = &bench.json(&line)["motion"];
+        assert_eq!(motion["copies"], 200);
+        assert!(motion["deviation_m"].as_f64().unwrap() > 1e-3, "{motion}");
+    }
+    let [one, three] = ["1.csv", "3.csv"].map(|name| fs::read(bench.path(name)).unwrap());
+    assert!(one == three && one.len() > 1000);
+}
+
+#[test]
+fn what_cannot_be_moved_is_refused_with_what_is_wanted() {
+    let bench = Bench::new();
+    fs::write(bench.path("rod.mtg"), rod(4)).unwrap();
+    fs::write(bench.path("nan.csv"), "t,x,y\n0,1,2\n0.1,NaN,2\n").unwrap();
+    fs::write(bench.path("two.mtg"), rod(1)).unwrap();
+    fs::write(bench.path("none.mtg"), "nothing").unwrap();
+    let cases = [
+        ("simulate no.mtg", 1, "no.mtg: No such file"),
+        (
+            "simulate rod.obj",
+            2,
+            "\"rod.obj\" is no plant: a file whose name ends in .mtg, .swc, .csv or .mat is wanted",
+        ),
+        ("simulate synth::tree:1,1", 1, "a plant has two nodes at least"),
+        ("simulate synth::tree:x", 2, "is no plant"),
+        ("simulate none.mtg", 1, "has a table CLASSES"),
+        (
+            "simulate rod.mtg --modes 25",
+            1,
+            "25 modes were asked for, and the plant has 24 degrees of freedom",
+        ),
+        ("simulate two.mtg --modes 2 --young=-1", 1, "a Young's modulus of more than 0 Pa, not of -1"),
+        ("simulate two.mtg --modes 2 --wind gale", 2, "\"gale\" is no wind and no file: there are still"),
+        ("simulate two.mtg --modes 2 --wind nan.csv", 1, "line 3: \"NaN\" is no number"),
+        ("simulate two.mtg --modes 2 --wind calm --method symplectic", 1, "is wanted, or another method"),
+        ("simulate two.mtg --modes 2 --wind calm --heavier 0", 1, "masses are more than 0"),
+        (
+            "simulate synth::tree:3437,1 --modes 2 --forest 10000000",
+            1,
+            "10000000 copies of 3437 nodes take 41",
+        ),
+        ("simulate two.mtg --modes 2 --wind calm --seconds 0", 2, "a motion has 1 to 100000000 frames"),
+    ];
+    for (line, code, wanted) in cases {
+        let ran = bench.line(line);
+        assert!(ran.code == Some(code) && ran.stderr.contains(wanted), "{line}: {ran:?}");
+    }
+}

@@ -1,0 +1,169 @@
+//! What may be typed of plants in the wind.
+
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand, ValueEnum};
+
+/// Modes of a plant, and how it moves in the wind.
+#[derive(Args, Debug)]
+#[command(after_help = honami_workbench::plant::weather::help())]
+pub(in crate::cli) struct Simulate {
+    #[command(flatten)]
+    pub(in crate::cli) plant: Plant,
+    /// What blows: a name with values, such as steady:speed=5,towards=90, or a table that an anemometer has recorded.
+    #[arg(long, value_name = "WIND", default_value = "still")]
+    pub(in crate::cli) wind: String,
+    /// Begin with the slowest mode pulled out, so that the node it moves most is this far from rest, metres.
+    #[arg(long, value_name = "M", default_value_t = 0.0, allow_negative_numbers = true)]
+    pub(in crate::cli) pull: f64,
+    /// How long.
+    #[arg(long, value_name = "S", allow_negative_numbers = true, default_value_t = 20.0)]
+    pub(in crate::cli) seconds: f64,
+    /// Frames per second.
+    #[arg(long, value_name = "F", allow_negative_numbers = true, default_value_t = 25.0)]
+    pub(in crate::cli) fps: f64,
+    /// Steps from frame to frame; what blows at the beginning of one blows till its end.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(in crate::cli) substeps: u32,
+    /// How modes go on in time.
+    #[arg(long, value_enum, default_value_t = Method::Exact)]
+    pub(in crate::cli) method: Method,
+    /// How nodes follow their modes: by straight lines, or so that branches keep their length.
+    #[arg(long, value_enum, default_value_t = Bend::S2)]
+    pub(in crate::cli) bend: Bend,
+    /// Damping by mass, per second.
+    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 0.3)]
+    pub(in crate::cli) alpha: f64,
+    /// Damping by stiffness, seconds.
+    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 0.008)]
+    pub(in crate::cli) beta: f64,
+    /// So many times as heavy as its wood.
+    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 1.0)]
+    pub(in crate::cli) heavier: f64,
+    /// A forest of so many copies, each at its place in the wind.
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    pub(in crate::cli) forest: Option<u32>,
+    /// Ends of branches of the first copy that are followed.
+    #[arg(long, value_name = "N", default_value_t = 12)]
+    pub(in crate::cli) sensors: u32,
+    /// Write where they are, metres: sensor,node,frame,time_s,x,y,z.
+    #[arg(long, value_name = "FILE.csv")]
+    pub(in crate::cli) out: Option<PathBuf>,
+    /// Threads (default: as many as there are cores).
+    #[arg(long, value_name = "N")]
+    pub(in crate::cli) threads: Option<usize>,
+    /// Of where copies stand.
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    pub(in crate::cli) seed: u64,
+}
+
+/// A plant, and what it is made of.
+#[derive(Args, Debug)]
+pub(in crate::cli) struct Plant {
+    /// A digitised plant (.mtg), a skeleton (.swc), a tree of cylinders (.csv, or .mat of MATLAB), or
+    /// synth::tree:NODES,SEED, a tree to calculate with.
+    #[arg(value_name = "PLANT")]
+    pub(in crate::cli) source: String,
+    /// How many modes, the slowest first.
+    #[arg(long, value_name = "M", default_value_t = 25, value_parser = clap::value_parser!(u32).range(1..=5000))]
+    pub(in crate::cli) modes: u32,
+    /// Of a multiscale tree graph: only parts of these classes, such as S.
+    #[arg(long, value_name = "C,…", value_delimiter = ',')]
+    pub(in crate::cli) classes: Vec<String>,
+    /// Metres of the unit of length of a .mtg or .swc file, which do not say (default: of .mtg a centimetre, of .swc a
+    /// metre).
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
+    pub(in crate::cli) unit: Option<f64>,
+    /// Of a multiscale tree graph: so many units of diameter are one of length.
+    #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 10.0)]
+    pub(in crate::cli) diameters: f64,
+    /// How thick a segment is between two nodes.
+    #[arg(long, value_enum, default_value_t = Radius::Mean)]
+    pub(in crate::cli) radius: Radius,
+    /// Divide segments longer than this, metres.
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
+    pub(in crate::cli) longest: Option<f64>,
+    /// Young's modulus of the wood, pascals.
+    #[arg(long, value_name = "PA", allow_negative_numbers = true, default_value_t = 1e10)]
+    pub(in crate::cli) young: f64,
+    /// Poisson's ratio of the wood.
+    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 0.3)]
+    pub(in crate::cli) poisson: f64,
+    /// Density of the wood, kilograms per cubic metre.
+    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 1000.0)]
+    pub(in crate::cli) density: f64,
+    /// What all leaves weigh, kilograms, shared by the ends of branches.
+    #[arg(long, value_name = "KG", allow_negative_numbers = true, default_value_t = 0.0)]
+    pub(in crate::cli) leaf_mass: f64,
+    /// Area of all leaves times their drag coefficient, square metres, shared alike.
+    #[arg(long, value_name = "M2", allow_negative_numbers = true, default_value_t = 0.0)]
+    pub(in crate::cli) leaf_drag: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(in crate::cli) enum Radius {
+    /// The mean of both ends, the base at most 1.5 times the tip.
+    Mean,
+    /// That of its tip.
+    Tip,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(in crate::cli) enum Method {
+    /// Exact for a force that stays, stable in steps of any length.
+    Exact,
+    /// Symplectic Euler, as in the thesis, up to its limit.
+    Symplectic,
+    /// Newmark's.
+    Newmark,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(in crate::cli) enum Bend {
+    /// Straight lines: branches grow longer.
+    Linear,
+    /// One arc tangent a mode and its square.
+    S2,
+    /// And its cube.
+    S3,
+}
+
+#[derive(Debug, Subcommand)]
+pub(in crate::cli) enum Bench {
+    /// Forests of generated trees, cell by cell of the thesis's tables 6.1 and 6.2: frames per second of its graphics card,
+    /// and of this machine with nodes on straight lines and so that branches keep their length.
+    Forest(BenchForest),
+}
+
+#[derive(Args, Debug)]
+pub(in crate::cli) struct BenchForest {
+    /// Runs of which the median counts.
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(in crate::cli) runs: u32,
+    /// How long a run lasts, or two frames.
+    #[arg(long, value_name = "S", default_value_t = 0.3)]
+    pub(in crate::cli) seconds: f64,
+    /// Threads (default: as many as there are cores).
+    #[arg(long, value_name = "N")]
+    pub(in crate::cli) threads: Option<usize>,
+    /// Only cells of so many copies, nodes and modes, such as 1000x1000x25; give it once for each.
+    #[arg(long = "cell", value_name = "KxNxM")]
+    pub(in crate::cli) cells: Vec<Cell>,
+}
+
+/// `KxNxM`: copies, nodes, modes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::cli) struct Cell(pub(in crate::cli) [usize; 3]);
+
+impl std::str::FromStr for Cell {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers: Vec<usize> = text.split('x').filter_map(|word| word.parse().ok()).collect();
+        match numbers[..] {
+            [k, n, m] if k > 0 && n > 1 && m > 0 && text.matches('x').count() == 2 => Ok(Self([k, n, m])),
+            _ => {
+                Err(format!("wanted copies, nodes and modes as KxNxM, for instance 1000x1000x25, got {text}"))
+            }
+        }
+    }
+}

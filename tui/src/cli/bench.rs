@@ -1,0 +1,107 @@
+//! `bench`: how fast it is here what the thesis has tables of.
+
+use honami_workbench::mechanics::Roof;
+use honami_workbench::plant::bench::{self, Cell, Rate, Runs, Speed, TABLE_6_1, TABLE_6_2};
+use serde_json::{Value, json};
+
+use super::args::plant::BenchForest;
+use super::{Answer, report, want};
+
+/// Measures both tables, or the cells that were asked for.
+pub(super) fn forest(args: &BenchForest) -> anyhow::Result<Answer> {
+    want(args.seconds.is_finite() && args.seconds >= 0.0, || {
+        format!("a run lasts 0 s or more, not {} s", args.seconds)
+    })?;
+    let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    let n_threads = args.threads.unwrap_or(cores).max(1);
+    let runs = Runs { n_runs: args.runs as usize, seconds: args.seconds, n_threads };
+    let roof = bench::roof(n_threads)?;
+    let given: Vec<Cell> = args.cells.iter().map(|cell| named(cell.0)).collect();
+    let tables: Vec<(&str, &str, &[Cell])> = if given.is_empty() {
+        vec![
+            ("table_6_1", "table 6.1: 25 modes", &TABLE_6_1),
+            ("table_6_2", "table 6.2: 3437 nodes", &TABLE_6_2),
+        ]
+    } else {
+        vec![("cells", "cells", &given)]
+    };
+    let mut text = format!(
+        "{n_threads} threads: {:.0} GFLOP/s at most, {:.1} GB/s written at most",
+        roof.flops / 1e9,
+        roof.written / 1e9
+    );
+    let mut json = json!({
+        "threads": n_threads,
+        "roof": { "gflops": roof.flops / 1e9, "gb_per_s": roof.written / 1e9 },
+    });
+    for (key, title, cells) in tables {
+        let speeds = bench::speeds(cells, &runs, &report::Bar::new())?;
+        text += &format!("\n\n{title}\n{}", report::table(&rows(&speeds, &roof)));
+        json[key] = speeds.iter().map(|speed| entry(speed, &roof)).collect();
+    }
+    text += "\n\nfps: frames per second, the median of the runs; lengths kept: by one arc tangent a mode and its powers";
+    text += "\nof limit: the greater share of multiplications and of writing; state: share of the frame that modes take";
+    Ok(Answer { json, text, done: true })
+}
+
+/// A cell with what the thesis has of it.
+fn named([k, n, m]: [usize; 3]) -> Cell {
+    let known = TABLE_6_1.iter().chain(&TABLE_6_2).find(|cell| (cell.0, cell.1, cell.2) == (k, n, m));
+    known.copied().unwrap_or((k, n, m, None))
+}
+
+/// How near a rate is to the most that the machine can do.
+fn share(rate: &Rate, roof: &Roof) -> f64 {
+    (rate.flops / roof.flops).max(rate.written / roof.written)
+}
+
+fn rows(speeds: &[Speed], roof: &Roof) -> Vec<Vec<String>> {
+    let head = [
+        "trees",
+        "nodes",
+        "modes",
+        "thesis fps",
+        "linear fps",
+        "of limit",
+        "s,s2 fps",
+        "of limit",
+        "s,s2,s3 fps",
+        "of limit",
+        "state",
+    ];
+    let row = |speed: &Speed| {
+        let thesis = speed.thesis_fps.map_or_else(String::new, |fps| format!("{fps:.0}"));
+        let mut row =
+            vec![speed.n_copies.to_string(), speed.n_nodes.to_string(), speed.n_modes.to_string(), thesis];
+        for rate in [&speed.linear, &speed.squared, &speed.cubed] {
+            row.push(format!("{:.1}", rate.fps));
+            row.push(format!("{:.0} %", 100.0 * share(rate, roof)));
+        }
+        row.push(format!("{:.1} %", 100.0 * speed.squared.state_share));
+        row
+    };
+    std::iter::once(head.map(str::to_owned).to_vec()).chain(speeds.iter().map(row)).collect()
+}
+
+fn entry(speed: &Speed, roof: &Roof) -> Value {
+    let rate = |rate: &Rate| {
+        json!({
+            "fps": rate.fps,
+            "of_limit": share(rate, roof),
+            "of_flops": rate.flops / roof.flops,
+            "of_writing": rate.written / roof.written,
+            "state_share": rate.state_share,
+        })
+    };
+    json!({
+        "trees": speed.n_copies,
+        "nodes": speed.n_nodes,
+        "modes": speed.n_modes,
+        "thesis_fps": speed.thesis_fps,
+        "fps": speed.linear.fps,
+        "corrected_fps": speed.squared.fps,
+        "linear": rate(&speed.linear),
+        "squared": rate(&speed.squared),
+        "cubed": rate(&speed.cubed),
+    })
+}
