@@ -79,6 +79,10 @@ fn a_fault_is_told_with_what_repeats_it_and_the_verdict_is_for_that_content() {
     let Some(library) = example_in_c(&bench, &["-fvisibility=hidden"]) else { return };
     let ran = bench.line("plugin check null.so --level 6");
     assert!(ran.code == Some(0) && ran.stdout.contains("null: level 6, "), "{ran:?}");
+    // A line a level, the whole and what is doubtful; with -v a line a check.
+    assert!(ran.stdout.contains(" 2  loading ") && !ran.stdout.contains("passed"), "{ran:?}");
+    let whole = bench.line("plugin check null.so --level 2 -v").stdout;
+    assert!(whole.lines().filter(|line| line.starts_with("passed ")).count() > 10, "{whole}");
     assert!(bench.text("plugin list --plugin null.so").contains("checked 6"));
     // Its helper functions are static; a flag of the linker is a fault of another build.
     let _other = example_in_c(&bench, &["-fvisibility=hidden", "-Wl,-z,execstack"]);
@@ -103,4 +107,46 @@ fn a_fault_is_told_with_what_repeats_it_and_the_verdict_is_for_that_content() {
     );
     let again = bench.run(words);
     assert!(again.code == Some(1) && again.stdout.contains("file.stack failed: its stack"), "{again:?}");
+}
+
+#[test]
+fn what_is_installed_is_checked_without_being_allowed_and_what_is_held_all_the_same() {
+    let bench = Bench::new();
+    let Some(library) = example_in_c(&bench, &["-fvisibility=hidden"]) else { return };
+    let folder = bench.path("XDG_DATA_HOME/honami/plugins/null");
+    fs::create_dir_all(&folder).unwrap();
+    fs::rename(library, folder.join("null.so")).unwrap();
+    assert!(bench.text("plugin list").contains("not trusted"));
+    let sha256 = bench.json("plugin info null")["sha256"].as_str().unwrap().to_owned();
+    let quarantine = bench.path("XDG_CACHE_HOME/honami/quarantine");
+    fs::create_dir_all(&quarantine).unwrap();
+    fs::write(quarantine.join(format!("{sha256}.held")), "died of SIGSEGV").unwrap();
+    let ran = bench.line("plugin check null --level 4");
+    assert!(ran.code == Some(0) && ran.stdout.contains("null: level 4, "), "{ran:?}");
+    assert!(bench.text("plugin list").contains("not trusted"), "a check allows nothing");
+    let _denied = bench.text("plugin deny null");
+    let ran = bench.line("plugin check null --level 1 --json");
+    let said: Value = serde_json::from_str(&ran.stdout).unwrap();
+    assert!(ran.code == Some(1) && said["error"].as_str().unwrap().contains("it was denied"), "{ran:?}");
+    let ran = bench.line("plugin check nothere.so --json");
+    let said: Value = serde_json::from_str(&ran.stdout).unwrap();
+    assert!(ran.code == Some(2) && said["error"].as_str().unwrap().contains("/nothere.so"), "{ran:?}");
+}
+
+#[test]
+fn a_shipped_plugin_that_was_denied_is_not_loaded_until_it_is_allowed() {
+    let bench = Bench::new();
+    bench.synth("clip.y4m", 3, "--leaves 5");
+    let _made = bench.text("new p.honami clip.y4m");
+    let library = bench.json("plugin info klt")["library"].as_str().unwrap().to_owned();
+    let said = bench.text("plugin deny klt");
+    assert!(said.contains(&library) && said.contains("org.honami.klt (tracker)"), "{said}");
+    let ran = bench.line("track p.honami --with klt");
+    assert!(ran.code == Some(1) && ran.stderr.contains("it was denied; `honami plugin allow "), "{ran:?}");
+    let doctor = bench.line("doctor").stdout;
+    let of = |what: &str| doctor.lines().find(|line| line.contains(what)).unwrap_or_default().to_owned();
+    assert!(of("not loaded").contains("klt") && !of("ok  plugins").contains("klt"), "{doctor}");
+    let said = bench.text(&format!("plugin allow {library}"));
+    assert!(said.contains("is loaded again"), "{said}");
+    let _tracked = bench.text("track p.honami --with klt");
 }

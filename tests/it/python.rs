@@ -48,7 +48,11 @@ fn a_program_is_allowed_with_its_files_and_other_parameters_want_another_manifes
     }
     let first = "track p.honami --with template --points points.csv";
     assert!(bench.line("plugin list").stdout.contains("not trusted"));
-    let _said = bench.text("plugin allow template");
+    let said = bench.text("plugin allow template");
+    for file in ["template.honami.json", "template.py"] {
+        let n_bytes = fs::metadata(folder.join(file)).unwrap().len();
+        assert!(said.contains(&format!("{file}, {n_bytes} bytes, of user ")), "{said}");
+    }
     assert!(bench.text(first).contains("frames 0-11"));
     let track = "track p.honami --with template";
     let script = folder.join("template.py");

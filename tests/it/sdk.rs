@@ -97,6 +97,19 @@ fn a_tracker_that_was_just_begun_follows_the_texture_and_is_the_same_in_every_la
 }
 
 #[test]
+fn a_plugin_with_the_short_name_of_another_is_begun_under_its_full_id() {
+    let bench = Bench::new();
+    let said = bench.text("plugin new klt");
+    assert!(
+        said.contains("klt is also the short name of org.honami.klt: this one is called org.me.klt"),
+        "{said}"
+    );
+    assert!(said.contains("--with org.me.klt --plugin klt/klt.py"), "{said}");
+    let said = bench.text("plugin new mine --lang c");
+    assert!(!said.contains("also") && said.contains("after each change"), "{said}");
+}
+
+#[test]
 fn a_clusterer_that_was_just_begun_groups_tracks_alike_in_every_language() {
     let bench = Bench::tracked();
     let mut groups = Vec::new();

@@ -28,7 +28,7 @@ use std::process::ExitCode;
 use clap::error::ErrorKind;
 use clap::{CommandFactory as _, Parser as _};
 use honami_workbench::WorkbenchError;
-use honami_workbench::plugins::{HostError, ValueError};
+use honami_workbench::plugins::{HostError, ValueError, file_of};
 use honami_workbench::session::{Session, SessionOptions};
 use honami_workbench::store::{Access, Project};
 
@@ -85,13 +85,14 @@ fn answer() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => unknown_command(&error).unwrap_or(error).exit(),
     };
-    let result = match (cli.command, cli.project) {
-        (Some(_), Some(project)) => {
-            Err(Usage(format!("{} stands before a command", project.display())).into())
-        }
-        (Some(command), None) => run(command, &cli.common),
-        (None, project) => open(project.as_deref(), cli.log, &cli.common).map(Outcome::Exit),
-    };
+    let result =
+        named_there(&cli.common).map_err(Into::into).and_then(|()| match (cli.command, cli.project) {
+            (Some(_), Some(project)) => {
+                Err(Usage(format!("{} stands before a command", project.display())).into())
+            }
+            (Some(command), None) => run(command, &cli.common),
+            (None, project) => open(project.as_deref(), cli.log, &cli.common).map(Outcome::Exit),
+        });
     let printed = result.and_then(|outcome| match outcome {
         Outcome::Answer(answer) => {
             let status = if answer.done { ExitCode::SUCCESS } else { ExitCode::FAILURE };
@@ -107,6 +108,15 @@ fn answer() -> ExitCode {
             if is_usage(&error) { ExitCode::from(2) } else { ExitCode::FAILURE }
         }
     }
+}
+
+/// Whether what `--plugin` names is there: else another plugin of the same name might be taken for it.
+fn named_there(common: &Common) -> Result<(), Usage> {
+    let is_there = |path: &&PathBuf| path.exists() || file_of(path).exists();
+    common.plugins.iter().find(|path| !is_there(path)).map_or(Ok(()), |path| {
+        let wanted = "wanted a library, a plugin in Python or its manifest, or a folder of plugins";
+        Err(Usage(format!("--plugin {}: there is no such file; {wanted}", path.display())))
+    })
 }
 
 /// What to say of a first word that is neither a command nor a file: clap takes it for a project.
@@ -226,7 +236,7 @@ fn show(plan: Option<Plan>, common: &Common) -> anyhow::Result<ExitCode> {
 fn offers(common: &Common) -> Offers {
     let demo = |common: Common| move || synth::plan(Path::new(args::DEMO), &common);
     let lesson = |common: Common| move || synth::lesson(&common);
-    let plugins = |common: Common| move || help::plugins(&common);
+    let plugins = |common: Common| move || help::listed(&common);
     let doctor = |common: Common| move || help::doctor(&common).text;
     let offer = |name, doc, gives| Offer { name, doc, gives };
     let rows = vec![

@@ -27,7 +27,7 @@ mod work;
 
 pub use crew::{Asker, Outcome, Plan, examine};
 pub use ledger::Ledger;
-pub use report::{Report, Status, junit};
+pub use report::{Report, Status, counts, junit};
 pub use subject::Subject;
 
 use honami_host::HostError;
@@ -112,6 +112,26 @@ impl Finding {
         let (Self::Holds(text) | Self::Doubtful(text) | Self::Beside(text) | Self::Fails(text)) = self;
         text
     }
+}
+
+/// What the levels are about, from 1 on.
+const LEVELS: [&str; 10] = [
+    "file",
+    "loading",
+    "ABI",
+    "parameters",
+    "state",
+    "frames",
+    "truth of trackers",
+    "truth of other kinds",
+    "running",
+    "stress",
+];
+
+/// What a level is about, in a word or three; nothing for none.
+#[must_use]
+pub fn level_name(level: u8) -> &'static str {
+    usize::from(level).checked_sub(1).and_then(|k| LEVELS.get(k)).copied().unwrap_or_default()
 }
 
 /// All checks, level by level.

@@ -79,14 +79,7 @@ impl Report {
         if let Some(level) = self.reached() {
             line += &format!("level {level}, ");
         }
-        line += &format!("{} checks", self.outcomes.len());
-        for word in ["failed", "doubtful", "beside"] {
-            match self.outcomes.iter().filter(|outcome| outcome.finding.word() == word).count() {
-                0 => {}
-                n => line += &format!(", {n} {word}"),
-            }
-        }
-        format!("{line}, {} s", self.took.as_secs_f64().round())
+        format!("{line}{}, {} s", counts(&self.outcomes), self.took.as_secs_f64().round())
     }
 
     /// All of it for machines.
@@ -117,6 +110,19 @@ impl Report {
             "checks": checks,
         })
     }
+}
+
+/// How many checks there were, and of which findings: `41 checks, 2 beside`.
+#[must_use]
+pub fn counts(outcomes: &[Outcome]) -> String {
+    let mut text = format!("{} check{}", outcomes.len(), if outcomes.len() == 1 { "" } else { "s" });
+    for word in ["failed", "doubtful", "beside"] {
+        match outcomes.iter().filter(|outcome| outcome.finding.word() == word).count() {
+            0 => {}
+            n => text += &format!(", {n} {word}"),
+        }
+    }
+    text
 }
 
 /// What tools that read JUnit want: a suite a plugin, a case a check. A doubt is a case that has passed and has printed.

@@ -55,9 +55,10 @@ impl Task {
         Self::of(subject, [48, 36], 8, [3, 2], 12)
     }
 
-    /// As many points as take a while; or as many tracks.
+    /// As many points as take a while; or as many tracks. Programs, most of them interpreted, take longer over each.
     pub(crate) fn large(subject: &Subject) -> Option<Self> {
-        Self::of(subject, [160, 120], 3, [160, 120], 400)
+        let points = if subject.info.is_program() { [80, 60] } else { [160, 120] };
+        Self::of(subject, [160, 120], 3, points, 400)
     }
 
     fn of(

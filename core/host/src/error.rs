@@ -92,8 +92,8 @@ pub enum HostError {
     },
     /// The plugin has failed too often lately.
     #[error(
-        "{plugin} has failed three times within ten minutes and is not started again ({why}); a rebuilt one is, and this \
-         one after `honami plugin retry {}`",
+        "{plugin} has failed three times within ten minutes and is not started again ({why}) until its file has changed; \
+         as it is it is started after `honami plugin retry {}`",
         library.display()
     )]
     Quarantined {

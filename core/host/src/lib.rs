@@ -52,7 +52,7 @@ pub use prospect::Prospect;
 pub use quarantine::ended_well;
 pub use rebuilt::Watch;
 pub use registry::{PluginInfo, Registry, SearchPath, Trust};
-pub use script::manifest_of as file_of;
+pub use script::{Part, manifest_of as file_of, parts_of};
 pub use simulator::{Detail, ModeRow, PlantInstance, Simulator, Steps, WindRows};
 pub use tracker::{Checkpoint, Tracker};
 pub use trust::TrustBook;

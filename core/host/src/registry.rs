@@ -49,6 +49,15 @@ impl SearchPath {
         Self { named, dev: listed("HONAMI_DEV"), executable, installed, book: TrustBook::of_user() }
     }
 
+    /// Where it looks, in order.
+    #[must_use]
+    pub fn places(&self) -> Vec<PathBuf> {
+        let beside = self.executable.as_deref().and_then(Path::parent);
+        let beside = beside.map(|folder| [folder.to_owned(), folder.join("../lib/honami/plugins")]);
+        let known = [&self.named, &self.dev].into_iter().flatten().cloned();
+        known.chain(beside.into_iter().flatten()).chain(self.installed.iter().cloned()).collect()
+    }
+
     /// With these build trees before the others.
     #[must_use]
     pub fn with_dev(mut self, trees: &[PathBuf]) -> Self {
@@ -186,23 +195,26 @@ impl Registry {
         let of_named = |file: &Path| path.book.of_named(&script::manifest_of(file));
         for named in &path.named {
             if named.is_dir() {
-                registry.scan_folder(named, of_named);
+                registry.scan_folder(named, false, of_named);
             } else {
                 registry.add_file(named, of_named(named), true);
             }
         }
         for folder in path.dev.iter().flat_map(|tree| dev::folders(tree)) {
-            registry.scan_folder(&folder, |file| path.book.of_dev(file));
+            registry.scan_folder(&folder, false, |file| path.book.of_dev(file));
         }
         if let Some((executable, folder)) =
             path.executable.as_deref().and_then(|exe| Some((exe, exe.parent()?)))
         {
             for folder in [folder.to_owned(), folder.join("../lib/honami/plugins")] {
-                registry.scan_folder(&folder, |file| shipped(executable, &folder, file));
+                registry.scan_folder(&folder, false, |file| match shipped(executable, &folder, file) {
+                    Trust::Shipped => path.book.of_shipped(file),
+                    other => other,
+                });
             }
         }
         for folder in &path.installed {
-            registry.scan_folder(folder, |file| match dev::is_below(&path.dev, file) {
+            registry.scan_folder(folder, true, |file| match dev::is_below(&path.dev, file) {
                 true => path.book.of_dev(file),
                 false => path.book.of(file),
             });
@@ -266,22 +278,22 @@ impl Registry {
         }
     }
 
-    fn scan_folder(&mut self, folder: &Path, trust: impl Fn(&Path) -> Trust) {
+    /// Looks into a folder. Programs may have folders of their own there, and libraries where they are `installed`: what is
+    /// built leaves others in such folders, which are none to load.
+    fn scan_folder(&mut self, folder: &Path, installed: bool, trust: impl Fn(&Path) -> Trust) {
         let within = |folder: &Path| -> Vec<PathBuf> {
             fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()).collect()
         };
-        // A program may have a folder of its own there.
+        let is_library = |path: &Path| path.extension().is_some_and(|extension| extension == "so");
         let own = |path: PathBuf| {
-            let files = if path.is_dir() { within(&path) } else { Vec::new() };
-            let files = files.into_iter().filter(|file| script::is_manifest(file)).collect::<Vec<_>>();
+            let mut files = if path.is_dir() { within(&path) } else { Vec::new() };
+            files.retain(|file| script::is_manifest(file) || (installed && is_library(file)));
             std::iter::once(path).chain(files)
         };
         let mut files: Vec<PathBuf> = within(folder)
             .into_iter()
             .flat_map(own)
-            .filter(|path| {
-                path.extension().is_some_and(|extension| extension == "so") || script::is_manifest(path)
-            })
+            .filter(|path| is_library(path) || script::is_manifest(path))
             .collect();
         files.sort();
         for file in files {

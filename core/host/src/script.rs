@@ -59,6 +59,31 @@ pub(crate) fn parts(manifest: &Path) -> Vec<PathBuf> {
     with_own(manifest, &exec.unwrap_or_default())
 }
 
+/// A file of a plugin.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// Where it lies.
+    pub path: PathBuf,
+    /// How long it is.
+    pub n_bytes: usize,
+    /// Of its content, lower-case hexadecimal.
+    pub sha256: String,
+}
+
+/// All files that a plugin's hash is of: a library, or a manifest and its program's own files. Only these are there when it
+/// runs, and what the SDK lays beside them.
+///
+/// # Errors
+/// When one of them cannot be read.
+pub fn parts_of(library: &Path) -> Result<Vec<Part>, HostError> {
+    let paths = if is_manifest(library) { parts(library) } else { vec![library.to_owned()] };
+    let part = |path: PathBuf| {
+        let bytes = store::read(&path)?;
+        Ok(Part { n_bytes: bytes.len(), sha256: store::hex(&bytes), path })
+    };
+    paths.into_iter().map(part).collect()
+}
+
 fn with_own(manifest: &Path, exec: &[String]) -> Vec<PathBuf> {
     let folder = manifest.parent().unwrap_or(Path::new("."));
     let own = exec.iter().map(|word| folder.join(word)).filter(|path| path.is_file());

@@ -131,7 +131,7 @@ pub(crate) fn copy_of(folder: &Path, sha256: &str) -> PathBuf {
     if copy.exists() { copy } else { copy_in(&temporary_folder(), sha256) }
 }
 
-fn read(path: &Path) -> Result<Vec<u8>, HostError> {
+pub(crate) fn read(path: &Path) -> Result<Vec<u8>, HostError> {
     let why = |e: io::Error| HostError::File { path: path.to_owned(), why: format!("cannot be read: {e}") };
     regular::read(path, LIBRARY_BYTES_MAX).map_err(why)
 }

@@ -93,7 +93,7 @@ impl TrustBook {
     pub(crate) fn of(&self, library: &Path) -> Trust {
         let entry = self.entry(library);
         if entry.as_ref().is_some_and(|entry| entry.sha256.is_none()) {
-            return denied();
+            return denied(library);
         }
         let by_the_lab = || {
             self.lab
@@ -131,7 +131,17 @@ impl TrustBook {
 
     /// Whether a library may be loaded that the user names: unless it was denied.
     pub(crate) fn of_named(&self, library: &Path) -> Trust {
-        if self.entry(library).is_some_and(|entry| entry.sha256.is_none()) { denied() } else { Trust::Named }
+        self.unless_denied(library, Trust::Named)
+    }
+
+    /// Whether a library may be loaded that came with this honami: unless it was denied.
+    pub(crate) fn of_shipped(&self, library: &Path) -> Trust {
+        self.unless_denied(library, Trust::Shipped)
+    }
+
+    fn unless_denied(&self, library: &Path, trust: Trust) -> Trust {
+        let is_denied = self.entry(library).is_some_and(|entry| entry.sha256.is_none());
+        if is_denied { denied(library) } else { trust }
     }
 
     /// Whether a library in the user's own build tree may be loaded: unless it was denied, or others may write it.
@@ -194,8 +204,8 @@ impl TrustBook {
     }
 }
 
-fn denied() -> Trust {
-    Trust::No("it was denied; `honami plugin allow` allows it".into())
+fn denied(library: &Path) -> Trust {
+    Trust::No(format!("it was denied; `honami plugin allow {}` allows it", library.display()))
 }
 
 /// Holds a library, or a manifest and the files of its program, against a rule.

@@ -1,6 +1,6 @@
 //! What this machine has, what each missing piece would add, and how to install it.
 
-use honami_host::Registry;
+use honami_host::{PluginInfo, Registry, Trust};
 use serde::Serialize;
 
 /// One piece of the machine.
@@ -21,7 +21,31 @@ pub struct Finding {
 /// Looks at everything honami can make use of.
 #[must_use]
 pub fn examine(registry: &Registry) -> Vec<Finding> {
-    vec![trackers(registry), files(registry), processes(), opencv(registry), ffmpeg(), cache(), threads()]
+    let mut findings = vec![trackers(registry)];
+    findings.extend(untrusted(registry));
+    findings.extend([files(registry), processes(), opencv(registry), ffmpeg(), cache(), threads()]);
+    findings
+}
+
+fn is_loaded(plugin: &PluginInfo) -> bool {
+    !matches!(plugin.trust, Trust::No(_))
+}
+
+/// Plugins that are there, and are not loaded: what was denied, and what nobody has allowed.
+fn untrusted(registry: &Registry) -> Option<Finding> {
+    let names: Vec<&str> = registry
+        .plugins()
+        .iter()
+        .filter(|plugin| !is_loaded(plugin))
+        .map(|plugin| plugin.short_name.as_str())
+        .collect();
+    (!names.is_empty()).then(|| Finding {
+        what: "not loaded",
+        there: false,
+        found: names.join(", "),
+        adds: "what they do",
+        advice: Some("honami plugin list says why; honami plugin allow NAME loads one".to_owned()),
+    })
 }
 
 /// Plugins that did not come with honami need a program to work in.
@@ -37,7 +61,8 @@ fn processes() -> Finding {
 }
 
 fn trackers(registry: &Registry) -> Finding {
-    let names: Vec<&str> = registry.plugins().iter().map(|plugin| plugin.short_name.as_str()).collect();
+    let loaded = registry.plugins().iter().filter(|plugin| is_loaded(plugin));
+    let names: Vec<&str> = loaded.map(|plugin| plugin.short_name.as_str()).collect();
     Finding {
         what: "plugins",
         there: !names.is_empty(),

@@ -406,12 +406,12 @@ pub(super) enum Plugin {
         #[arg(last = true)]
         command: Vec<String>,
     },
-    /// Let a third party's plugin be loaded, as its file is now.
+    /// Let a third party's plugin be loaded, as its files are now.
     Allow {
         /// Its file, or the name of one that `honami plugin list` shows.
         plugin: String,
     },
-    /// Never load this plugin, also when it is named.
+    /// Never load this plugin, also when it is named, and also one that came with honami.
     Deny {
         /// Its file, or the name of one that `honami plugin list` shows.
         plugin: String,
@@ -422,7 +422,10 @@ pub(super) enum Plugin {
     /// 9 running (repeatable, any number of threads, stopped at once), 10 stress. Each check has a process of its own;
     /// the level that was reached is kept for this content of the file, and `honami plugin list` shows it.
     ///
-    /// Exit status: 0 passed, 1 a check has failed, 2 wrong usage, 3 passed with doubts.
+    /// A line a level, and in full what has failed or is doubtful; -v gives a line a check. What is installed, but not
+    /// allowed yet, may be checked: it is shut in as always. What was denied is not.
+    ///
+    /// Exit status: 0 passed, 1 a check has failed or none could be done, 2 wrong usage, 3 passed with doubts.
     Check(Check),
     /// Let a plugin start again that has failed three times within ten minutes.
     Retry {

@@ -4,14 +4,21 @@ use std::fs;
 use std::path::Path;
 
 use anyhow::Context as _;
+use honami_workbench::plugins::PluginInfo;
 use honami_workbench::plugins::sdk::{self, Language};
 use serde_json::json;
 
 use super::Answer;
 use super::args::{Kind, Lang};
 
-/// Writes the files of a new plugin into a folder of its name.
-pub(super) fn plugin(name: &str, kind: Kind, lang: Lang, command: &[String]) -> anyhow::Result<Answer> {
+/// Writes the files of a new plugin into a folder of its name. Where `other` has the same short name its whole id is said.
+pub(super) fn plugin(
+    name: &str,
+    kind: Kind,
+    lang: Lang,
+    command: &[String],
+    other: Option<&PluginInfo>,
+) -> anyhow::Result<Answer> {
     let language = match lang {
         Lang::Python => Some(Language::Python),
         Lang::Rust => Some(Language::Rust),
@@ -34,6 +41,8 @@ pub(super) fn plugin(name: &str, kind: Kind, lang: Lang, command: &[String]) -> 
         }
     };
     let begun = begun.map_err(anyhow::Error::msg)?;
+    let is_there = fs::symlink_metadata(name).is_ok();
+    anyhow::ensure!(!is_there, "there is {name} already: choose another name, or take it away first");
     fs::create_dir(name).with_context(|| format!("cannot make the folder {name}"))?;
     for (file, text) in &begun.files {
         let path = Path::new(name).join(file);
@@ -41,26 +50,36 @@ pub(super) fn plugin(name: &str, kind: Kind, lang: Lang, command: &[String]) -> 
         fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))?;
     }
     let plugin = &begun.plugin;
+    let called = other.map_or_else(|| name.to_owned(), |_| format!("org.me.{name}"));
     let tried = match kind {
         Kind::Tracker => {
-            format!("honami compare calm.y4m --truth calm.truth.csv --with {name} --plugin {plugin}")
+            format!("honami compare calm.y4m --truth calm.truth.csv --with {called} --plugin {plugin}")
         }
         Kind::Clusterer => format!(
             "honami new calm.honami calm.y4m && honami track calm.honami && \
-             honami cluster calm.honami --with {name} --plugin {plugin}"
+             honami cluster calm.honami --with {called} --plugin {plugin}"
         ),
     };
     // Each of its points has a process of its own.
     let few = if language.is_none() { " --leaves 20" } else { "" };
     let next = json!({
         "build": begun.build,
-        "look": format!("honami plugin info {name} --plugin {plugin}"),
+        "look": format!("honami plugin info {called} --plugin {plugin}"),
         "check": format!("honami plugin check {plugin}"),
         "try": format!("honami synth calm.y4m --wind calm{few} && {tried}"),
     });
     let line = |what: &str| format!("\n  {what:<6} {}", next[what].as_str().unwrap_or_default());
+    let when = match lang {
+        Lang::Python | Lang::Trax => {
+            "Write its manifest before the first run, and anew when its parameters change"
+        }
+        Lang::Rust | Lang::C | Lang::Cpp => "Build it before the first run and after each change",
+    };
+    let also = other.map_or_else(String::new, |other| {
+        format!("\n{name} is also the short name of {}: this one is called {called}", other.id)
+    });
     let text = format!(
-        "{name}/{}: a {of} that works, to be changed. Build it before the first run and after each change:{}{}{}{}",
+        "{name}/{}: a {of} that works, to be changed. {when}:{}{}{}{}{also}",
         begun.files[0].0,
         line("build"),
         line("look"),

@@ -1,31 +1,44 @@
-//! `honami plugin check`: a line a check while they run, and what to type to see one again.
+//! `honami plugin check`: what checks found while they run, and what to type to see one again.
+
+mod shown;
 
 use std::fs::{File, OpenOptions};
 use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::Context as _;
 use honami_workbench::check::{
-    Asker, Check, Finding, Ledger, Outcome, Plan, Report, Status, Subject, checks, examine, junit,
+    Asker, Check, Ledger, Outcome, Plan, Report, Status, Subject, checks, examine, junit,
 };
-use honami_workbench::plugins::{
-    Host, HostError, PluginInfo, Registry, SearchPath, Trust, TrustBook, file_of,
-};
+use honami_workbench::plugins::{Host, HostError, PluginInfo, Registry, SearchPath, Trust, TrustBook};
 use serde_json::json;
 
+use shown::{Shown, line};
+
 use super::args::{self, Common};
-use super::{help, want};
+use super::{Usage, help, report, want};
 
 /// Passed, but somebody should look: 2 is wrong usage, here as everywhere.
 const DOUBTFUL: u8 = 3;
 
-/// Checks the plugins of a file, or does one of the checks.
+/// Checks the plugins of a file, or does one of the checks. Where it could not begin machines are told so, too.
 pub(super) fn check(args: &args::Check, common: &Common) -> anyhow::Result<ExitCode> {
+    let done = examined(args, common);
+    if let Err(error) = &done
+        && common.json
+    {
+        let text = serde_json::to_string_pretty(&json!({ "plugins": [], "error": report::chain(error) }))?;
+        print(&text)?;
+    }
+    done
+}
+
+fn examined(args: &args::Check, common: &Common) -> anyhow::Result<ExitCode> {
     // Taken before anything of the plugin is looked at.
     let asker = if args.answer { Some(Asker::of_stdin()?) } else { None };
-    let file = file(&args.plugin, common)?;
+    let file = help::file(&args.plugin, common)?;
     // Opened before minutes are spent on what then cannot be written.
     let out = Out { xml: args.junit.as_deref().map(writable).transpose()?, is_json: common.json };
     let path = SearchPath { named: vec![file.clone()], book: TrustBook::of_user(), ..SearchPath::default() };
@@ -51,7 +64,7 @@ pub(super) fn check(args: &args::Check, common: &Common) -> anyhow::Result<ExitC
     }
     match &args.reproduce {
         Some(which) => one(which, &file, &infos, asker, out),
-        None => all(args, &file, &infos, out),
+        None => all(args, &file, &infos, common.verbose, out),
     }
 }
 
@@ -75,12 +88,15 @@ fn one(
     mut asker: Option<Asker>,
     out: Out,
 ) -> anyhow::Result<ExitCode> {
-    let wanted = || format!("wanted a check and a seed, such as loading.starts:1, got {which}");
-    let (id, seed) = which.rsplit_once(':').with_context(wanted)?;
-    let seed: u64 = seed.parse().with_context(wanted)?;
     let all = checks();
+    let wanted = || {
+        let near = near(which.split(':').next().unwrap_or(which), &all);
+        Usage(format!("wanted a check and a seed, such as loading.starts:1, got {which}; {near}"))
+    };
+    let (id, seed) = which.rsplit_once(':').ok_or_else(wanted)?;
+    let seed: u64 = seed.parse().map_err(|_| wanted())?;
     let chosen: Vec<Check> = all.iter().filter(|check| check.id == id).copied().collect();
-    want(!chosen.is_empty(), || format!("there is no check {id}; {}", ids(&all)))?;
+    want(!chosen.is_empty(), || format!("there is no check {id}; {}", near(id, &all)))?;
     // All that must be read is read before a check shuts this process in.
     let subjects: Vec<(&PluginInfo, Plan, String)> = infos
         .iter()
@@ -88,7 +104,9 @@ fn one(
         .collect::<anyhow::Result<_>>()?;
     let mut reports = Vec::new();
     for (info, plan, sha256) in subjects {
-        let (subject, began) = (Subject::new(info.clone(), Host::new(), seed), Instant::now());
+        // One that is held, since it has died too often, is just the one to look at.
+        let host = Host::new().without_quarantine();
+        let (subject, began) = (Subject::new(info.clone(), host, seed), Instant::now());
         let outcomes: Vec<Outcome> = chosen
             .iter()
             .map(|check| {
@@ -121,7 +139,13 @@ fn plan(file: &Path, info: &PluginInfo, checks: &[Check], seed: u64) -> anyhow::
     })
 }
 
-fn all(args: &args::Check, file: &Path, infos: &[&PluginInfo], out: Out) -> anyhow::Result<ExitCode> {
+fn all(
+    args: &args::Check,
+    file: &Path,
+    infos: &[&PluginInfo],
+    is_whole: bool,
+    out: Out,
+) -> anyhow::Result<ExitCode> {
     let has =
         |check: &Check, part: &Option<String>| part.as_ref().is_some_and(|part| check.id.contains(part));
     let known = checks();
@@ -131,20 +155,26 @@ fn all(args: &args::Check, file: &Path, infos: &[&PluginInfo], out: Out) -> anyh
         .filter(|check| (args.only.is_none() || has(check, &args.only)) && !has(check, &args.skip))
         .copied()
         .collect();
-    want(!chosen.is_empty(), || format!("no check up to level {} is chosen; {}", args.level, ids(&known)))?;
+    want(!chosen.is_empty(), || {
+        format!(
+            "no check up to level {} is chosen; {}",
+            args.level,
+            near(args.only.as_deref().unwrap_or_default(), &known)
+        )
+    })?;
     let host = Host::new();
     let ledger = Ledger::beside(&host);
     let mut reports = Vec::new();
     for info in infos {
         let plan = plan(file, info, &chosen, args.seed)?;
         let (sha256, began) = (info.sha256()?, Instant::now());
-        let mut said = Ok(());
+        let (mut said, mut shown) = (Ok(()), Shown::new(is_whole));
         let outcomes = plan.run(&mut |outcome| {
             if !out.is_json && said.is_ok() {
-                said = print(&line(outcome));
+                said = shown.hear(outcome);
             }
         });
-        said?;
+        said.and_then(|()| shown.end())?;
         let level = (args.only.is_none() && args.skip.is_none()).then_some(args.level);
         let (name, plugin) = (info.short_name.clone(), info.id.clone());
         let (seed, took) = (args.seed, began.elapsed());
@@ -182,34 +212,15 @@ impl Out {
     }
 }
 
-/// A check in a line; of one that has failed what came, and how to see it again.
-fn line(outcome: &Outcome) -> String {
-    let Outcome { check, finding, took, repeat } = outcome;
-    let head = format!("{:8}  {:2}  {:28}  {}", finding.word(), check.level, check.id, check.claim);
-    let said = if finding.text().is_empty() { String::new() } else { format!(": {}", finding.text()) };
-    let seconds = took.as_secs_f64();
-    match finding {
-        Finding::Fails(why) => format!("{head} ({seconds:.1} s)\n          {why}\n          {repeat}"),
-        _ => format!("{head}{said} ({seconds:.1} s)"),
-    }
-}
+/// So many names are told of those that may have been meant.
+const N_NEAR: usize = 5;
 
-fn ids(checks: &[Check]) -> String {
-    format!("there are: {}", checks.iter().map(|check| check.id).collect::<Vec<_>>().join(", "))
-}
-
-/// The file of a plugin: a path, or a name of one that there is; absolute, because a bare name would be searched for.
-fn file(plugin: &str, common: &Common) -> anyhow::Result<PathBuf> {
-    let path = Path::new(plugin);
-    if path.is_file() {
-        return Ok(std::path::absolute(file_of(path))?);
-    }
-    let registry = super::options(common).registry();
-    let info = help::named(&registry, plugin)?;
-    if let Trust::No(why) = &info.trust {
-        anyhow::bail!("{} is not trusted: {why}", info.library.display());
-    }
-    Ok(std::path::absolute(&info.library)?)
+/// The checks whose names are nearest to a word.
+fn near(word: &str, checks: &[Check]) -> String {
+    let mut ids: Vec<&str> = checks.iter().map(|check| check.id).collect();
+    ids.sort_by_key(|id| (!id.contains(word), strsim::damerau_levenshtein(word, id)));
+    ids.truncate(N_NEAR);
+    format!("the nearest of {} are: {}", checks.len(), ids.join(", "))
 }
 
 /// A line on standard output.

@@ -10,12 +10,12 @@ use clap::CommandFactory as _;
 use honami_workbench::check::Ledger;
 use honami_workbench::doctor;
 use honami_workbench::plugins::{
-    Host, Hosting, Param, PluginInfo, Prospect, Registry, SearchPath, Trust, TrustBook,
+    self, Host, Hosting, Param, Part, PluginInfo, Prospect, Registry, SearchPath, Trust, TrustBook,
 };
 use serde_json::json;
 
 use super::args::{Cli, Common, Plugin};
-use super::{Answer, Outcome, begin, check, report};
+use super::{Answer, Outcome, Usage, begin, check, report};
 use crate::app::config::Config;
 
 /// The shell script that completes honami's words.
@@ -70,16 +70,15 @@ pub(super) fn plugin(command: &Plugin, common: &Common) -> anyhow::Result<Outcom
         Plugin::Check(args) => return check::check(args, common).map(Outcome::Exit),
         Plugin::List => Ok(list(&registry, host)),
         Plugin::Info { name } => info(named(&registry, name)?, host),
-        Plugin::New { name, kind, lang, command } => begin::plugin(name, *kind, *lang, command),
-        Plugin::Allow { plugin } => allow(&file(&registry, plugin)?),
-        Plugin::Deny { plugin } => {
-            let library = file(&registry, plugin)?;
-            TrustBook::of_user().deny(&library)?;
-            let text = format!("{} is never loaded, until you allow it", library.display());
-            Ok(Answer { json: json!({ "denied": library }), text, done: true })
+        Plugin::New { name, kind, lang, command } => {
+            let own = format!("org.me.{name}");
+            let is_other = |plugin: &&PluginInfo| plugin.short_name == *name && plugin.id != own;
+            begin::plugin(name, *kind, *lang, command, registry.plugins().iter().find(is_other))
         }
+        Plugin::Allow { plugin } => allow(&file(plugin, common)?, common),
+        Plugin::Deny { plugin } => deny(&file(plugin, common)?),
         Plugin::Retry { name } => {
-            let library = file(&registry, name)?;
+            let library = file(name, common)?;
             let again = SearchPath { named: vec![library], ..SearchPath::default() };
             let again = Registry::scan_path(&again);
             let plugin = again.plugins().first().with_context(|| format!("{name} is no plugin"))?;
@@ -92,55 +91,113 @@ pub(super) fn plugin(command: &Plugin, common: &Common) -> anyhow::Result<Outcom
     answer.map(Outcome::Answer)
 }
 
-/// The file of a plugin: a path, or a name of one that there is.
-fn file(registry: &Registry, plugin: &str) -> anyhow::Result<PathBuf> {
+/// The file of a plugin: a path, or a name of one that there is; absolute, because a bare name would be searched for.
+pub(super) fn file(plugin: &str, common: &Common) -> anyhow::Result<PathBuf> {
     let path = Path::new(plugin);
     if path.is_file() {
-        return Ok(honami_workbench::plugins::file_of(path));
+        return Ok(std::path::absolute(plugins::file_of(path))?);
     }
-    Ok(named(registry, plugin)?.library.clone())
+    let registry = super::options(common).registry();
+    match named(&registry, plugin) {
+        Ok(info) => Ok(std::path::absolute(&info.library)?),
+        Err(error) => {
+            let places = SearchPath::of_process(&common.plugins).with_dev(&common.dev).places();
+            let places: Vec<String> = places.iter().map(|place| place.display().to_string()).collect();
+            let file = std::path::absolute(path)?;
+            let why =
+                format!("there is no file {}, and {error}; looked in {}", file.display(), places.join(", "));
+            Err(Usage(why).into())
+        }
+    }
+}
+
+/// The plugins in a file, as one says which they are.
+fn plugins_in(library: &Path) -> Registry {
+    Registry::scan_path(&SearchPath { named: vec![library.to_owned()], ..SearchPath::default() })
+}
+
+fn words(registry: &Registry) -> Vec<String> {
+    registry.plugins().iter().map(|plugin| format!("{} ({})", plugin.id, plugin.kind)).collect()
+}
+
+/// Denies a library, also one that came with honami.
+fn deny(library: &Path) -> anyhow::Result<Answer> {
+    TrustBook::of_user().deny(library)?;
+    let names = words(&plugins_in(library));
+    let text = format!(
+        "{} is never loaded, until you allow it\n  plugins  {}",
+        library.display(),
+        if names.is_empty() { "none can be read".to_owned() } else { names.join(", ") }
+    );
+    Ok(Answer { json: json!({ "denied": library, "plugins": names }), text, done: true })
 }
 
 /// Allows a library, and says what was allowed.
-fn allow(library: &Path) -> anyhow::Result<Answer> {
-    let needed = honami_workbench::plugins::needed(library)?;
-    let registry =
-        Registry::scan_path(&SearchPath { named: vec![library.to_owned()], ..SearchPath::default() });
+fn allow(library: &Path, common: &Common) -> anyhow::Result<Answer> {
+    let needed = plugins::needed(library)?;
+    let registry = plugins_in(library);
     if let Some(problem) = registry.problems().first() {
         anyhow::bail!("{problem}");
     }
     let sha256 = TrustBook::of_user().allow(library)?;
-    let meta = fs::metadata(library)?;
-    let names: Vec<String> =
-        registry.plugins().iter().map(|plugin| format!("{} ({})", plugin.id, plugin.kind)).collect();
+    let parts = plugins::parts_of(library)?;
+    let (names, owner) = (words(&registry), fs::metadata(library)?.uid());
+    let file = |part: &Part| {
+        let name = part.path.file_name().unwrap_or_default().to_string_lossy();
+        format!("  file     {name}, {} bytes, of user {owner}, sha256 {}\n", part.n_bytes, part.sha256)
+    };
     let text = format!(
-        "allowed as it is now: {}\n  plugins  {}\n  sha256   {sha256}\n  size     {} bytes, of user {}\n  needs    {}\n\
-         {}It works in a process of its own. When its file changes it asks again.",
+        "allowed as it is now: {}\n  plugins  {}\n{}  sha256   {sha256}\n  needs    {}\n{}{}",
         library.display(),
         names.join(", "),
-        meta.len(),
-        meta.uid(),
+        parts.iter().map(file).collect::<String>(),
         if needed.is_empty() { "no libraries".to_owned() } else { needed.join(", ") },
         registry.plugins().first().map_or_else(String::new, may),
+        where_it_works(library, common),
     );
-    let json = json!({ "allowed": library, "sha256": sha256, "plugins": names, "needs": needed });
+    let files: Vec<_> = parts
+        .iter()
+        .map(|part| json!({ "path": part.path, "bytes": part.n_bytes, "sha256": part.sha256 }))
+        .collect();
+    let json =
+        json!({ "allowed": library, "sha256": sha256, "plugins": names, "needs": needed, "files": files });
     Ok(Answer { json, text, done: true })
+}
+
+/// Where what was just allowed comes to work.
+fn where_it_works(library: &Path, common: &Common) -> &'static str {
+    let registry = super::options(common).registry();
+    let is_it = |plugin: &&PluginInfo| plugin.library.canonicalize().ok() == library.canonicalize().ok();
+    match registry.plugins().iter().find(is_it).map(|plugin| &plugin.trust) {
+        Some(Trust::Shipped) => "It came with honami, and is loaded again.",
+        _ => "It works in a process of its own. When its files change it asks again.",
+    }
 }
 
 /// The plugin of that name, whatever its kind.
 pub(super) fn named<'r>(registry: &'r Registry, name: &str) -> anyhow::Result<&'r PluginInfo> {
-    let is_it = |plugin: &&PluginInfo| plugin.id == name || plugin.short_name == name;
-    let known =
-        || registry.plugins().iter().map(|plugin| plugin.short_name.as_str()).collect::<Vec<_>>().join(", ");
-    registry.plugins().iter().find(is_it).with_context(|| {
-        // What was named and could not be read is why it is not there.
-        let problems: String = registry.problems().iter().map(|problem| format!("; {problem}")).collect();
-        format!("there is no plugin {name:?}; there are: {}{problems}", known())
-    })
+    if let Some(plugin) = registry.plugins().iter().find(|plugin| plugin.id == name) {
+        return Ok(plugin);
+    }
+    let alike: Vec<_> = registry.plugins().iter().filter(|plugin| plugin.short_name == name).collect();
+    let list = |plugins: &mut dyn Iterator<Item = &str>| plugins.collect::<Vec<_>>().join(", ");
+    match alike.as_slice() {
+        [plugin] => Ok(plugin),
+        [] => {
+            let known = list(&mut registry.plugins().iter().map(|plugin| plugin.short_name.as_str()));
+            // What was named and could not be read is why it is not there.
+            let problems: String = registry.problems().iter().map(|problem| format!("; {problem}")).collect();
+            Err(Usage(format!("there is no plugin {name:?}; there are: {known}{problems}")).into())
+        }
+        several => {
+            let ids = list(&mut several.iter().map(|plugin| plugin.id.as_str()));
+            Err(Usage(format!("{name:?} may be any of {ids}: say the full id")).into())
+        }
+    }
 }
 
 /// The plugins there are, as text.
-pub(super) fn plugins(common: &Common) -> String {
+pub(super) fn listed(common: &Common) -> String {
     let options = super::options(common);
     list(&options.registry(), &options.host).text
 }

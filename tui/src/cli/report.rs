@@ -127,7 +127,7 @@ pub(super) fn complain(error: &anyhow::Error) {
 }
 
 /// The error and its causes; a cause that the line tells already is not told twice.
-fn chain(error: &anyhow::Error) -> String {
+pub(super) fn chain(error: &anyhow::Error) -> String {
     error.chain().map(ToString::to_string).fold(String::new(), |line, cause| match line.as_str() {
         "" => cause,
         told if told.contains(&cause) => line,

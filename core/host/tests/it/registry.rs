@@ -96,6 +96,32 @@ fn what_a_person_allowed_is_loaded_until_it_changes() {
 }
 
 #[test]
+fn what_came_with_honami_is_not_loaded_when_a_person_has_denied_it() {
+    let beside = folder("denied", "b.so");
+    let library = beside.join("b.so");
+    fs::write(beside.join("honami"), "").unwrap();
+    let book = TrustBook::in_folder(scratch().join("trust-of-shipped"));
+    let executable = Some(beside.join("honami"));
+    let path = SearchPath { executable, book: book.clone(), ..SearchPath::default() };
+    assert_eq!(trust(&Registry::scan_path(&path))[0].1, &Trust::Shipped);
+    book.deny(&library).unwrap();
+    let denied = Registry::scan_path(&path);
+    let refused = start(denied.find(Kind::Tracker, "drift").unwrap(), &[]).expect_err("denied").to_string();
+    assert!(refused.contains(&format!("`honami plugin allow {}`", library.display())), "{refused}");
+    book.allow(&library).unwrap();
+    assert_eq!(trust(&Registry::scan_path(&path))[0].1, &Trust::Shipped);
+}
+
+#[test]
+fn an_installed_library_may_have_a_folder_of_its_own_and_what_was_built_beside_another_may_not() {
+    let inner = folder("with-folders/mine", "e.so");
+    let outer = inner.parent().unwrap().to_owned();
+    let found = |path: SearchPath| Registry::scan_path(&path).plugins().len();
+    assert!(found(SearchPath { installed: vec![outer.clone()], ..SearchPath::default() }) > 0);
+    assert_eq!(found(SearchPath { named: vec![outer], ..SearchPath::default() }), 0);
+}
+
+#[test]
 fn what_is_built_in_ones_own_tree_is_found_and_trusted_unless_others_may_write_it() {
     let tree = folder("tree", "other.txt");
     let built = tree.join("target/debug");
