@@ -41,14 +41,7 @@ pub(super) fn plugin(
         }
     };
     let begun = begun.map_err(anyhow::Error::msg)?;
-    let is_there = fs::symlink_metadata(name).is_ok();
-    anyhow::ensure!(!is_there, "there is {name} already: choose another name, or take it away first");
-    fs::create_dir(name).with_context(|| format!("cannot make the folder {name}"))?;
-    for (file, text) in &begun.files {
-        let path = Path::new(name).join(file);
-        path.parent().map_or(Ok(()), fs::create_dir_all)?;
-        fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))?;
-    }
+    write(name, &begun.files)?;
     let plugin = &begun.plugin;
     let called = other.map_or_else(|| name.to_owned(), |_| format!("org.me.{name}"));
     let tried = match kind {
@@ -92,4 +85,17 @@ pub(super) fn plugin(
         text,
         done: true,
     })
+}
+
+/// Makes the folder with these files, each a path in it and a text.
+fn write(folder: &str, files: &[(String, String)]) -> anyhow::Result<()> {
+    let is_there = fs::symlink_metadata(folder).is_ok();
+    anyhow::ensure!(!is_there, "there is {folder} already: choose another name, or take it away first");
+    fs::create_dir(folder).with_context(|| format!("cannot make the folder {folder}"))?;
+    for (file, text) in files {
+        let path = Path::new(folder).join(file);
+        path.parent().map_or(Ok(()), fs::create_dir_all)?;
+        fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))?;
+    }
+    Ok(())
 }

@@ -94,7 +94,7 @@ fn one(
         Usage(format!("wanted a check and a seed, such as loading.starts:1, got {which}; {near}"))
     };
     let (id, seed) = which.rsplit_once(':').ok_or_else(wanted)?;
-    let seed: u64 = seed.parse().map_err(|_| wanted())?;
+    let seed: u64 = seed.parse().map_err(|_no_number| wanted())?;
     let chosen: Vec<Check> = all.iter().filter(|check| check.id == id).copied().collect();
     want(!chosen.is_empty(), || format!("there is no check {id}; {}", near(id, &all)))?;
     // All that must be read is read before a check shuts this process in.
