@@ -1,9 +1,13 @@
 //! Dense motion of a generated clip, against how its leaves really move.
 
-use honami_tests::{Bench, program};
+use std::process::Command;
+use std::sync::Arc;
+
+use honami_tests::{Bench, has_compiler, program, root};
 use honami_workbench::WorkbenchError;
 use honami_workbench::compare::read_truth;
 use honami_workbench::dense;
+use honami_workbench::plugins::{Host, Hosting, Registry, SearchPath};
 use honami_workbench::session::{Session, SessionOptions};
 
 const N_FRAMES: u32 = 12;
@@ -52,4 +56,30 @@ fn dense_motion_is_that_of_the_leaves() {
     std::fs::write(bench.path("still.y4m"), picture).unwrap();
     let still = Session::create(&bench.path("s.honami"), &bench.path("still.y4m"), None, &options).unwrap();
     assert!(matches!(dense::prepare(&still, None), Err(WorkbenchError::OneFrame)));
+}
+
+#[test]
+fn a_death_costs_the_dense_motion_of_its_frame_and_no_other() {
+    if !has_compiler("c++") {
+        return;
+    }
+    let bench = Bench::new();
+    bench.synth("clip.y4m", 4, "--leaves 20");
+    let library = bench.path("dies.so");
+    let mut compiler = Command::new("c++");
+    compiler.args(["-std=c++17", "-O1", "-shared", "-fPIC", "-fvisibility=hidden", "-I"]);
+    compiler.args([root().join("core/abi/include"), "-o".into(), library.clone()]);
+    assert!(compiler.arg(root().join("tests/it/dense/dies.cpp")).status().unwrap().success());
+    let host = Host::with_store(bench.path("store")).hosting(Hosting::Isolated);
+    let options = SessionOptions { host, ..SessionOptions::default() };
+    let mut session =
+        Session::create(&bench.path("p.honami"), &bench.path("clip.y4m"), None, &options).unwrap();
+    let named = SearchPath { named: vec![library], ..SearchPath::default() };
+    session.registry = Arc::new(Registry::scan_path(&named));
+    let mut meter = dense::prepare(&session, None).unwrap();
+    assert_eq!([1, 2, 1, 2, 3].map(|frame| meter.measure(frame).is_ok()), [true, false, true, false, true]);
+    // The third death is one too many.
+    assert!(meter.measure(2).is_err());
+    let held = meter.measure(1).unwrap_err().to_string();
+    assert!(held.contains("has failed three times"), "{held}");
 }

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
 
-use honami_tests::{Bench, program, root, skipped};
+use honami_tests::{Bench, has_compiler, program, root, skipped};
 use honami_workbench::plugins::{CallContext, Host, Hosting, Kind, Registry, Values};
 
 /// A tracker `bad.so` that leaves its points where they are, with one fault; `None` without a C compiler.
@@ -14,11 +14,7 @@ fn bad(bench: &Bench, fault: &str) -> Option<PathBuf> {
 
 /// Whether there is a C compiler; says so if not.
 pub(crate) fn has_cc() -> bool {
-    let there = Command::new("cc").arg("--version").output().is_ok_and(|output| output.status.success());
-    if !there {
-        skipped("a C compiler (cc)");
-    }
-    there
+    has_compiler("cc")
 }
 
 /// Whether this kernel keeps files away from a process that has given them up; says so if not.

@@ -3,7 +3,7 @@
 use std::fs;
 use std::process::{Command, Output};
 
-use honami_tests::{Bench, Row, skipped};
+use honami_tests::{Bench, Row, has_compiler, skipped};
 use serde_json::Value;
 
 use crate::schema::assert_satisfied;
@@ -49,7 +49,11 @@ fn runs(bench: &Bench, words: &[&str]) -> Option<Output> {
 
 /// Begins a plugin and builds it; its file, or `None` where this machine cannot.
 pub(crate) fn begun(bench: &Bench, line: &str, needed: &[&str]) -> Option<String> {
-    if !runs(bench, needed).is_some_and(|output| output.status.success()) {
+    let is_there = match needed {
+        [compiler, "--version"] => has_compiler(compiler),
+        _ => runs(bench, needed).is_some_and(|output| output.status.success()),
+    };
+    if !is_there {
         skipped(&needed.join(" "));
         return None;
     }

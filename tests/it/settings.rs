@@ -18,6 +18,9 @@ fn bench(fault: &str) -> Option<Bench> {
     })
 }
 
+/// The tracker works in honami itself.
+const INSIDE: &str = "[plugins.hosting]\n\"org.honami.bad\" = \"in-process\"";
+
 /// Writes the settings, and runs a command line with these variables in the environment.
 fn settled(bench: &Bench, settings: &str, line: &str, variables: &[(&str, &str)]) -> Ran {
     let folder = bench.path("XDG_CONFIG_HOME/honami");
@@ -36,12 +39,16 @@ fn a_plugin_gets_no_more_memory_than_was_settled() {
         ("[plugins]\nmemory = \"512 MiB\"", &[][..]),
         // The environment stands over it.
         ("[plugins]\nmemory = \"64 GiB\"", &[limit]),
+        // What is misspelt does not.
+        ("[plugins]\nmemory = \"512 MiB\"", &[("HONAMI_PLUGIN_MEMORY", "8 GB")]),
     ] {
         let ran = settled(&bench, settings, TRACK, variables);
         assert!(
             ran.code == Some(1) && ran.stderr.contains("no memory for a gigabyte"),
             "{settings}: {ran:?}"
         );
+        let is_said = ran.stderr.contains("67108864 bytes or more are wanted, got \"8 GB\": as config.toml");
+        assert_eq!(is_said, variables != [limit] && !variables.is_empty(), "{variables:?}: {ran:?}");
     }
 }
 
@@ -49,18 +56,26 @@ fn a_plugin_gets_no_more_memory_than_was_settled() {
 fn plugins_work_where_it_was_settled() {
     let Some(bench) = bench("NONE") else { return };
     let (bad, klt) = (TRACK, "track p.honami --with klt --points points.csv");
-    for (settings, line, variables, here) in [
-        ("", bad, &[][..], false),
-        ("[plugins.hosting]\nbad = \"in-process\"", bad, &[], true),
-        ("[plugins.hosting]\nbad = \"in-process\"", bad, &[("HONAMI_HOSTING", "isolated")], false),
-        ("[plugins.hosting]\nbad = \"in-process\"", klt, &[], true),
-        ("[plugins.hosting]\nklt = \"isolated\"", klt, &[], false),
+    let short = "[plugins.hosting]\nbad = \"in-process\"";
+    // A short name is nobody's own: it gives full trust to nothing that did not come with honami.
+    let told = "plugins.hosting.bad: its whole id is wanted, \"org.honami.bad\": isolated\n";
+    for (settings, line, variables, here, said) in [
+        ("", bad, &[][..], false, ""),
+        (INSIDE, bad, &[], true, ""),
+        (INSIDE, bad, &[("HONAMI_HOSTING", "isolated")], false, ""),
+        (INSIDE, klt, &[], true, ""),
+        (short, bad, &[], false, told),
+        (short, bad, &[("HONAMI_HOSTING", "in-process")], true, ""),
+        ("[plugins.hosting]\nklt = \"in-process\"", klt, &[], true, ""),
+        ("[plugins.hosting]\nklt = \"isolated\"", klt, &[], false, ""),
     ] {
         let ran = settled(&bench, settings, line, variables);
-        assert_eq!((ran.code, ran.stderr.as_str()), (Some(0), ""), "{settings}: {ran:?}");
+        assert_eq!((ran.code, ran.stderr.as_str()), (Some(0), said), "{settings}: {ran:?}");
         assert_eq!(was_here(&bench), here, "{settings} {line} {variables:?}");
     }
     assert!(bench.text("log p.honami").contains("  in process"));
+    let doctor = settled(&bench, short, "doctor --plugin bad.so", &[]).stdout;
+    assert!(doctor.contains(told.trim()), "{doctor}");
 }
 
 /// Whether the newest run of the project was in honami's own process.
@@ -73,8 +88,8 @@ fn was_here(bench: &Bench) -> bool {
 #[test]
 fn what_honami_died_with_works_apart_from_then_on_until_it_is_rebuilt_or_let_in_again() {
     let Some(bench) = bench("SEGFAULT") else { return };
-    let settings = "[plugins.hosting]\nbad = \"in-process\"";
-    let said = "bad works in a process of its own: honami died with it inside; `honami plugin retry /";
+    let settings = INSIDE;
+    let said = "bad works in a process of its own: honami ended while it was inside; `honami plugin retry --in-process /";
     // A run that nobody has ended keeps the numbers of its tracks: each begins with a project that has none.
     let track = |with: &str| {
         fs::copy(bench.path("p.honami"), bench.path("empty.honami")).unwrap();
@@ -85,18 +100,26 @@ fn what_honami_died_with_works_apart_from_then_on_until_it_is_rebuilt_or_let_in_
     };
     let bad = "--plugin bad.so --with bad";
     assert_eq!(track(bad), (None, false), "it dies");
+    // Who starts no plugin, or hears nothing but JSON, leaves it to who does.
+    for line in ["plugin list --json --plugin bad.so", "plugin list", "doctor --json"] {
+        let ran = settled(&bench, settings, line, &[]);
+        assert!(!format!("{}{}", ran.stdout, ran.stderr).contains(said), "{line}: {ran:?}");
+    }
     // It is told once, and costs a frame instead of honami.
     assert_eq!([bad; 2].map(track), [(Some(false), true), (Some(false), false)]);
     let list = settled(&bench, settings, "plugin list --plugin bad.so", &[]).stdout;
-    assert!(
-        list.contains("honami has died with it inside, `honami plugin retry bad.so` lets it in"),
-        "{list}"
-    );
+    let inside = "honami has ended while it was inside, `honami plugin retry --in-process bad.so` lets it in";
+    assert!(list.contains(inside), "{list}");
     // What did come with honami leaves no trail, nor does what ends well.
     assert_eq!(track("--with klt"), (Some(true), false));
-    let retried = settled(&bench, settings, "plugin retry bad.so", &[]);
-    assert_eq!(retried.stdout.trim(), "bad may start again");
-    assert_eq!(track(bad), (None, false), "it dies");
+    // To let what is held go is not to let it in.
+    for (line, said, then) in [
+        ("plugin retry bad.so", "bad was not held: nothing to do", Some(false)),
+        ("plugin retry --in-process bad.so", "bad may start again, also in honami's own process", None),
+    ] {
+        assert_eq!(settled(&bench, settings, line, &[]).stdout.trim(), said);
+        assert_eq!(track(bad), (then, false), "{line}");
+    }
     // Another build is another plugin, though what became of the one before is told.
     compile(&bench, "bad.so", &["-DFAULT=NONE"]);
     assert_eq!([bad; 2].map(track), [(Some(true), true), (Some(true), false)]);
@@ -108,7 +131,7 @@ fn what_honami_died_with_works_apart_from_then_on_until_it_is_rebuilt_or_let_in_
 #[test]
 fn a_misspelt_word_of_the_environment_is_said_once_and_isolates() {
     let Some(bench) = bench("NONE") else { return };
-    let settings = "[plugins.hosting]\nbad = \"in-process\"";
+    let settings = INSIDE;
     for line in [TRACK, "plugin list --plugin bad.so", "doctor"] {
         let ran = settled(&bench, settings, line, &[("HONAMI_HOSTING", "bogus")]);
         let said = format!("{}{}", ran.stdout, ran.stderr);

@@ -67,6 +67,19 @@ pub fn skipped(wanted: &str) {
     eprintln!("skipped: needs {wanted}");
 }
 
+/// Whether there is a compiler of this name; says what is skipped if not, which `HONAMI_SKIP=never` forbids.
+#[must_use]
+#[track_caller]
+pub fn has_compiler(name: &str) -> bool {
+    let is_there = Command::new(name).arg("--version").output().is_ok_and(|output| output.status.success());
+    let never = std::env::var_os("HONAMI_SKIP").is_some_and(|value| value == "never");
+    assert!(is_there || !never, "there is no compiler {name}, and HONAMI_SKIP=never forbids to do without");
+    if !is_there {
+        skipped(&format!("a compiler ({name})"));
+    }
+    is_there
+}
+
 /// What a run of the program printed and how it ended.
 #[derive(Debug)]
 pub struct Ran {

@@ -6,6 +6,7 @@ mod bench;
 mod check;
 mod compare;
 mod edit;
+mod ends;
 mod exchange;
 mod groups;
 mod help;
@@ -178,6 +179,9 @@ fn broken_pipe(error: &anyhow::Error) -> bool {
 }
 
 fn run(command: Command, common: &Common) -> anyhow::Result<Outcome> {
+    if let Err(error) = ends::heed() {
+        report::say(&format!("signals cannot be caught here, Ctrl-C ends the program at once: {error}"));
+    }
     let answer = match command {
         Command::New(args) => project::new(&args, common)?,
         Command::Relink(args) => project::relink(&args)?,
@@ -228,6 +232,7 @@ fn open(path: Option<&Path>, log: Option<PathBuf>, common: &Common) -> anyhow::R
 
 /// Shows a session in the terminal, or the start screen, until it ends; returns the status that says how.
 fn show(plan: Option<Plan>, common: &Common) -> anyhow::Result<ExitCode> {
+    ends::leave();
     let end = crate::app::run(plan, &offers(common))?;
     Ok(end.map_or(ExitCode::SUCCESS, |end| ExitCode::from(end.status())))
 }
@@ -258,11 +263,18 @@ fn options_of(config: &Config, common: &Common) -> SessionOptions {
     SessionOptions { plugin_paths, dev, read_only: false, host: config.plugins.host() }
 }
 
-/// For a command that starts plugins: what is wrong with what was settled is said, as the terminal UI says it.
+/// For a command that starts plugins: what became of them, and what is wrong with what was settled, is said, as the
+/// terminal UI says it.
 fn told_options(common: &Common) -> SessionOptions {
-    let config = Config::load().beginning();
-    config.complaint().iter().for_each(|complaint| report::say(complaint));
-    options_of(&config, common)
+    told(&Config::load().beginning(), common)
+}
+
+/// As they are settled; what is wrong with that is said.
+fn told(config: &Config, common: &Common) -> SessionOptions {
+    let options = options_of(config, common);
+    let too_short = config.plugins.too_short(|| options.registry());
+    config.complaints().iter().chain(&too_short).for_each(|complaint| report::say(complaint));
+    options
 }
 
 /// Opens a project for a command that writes to it.

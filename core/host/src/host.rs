@@ -9,7 +9,7 @@ use crate::error::HostError;
 use crate::instance::{Handle, Instance, Request};
 use crate::isolated::Limits;
 use crate::manifest::{Kind, ParamKind};
-use crate::quarantine::{self, Quarantine, Tally};
+use crate::quarantine::{self, Quarantine, Tally, Trail};
 use crate::registry::PluginInfo;
 use crate::reply::Reply;
 use crate::simulator::{Sent, Simulator};
@@ -82,12 +82,13 @@ impl Default for Host {
 
 impl Host {
     /// With the store of this user, `$XDG_CACHE_HOME/honami/store`; `$HONAMI_HOSTING` may say where all plugins work,
-    /// `in-process` or `isolated`.
+    /// `in-process` or `isolated`, and `$HONAMI_PLUGIN_MEMORY` how many bytes they may take in processes of their own.
     #[must_use]
     pub fn new() -> Self {
         // What is misspelt is safe.
         let hosting = Hosting::of_environment().map(|said| said.unwrap_or(Hosting::Isolated));
-        Self { hosting, ..Self::with_store(store::folder_of_user()) }
+        let host = Self { hosting, ..Self::with_store(store::folder_of_user()) };
+        host.settled(Limits::default(), BTreeMap::new())
     }
 
     /// With a store of the caller's; the folder is made when it is first needed.
@@ -110,11 +111,10 @@ impl Host {
     }
 
     /// As a user has settled it: what plugins may take, and where those work that are named by id or short name. What the
-    /// environment says stands over it.
+    /// environment says stands over it; where that is no number of bytes, what was settled holds.
     #[must_use]
     pub fn settled(self, limits: Limits, settled: BTreeMap<String, Hosting>) -> Self {
-        // A process takes it from the environment by itself.
-        let memory_bytes = limits.memory_bytes.filter(|_| std::env::var_os(isolated::MEMORY).is_none());
+        let memory_bytes = Limits::memory_of_environment().and_then(Result::ok).or(limits.memory_bytes);
         Self { settled, limits: Limits { memory_bytes, ..limits }, ..self }
     }
 
@@ -125,13 +125,14 @@ impl Host {
     }
 
     /// What did not come with honami leaves a trail while it works in this process, until [`ended_well`](crate::ended_well);
-    /// and where a process has died with it, it works in one of its own, until its file changes or [`retry`](Self::retry).
+    /// and where a process has ended while it was inside, it works in one of its own, until its file changes or
+    /// [`let_in`](Self::let_in).
     #[must_use]
     pub fn leaving_trails(self) -> Self {
         Self { leaves_trails: true, ..self }
     }
 
-    /// Looks for trails of processes that have died; the short names of the plugins that were in them, and their
+    /// Looks for trails of processes that have ended; the short names of the plugins that were in them, and their
     /// files. Each is told of once.
     #[must_use]
     pub fn follow_trails(&self) -> Vec<(String, PathBuf)> {
@@ -209,20 +210,25 @@ impl Host {
         self.store.with_file_name(name)
     }
 
-    /// Lets a plugin start again that has failed too often, and in this process that has died with it; whether it was
-    /// held or kept out.
+    /// Lets a plugin start again that has failed too often, where it works now; whether it was held.
     ///
     /// # Errors
     /// When its file cannot be read, or what is known of it cannot be removed.
     pub fn retry(&self, info: &PluginInfo) -> Result<bool, HostError> {
         let (quarantine, sha256) = (Quarantine::beside(&self.store), info.sha256()?);
-        let was_held = quarantine.why(&sha256).is_some() || quarantine.is_kept_out(&sha256);
-        let file_error = |error: std::io::Error| HostError::File {
-            path: quarantine.0.clone(),
-            why: format!("cannot be changed: {error}"),
-        };
-        quarantine.release(&sha256).map_err(file_error)?;
+        let was_held = quarantine.why(&sha256).is_some();
+        quarantine.release(&sha256).map_err(|error| quarantine.unchanged(&error))?;
         Ok(was_held)
+    }
+
+    /// Lets a plugin work in this process again, where that is wished, though one has ended while it was inside; whether
+    /// it was kept out. Full trust once more: for a person to say.
+    ///
+    /// # Errors
+    /// As [`retry`](Self::retry).
+    pub fn let_in(&self, info: &PluginInfo) -> Result<bool, HostError> {
+        let (quarantine, sha256) = (Quarantine::beside(&self.store), info.sha256()?);
+        quarantine.let_in(&sha256).map_err(|error| quarantine.unchanged(&error))
     }
 
     fn start(
@@ -241,7 +247,7 @@ impl Host {
             let what = format!("takes only pixels of format {:?}, this honami has gray8", info.caps.pixels);
             return Err(HostError::Usage { plugin: info.id.clone(), what });
         }
-        let (instance, plugin_sha256, sandbox) = self.instance(info, &complete, cx)?;
+        let Made { instance, sha256: plugin_sha256, sandbox, trail } = self.instance(info, &complete, cx)?;
         let origin = Origin {
             plugin_id: info.id.clone(),
             plugin_version: info.version.clone(),
@@ -250,7 +256,7 @@ impl Host {
             sandbox,
         };
         let tally = self.tally(&origin.plugin_sha256);
-        let mut handle = Handle::new(info.id.clone(), instance, tally);
+        let mut handle = Handle::new(info.id.clone(), instance, tally, trail);
         let sent: Vec<_> = checked.iter().map(|(id, value, kind)| (id.as_str(), value, *kind)).collect();
         handle.ask(&Request::SetParams(&sent), cx, &mut Reply::default())?;
         Ok((handle, origin))
@@ -260,19 +266,20 @@ impl Host {
         &self.store
     }
 
-    /// Makes an instance where it is to work; with the hash of its library and how far it is kept apart.
+    /// Makes an instance where it is to work.
     fn instance(
         &self,
         info: &PluginInfo,
         values: &Values,
         cx: &CallContext<'_>,
-    ) -> Result<(Box<dyn Instance>, String, String), HostError> {
+    ) -> Result<Made, HostError> {
         match self.hosting_of(info) {
             Hosting::InProcess => {
-                self.leave_trail(info)?;
+                let trail = self.leave_trail(info)?;
                 let library = in_process::load(info, &self.store)?;
                 let sha256 = library.sha256.clone();
-                Ok((in_process::create(info, library, cx)?, sha256, "in process".to_owned()))
+                let instance = in_process::create(info, library, cx)?;
+                Ok(Made { instance, sha256, sandbox: "in process".to_owned(), trail })
             }
             Hosting::Isolated => {
                 let copy = if info.exec.is_empty() {
@@ -290,7 +297,7 @@ impl Host {
                     tally.ended(how, last_words);
                 }
                 let (instance, sandbox) = made?;
-                Ok((instance, copy.sha256, sandbox))
+                Ok(Made { instance, sha256: copy.sha256, sandbox, trail: None })
             }
         }
     }
@@ -300,6 +307,16 @@ impl Host {
         let tally = || Tally::new(Quarantine::beside(&self.store), sha256.to_owned());
         self.has_quarantine.then(tally)
     }
+}
+
+/// An instance where it is to work.
+struct Made {
+    instance: Box<dyn Instance>,
+    /// Of its library.
+    sha256: String,
+    /// How far it is kept apart.
+    sandbox: String,
+    trail: Option<Trail>,
 }
 
 /// The files that a plugin was given by name, which it is to open.

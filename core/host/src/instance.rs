@@ -6,7 +6,7 @@ use crate::context::CallContext;
 use crate::draft::Node;
 use crate::error::{Code, HostError};
 use crate::isolated::Ended;
-use crate::quarantine::Tally;
+use crate::quarantine::{Tally, Trail};
 use crate::reply::{self, Reply, Schema};
 use crate::simulator::{PlantInstance, Steps};
 use crate::types::{DetectRequest, FrameView, Point, StreamInfo, Tracks};
@@ -101,6 +101,8 @@ pub(crate) struct Handle {
     failed: bool,
     /// Where its deaths are counted, if they are.
     pub(crate) tally: Option<Tally>,
+    /// What it leaves in this process: it goes after the instance.
+    _trail: Option<Trail>,
 }
 
 /// How a call ended that did not fail.
@@ -112,8 +114,13 @@ pub(crate) enum Done {
 }
 
 impl Handle {
-    pub(crate) fn new(plugin: String, instance: Box<dyn Instance>, tally: Option<Tally>) -> Self {
-        Self { plugin, instance, failed: false, tally }
+    pub(crate) fn new(
+        plugin: String,
+        instance: Box<dyn Instance>,
+        tally: Option<Tally>,
+        trail: Option<Trail>,
+    ) -> Self {
+        Self { plugin, instance, failed: false, tally, _trail: trail }
     }
 
     pub(crate) fn ask(

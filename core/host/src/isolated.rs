@@ -52,6 +52,20 @@ pub struct Limits {
     pub memory_bytes: Option<u64>,
 }
 
+impl Limits {
+    /// With less memory than this, in bytes, a process does not come as far as its plugin.
+    pub const MEMORY_BYTES_MIN: u64 = 64 << 20;
+
+    /// What `$HONAMI_PLUGIN_MEMORY` says: the bytes that a plugin may take, or words that are no such number.
+    #[must_use]
+    pub fn memory_of_environment() -> Option<Result<u64, String>> {
+        let said = std::env::var_os(MEMORY)?;
+        let bytes = said.to_str().and_then(|text| text.parse().ok());
+        let bytes = bytes.filter(|bytes| *bytes >= Self::MEMORY_BYTES_MIN);
+        Some(bytes.ok_or_else(|| said.to_string_lossy().into_owned()))
+    }
+}
+
 impl Default for Limits {
     fn default() -> Self {
         let [end, start, stop] = [10, 60, 3].map(Duration::from_secs);
@@ -109,8 +123,7 @@ impl Isolated {
                 self.take(answer, schemas, reply);
             }
             Ok(Heard::End(how)) => {
-                let last_words = std::mem::take(&mut self.last_words);
-                (reply.ended, reply.last_words) = (Some(how), cut(last_words));
+                (reply.ended, reply.last_words) = (Some(how), self.take_last_words());
             }
             Ok(Heard::Refusal(_)) => reply.faults.push("its process refuses what it has begun".into()),
             Err(error) => {
@@ -196,6 +209,16 @@ impl Isolated {
         }
     }
 
+    /// As much of the last line as is kept with a death.
+    fn take_last_words(&mut self) -> String {
+        let mut line = std::mem::take(&mut self.last_words);
+        if let Some((end, _)) = line.char_indices().nth(LAST_WORDS_MAX) {
+            line.truncate(end);
+            line.push('…');
+        }
+        line
+    }
+
     /// Tells the log what was printed; whether there was something.
     fn overhear(&mut self, cx: &CallContext<'_>) -> bool {
         let mut has_heard = false;
@@ -205,15 +228,6 @@ impl Isolated {
         }
         has_heard
     }
-}
-
-/// As much of a line as is kept with a death.
-fn cut(mut line: String) -> String {
-    if let Some((end, _)) = line.char_indices().nth(LAST_WORDS_MAX) {
-        line.truncate(end);
-        line.push('…');
-    }
-    line
 }
 
 /// What a request led to.

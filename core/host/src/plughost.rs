@@ -39,8 +39,8 @@ pub(crate) const EXEC_AND_OTHERS: &str = "--exec-and-others";
 /// understands.
 pub fn serve(args: impl Iterator<Item = OsString>) -> io::Result<ExitCode> {
     sandbox::close_inherited();
-    let memory = std::env::var(MEMORY).ok();
-    sandbox::limit(memory.and_then(|bytes| bytes.parse().ok()));
+    let memory = std::env::var(MEMORY).ok().map(|bytes| bytes.parse()).transpose();
+    sandbox::limit(memory.map_err(|error| io::Error::other(format!("{MEMORY}: {error}")))?);
     let mut args = args.peekable();
     let mut command = Vec::new();
     let flag = args.next_if(|word| word == EXEC || word == EXEC_AND_OTHERS);

@@ -33,13 +33,20 @@ impl Host {
             (true, false) => Some("it is a program, which must be started"),
             (true, true) => Some("it starts other programs"),
         };
-        let (level, mut why) = plughost::foresee(programs);
-        if self.is_kept_out(info) {
-            let file = info.library.display();
-            let out =
-                format!("honami has died with it inside, `honami plugin retry {file}` lets it in again");
-            why = if why.is_empty() { out } else { format!("{out}; {why}") };
-        }
+        let (level, why) = plughost::foresee(programs);
+        let reasons: Vec<String> = self.against(info).into_iter().chain(Some(why)).collect();
+        let why = reasons.join("; ").trim_end_matches("; ").to_owned();
         Prospect { hosting, sandbox: level.word(), why, is_bare: false }
+    }
+
+    /// Why a plugin works in a process of its own against its user's wish.
+    fn against(&self, info: &PluginInfo) -> Option<String> {
+        let file = info.library.display();
+        if self.is_kept_out(info) {
+            let let_in = format!("`honami plugin retry --in-process {file}` lets it in again");
+            return Some(format!("honami has ended while it was inside, {let_in}"));
+        }
+        let wanted = || format!("to work in honami itself it is to be settled by its whole id, {}", info.id);
+        self.is_named_too_shortly(info).then(wanted)
     }
 }

@@ -1,10 +1,11 @@
 //! Libraries that keep failing are not started again until somebody says so.
 //!
-//! Failures are counted by the hash of the library, so that a rebuilt one begins anew. What has brought honami itself
-//! down with it (`trail.rs`) works in a process of its own from then on, as long.
+//! Failures are counted by the hash of the library, so that a rebuilt one begins anew. What was inside honami when that
+//! ended (`trail.rs`) works in a process of its own from then on, until somebody lets it in again.
 
 mod trail;
 
+pub(crate) use trail::Trail;
 pub use trail::ended_well;
 
 use crate::error::{HostError, after};
@@ -56,6 +57,14 @@ impl Tally {
     }
 }
 
+/// Removes a file, if it is there.
+fn remove(file: &Path) -> io::Result<()> {
+    match fs::remove_file(file) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
+        _ => Ok(()),
+    }
+}
+
 /// The folder of what is known of failures.
 #[derive(Clone, Debug)]
 pub(crate) struct Quarantine(pub(crate) PathBuf);
@@ -102,18 +111,18 @@ impl Quarantine {
         fs::read_to_string(self.held(sha256)).ok()
     }
 
-    /// Lets a library try again.
+    /// Lets a library try again, where it works now: what is kept out stays out.
     ///
     /// # Errors
     /// When what is known of it cannot be removed.
     pub(crate) fn release(&self, sha256: &str) -> io::Result<()> {
-        for file in [self.failures(sha256), self.held(sha256), self.kept_out(sha256)] {
-            match fs::remove_file(file) {
-                Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
-                _ => {}
-            }
-        }
-        Ok(())
+        remove(&self.failures(sha256))?;
+        remove(&self.held(sha256))
+    }
+
+    /// What is known of a library cannot be removed.
+    pub(crate) fn unchanged(&self, error: &io::Error) -> HostError {
+        HostError::File { path: self.0.clone(), why: format!("cannot be changed: {error}") }
     }
 
     /// Beside the store of libraries.

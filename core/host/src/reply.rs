@@ -202,8 +202,8 @@ impl Table {
         (self.reserved, self.committed) = (None, None);
     }
 
-    /// Makes room, zeroed unless the schema keeps it, for columns of known or unknown types, given with bytes a row; gives each column's start.
-    /// `None` when it would be too much.
+    /// Makes room, zeroed unless the schema keeps it, for columns of known or unknown types, given with bytes a row;
+    /// gives each column's start. `None` when it would be too much.
     pub(crate) fn reserve(
         &mut self,
         rows: usize,

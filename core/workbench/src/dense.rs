@@ -63,7 +63,10 @@ impl DenseMeter {
             Some(tracker) => tracker,
             none => none.insert(self.host.tracker(&self.plugin, &self.values, &cx)?.0),
         };
-        let field = tracker.field(&from, &to, threads(), &cx)?;
+        let field = tracker.field(&from, &to, threads(), &cx).inspect_err(|error| {
+            // Its process has ended: the next field is measured in another.
+            self.tracker.take_if(|_| error.end().is_some());
+        })?;
         // The times of two frames differ; backward in time both lengths turn their sign.
         let step_s = to.time_s - from.time_s;
         let velocity = |moved: [f32; 2]| moved.map(|px| (f64::from(px) / step_s) as f32);

@@ -7,7 +7,7 @@ mod plugins;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use honami_workbench::plugins::Hosting;
+use honami_workbench::plugins::{Hosting, Limits};
 
 use super::keymap::KeyMap;
 use super::state::State;
@@ -32,8 +32,8 @@ pub struct Config {
     pub plugins: Plugins,
     /// What is wrong with what was settled, one line each.
     pub wrong: Vec<String>,
-    /// What is wrong with what the environment says.
-    misspelt: Option<String>,
+    /// What is wrong with what the environment says, one line each.
+    misspelt: Vec<String>,
     /// What came of the end before, one line each.
     kept_out: Vec<String>,
     /// Whether theme and mouse were settled, so that no choice on screen outlasts the session.
@@ -64,7 +64,7 @@ impl Config {
                 config
             }
         };
-        config.misspelt = plugins::misspelt(Hosting::of_environment());
+        config.misspelt = plugins::misspelt(Hosting::of_environment(), Limits::memory_of_environment());
         config
     }
 
@@ -118,7 +118,7 @@ impl Config {
             mouse,
             plugins,
             wrong,
-            misspelt: None,
+            misspelt: Vec::new(),
             kept_out: Vec::new(),
             settled,
         }
@@ -132,7 +132,7 @@ impl Config {
         state.mouse = self.mouse;
     }
 
-    /// As it is for a program that begins to work now: with what became of plugins since.
+    /// As it is for who begins to start plugins now: with what became of them since, which is told once.
     #[must_use]
     pub fn beginning(self) -> Self {
         let plugins = self.plugins.host().follow_trails();
@@ -145,12 +145,18 @@ impl Config {
     /// One line for the screen, where something is wrong.
     #[must_use]
     pub fn complaint(&self) -> Option<String> {
+        let lines = self.complaints();
+        (!lines.is_empty()).then(|| lines.join(" · "))
+    }
+
+    /// What there is to say at the start, one line each.
+    #[must_use]
+    pub fn complaints(&self) -> Vec<String> {
         let settled = self.wrong.split_first().map(|(first, others)| match others.len() {
             0 => format!("config.toml: {first}"),
             n => format!("config.toml: {first}, and {n} more: `honami keys --check` says all"),
         });
-        let lines: Vec<String> = self.kept_out.iter().chain(&self.misspelt).cloned().chain(settled).collect();
-        (!lines.is_empty()).then(|| lines.join(" · "))
+        self.kept_out.iter().chain(&self.misspelt).cloned().chain(settled).collect()
     }
 
     /// Keeps what was chosen on screen and is not settled. Lost without harm: nobody is told.

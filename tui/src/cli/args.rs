@@ -429,8 +429,11 @@ pub(super) enum Plugin {
     Check(Check),
     /// Let a plugin start again that has failed three times within ten minutes.
     Retry {
-        /// Short name or full id.
+        /// Short name or full id, or its file.
         name: String,
+        /// Also let it work in honami's own process again, though honami has ended while it was inside.
+        #[arg(long)]
+        in_process: bool,
     },
 }
 

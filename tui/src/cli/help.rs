@@ -48,7 +48,9 @@ pub(super) fn doctor(common: &Common) -> Answer {
         };
         rows.push(vec![mark.to_owned(), finding.what.to_owned(), advice]);
     }
-    let mut config = Config::load();
+    // What became of plugins is told once: to people.
+    let mut config = if common.json { Config::load() } else { Config::load().beginning() };
+    config.wrong.extend(config.plugins.too_short(|| super::options(common).registry()));
     config.wrong.extend(config.plugins.strangers(&registry));
     let (mark, said) = match config.complaint() {
         None => ("ok", "config.toml is understood, or not there".to_owned()),
@@ -62,7 +64,7 @@ pub(super) fn doctor(common: &Common) -> Answer {
 /// Lists plugins, or describes one.
 pub(super) fn plugin(command: &Plugin, common: &Common) -> anyhow::Result<Outcome> {
     let options = match command {
-        Plugin::List | Plugin::Info { .. } => super::told_options(common),
+        Plugin::List | Plugin::Info { .. } => super::told(&Config::load(), common),
         _ => super::options(common),
     };
     let (registry, host) = (options.registry(), &options.host);
@@ -77,16 +79,7 @@ pub(super) fn plugin(command: &Plugin, common: &Common) -> anyhow::Result<Outcom
         }
         Plugin::Allow { plugin } => allow(&file(plugin, common)?, common),
         Plugin::Deny { plugin } => deny(&file(plugin, common)?),
-        Plugin::Retry { name } => {
-            let library = file(name, common)?;
-            let again = SearchPath { named: vec![library], ..SearchPath::default() };
-            let again = Registry::scan_path(&again);
-            let plugin = again.plugins().first().with_context(|| format!("{name} is no plugin"))?;
-            let was_held = host.retry(plugin)?;
-            let words = if was_held { "may start again" } else { "was not held: nothing to do" };
-            let json = json!({ "plugin": plugin.id, "was_held": was_held });
-            Ok(Answer { json, text: format!("{} {words}", plugin.short_name), done: true })
-        }
+        Plugin::Retry { name, in_process } => retry(&file(name, common)?, *in_process, host),
     };
     answer.map(Outcome::Answer)
 }
@@ -130,6 +123,21 @@ fn deny(library: &Path) -> anyhow::Result<Answer> {
         if names.is_empty() { "none can be read".to_owned() } else { names.join(", ") }
     );
     Ok(Answer { json: json!({ "denied": library, "plugins": names }), text, done: true })
+}
+
+/// Lets a library start again; also in honami's own process, where that was asked for.
+fn retry(library: &Path, in_process: bool, host: &Host) -> anyhow::Result<Answer> {
+    let again = plugins_in(library);
+    let plugin = again.plugins().first().with_context(|| format!("{} is no plugin", library.display()))?;
+    let was_held = host.retry(plugin)?;
+    let was_out = in_process && host.let_in(plugin)?;
+    let words = match (was_held, was_out) {
+        (_, true) => "may start again, also in honami's own process",
+        (true, false) => "may start again",
+        (false, false) => "was not held: nothing to do",
+    };
+    let json = json!({ "plugin": plugin.id, "was_held": was_held, "was_kept_out": was_out });
+    Ok(Answer { json, text: format!("{} {words}", plugin.short_name), done: true })
 }
 
 /// Allows a library, and says what was allowed.
@@ -269,7 +277,8 @@ fn apart(prospect: &Prospect) -> String {
     }
 }
 
-/// Why plugins are not shut in fully that did not come with honami, or do not work where it was wished, each reason with their names.
+/// Why plugins are not shut in fully that did not come with honami, or do not work where it was wished, each reason with
+/// their names.
 fn not_full<'r>(host: &Host, registry: &'r Registry) -> BTreeMap<String, Vec<&'r str>> {
     let mut reasons = BTreeMap::<String, Vec<&str>>::new();
     for plugin in registry.plugins() {

@@ -7,10 +7,9 @@ use std::time::Duration;
 
 use honami_workbench::progress::{Flow, Level, Patience, Progress, Silence};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use signal_hook::consts::SIGINT;
-use signal_hook::{SigId, flag};
 
 use super::args::Common;
+use super::ends;
 
 /// A progress bar on standard error; Ctrl-C asks the job to stop and keep what it has.
 pub(super) struct Bar {
@@ -18,7 +17,6 @@ pub(super) struct Bar {
     /// Whether what plugins print is said.
     verbose: bool,
     stop: Arc<AtomicBool>,
-    handlers: Vec<SigId>,
     /// A plugin that is silent is told of after so long a silence.
     told: Mutex<Duration>,
 }
@@ -36,25 +34,14 @@ impl Bar {
             bar.set_style(style.progress_chars("█▌ "));
         }
         let stop = Arc::new(AtomicBool::new(false));
-        // The second Ctrl-C ends the program at once: whoever presses twice means it.
-        let second = flag::register_conditional_shutdown(SIGINT, 130, Arc::clone(&stop));
-        let first = flag::register(SIGINT, Arc::clone(&stop));
-        if second.is_err() || first.is_err() {
-            bar.suspend(|| say("Ctrl-C cannot be caught here: it ends the program at once"));
-        }
-        let verbose = common.verbose;
-        let handlers = [second, first].into_iter().flatten().collect();
-        Self { bar, verbose, stop, handlers, told: Mutex::default() }
+        ends::stops(&stop);
+        Self { bar, verbose: common.verbose, stop, told: Mutex::default() }
     }
 }
 
 impl Drop for Bar {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
-        // Otherwise the next Ctrl-C would end the program instead of stopping the next job.
-        for handler in self.handlers.drain(..) {
-            signal_hook::low_level::unregister(handler);
-        }
     }
 }
 

@@ -124,6 +124,8 @@ impl Process {
             .env_remove("LD_PRELOAD")
             .env_remove("LD_LIBRARY_PATH")
             .env_remove("LD_AUDIT")
+            // What is said to this process is this one's to understand.
+            .env_remove(MEMORY)
             .env(ROOM, room.path())
             .envs(memory_bytes.map(|bytes| (MEMORY, bytes.to_string())))
             .spawn()?;

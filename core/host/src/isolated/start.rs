@@ -1,7 +1,7 @@
 //! How a plugin gets into a process of its own.
 
 use super::process::{Ended, Process};
-use super::{Heard, Isolated, Limits, cut};
+use super::{Heard, Isolated, Limits};
 use crate::context::CallContext;
 use crate::error::{Code, HostError};
 use crate::instance::Instance;
@@ -58,7 +58,7 @@ pub(crate) fn create(
             function: "create",
             frame: None,
             how,
-            last_words: cut(made.last_words),
+            last_words: made.take_last_words(),
         }),
     }
 }

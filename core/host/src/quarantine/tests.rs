@@ -40,14 +40,23 @@ fn failures_of_long_ago_and_of_a_clock_that_went_ahead_count_no_more() {
 const SNAIL: &str = "snail\n/lab/snail.so";
 
 #[test]
-fn the_trail_of_a_dead_process_keeps_its_library_out_until_it_is_released() {
+fn the_trail_of_a_dead_process_keeps_its_library_out_until_it_is_let_in() {
     let folder = tempfile::tempdir().unwrap();
     let quarantine = Quarantine(folder.path().join("new"));
     assert_eq!(quarantine.follow_trails(), []);
-    for _ in 0..2 {
-        quarantine.leave_trail("alive", "klt", Path::new("/lab/klt.so")).unwrap();
-    }
+    let leave = |sha256| quarantine.leave_trail(sha256, "klt", Path::new("/lab/klt.so")).unwrap();
+    let _inside = [leave("alive"), leave("alive")];
+    let over = [leave("over"), leave("over")];
     assert_eq!(quarantine.follow_trails(), [], "its process lives");
+    let trails = || {
+        let names =
+            fs::read_dir(&quarantine.0).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap());
+        names.filter(|name| name.ends_with(".inside")).count()
+    };
+    for (trail, left) in over.into_iter().zip([2, 1]) {
+        drop(trail);
+        assert_eq!(trails(), left, "it goes with the last instance");
+    }
     // Two processes that have died with it, and one that has died before its trail had a name.
     for (name, plugin) in [("abc.7.inside", SNAIL), ("abc.8.inside", SNAIL), ("abc.9.new", SNAIL)] {
         fs::write(quarantine.0.join(name), plugin).unwrap();
@@ -56,7 +65,11 @@ fn the_trail_of_a_dead_process_keeps_its_library_out_until_it_is_released() {
     assert_eq!(quarantine.follow_trails(), [("snail".to_owned(), "/lab/snail.so".into())]);
     assert_eq!(quarantine.follow_trails(), [], "it is told once");
     assert_eq!(["abc", "alive", "rebuilt"].map(|hash| quarantine.is_kept_out(hash)), [true, false, false]);
+    // One that has failed too often since may start again, but not inside.
+    fs::write(quarantine.held("abc"), "").unwrap();
     quarantine.release("abc").unwrap();
+    assert_eq!((quarantine.why("abc"), quarantine.is_kept_out("abc")), (None, true));
+    assert_eq!([(); 2].map(|()| quarantine.let_in("abc").unwrap()), [true, false]);
     assert!(!quarantine.is_kept_out("abc"));
     ended_well();
     let left: Vec<_> = fs::read_dir(&quarantine.0).unwrap().map(|entry| entry.unwrap().file_name()).collect();

@@ -1,9 +1,9 @@
-//! Trails: files that say which libraries of others work in this process, for whoever comes after its death.
+//! Trails: files that say which libraries of others work in this process, for whoever comes after its end.
 //!
-//! A trail is locked as long as its process lives, whatever becomes of that; an orderly end takes it away. The trail of
-//! a dead process keeps its library out of honami's own.
+//! A trail is locked as long as its process lives, whatever becomes of that; it goes with the last instance of its
+//! library, or at an orderly end. The trail of a dead process keeps its library out of honami's own.
 
-use super::Quarantine;
+use super::{Quarantine, remove};
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::fs::{self, File};
@@ -15,8 +15,25 @@ use std::sync::{Mutex, PoisonError};
 /// How the names of trails end.
 const INSIDE: &str = "inside";
 
-/// Those of this process, locked.
-static OWN: Mutex<BTreeMap<PathBuf, File>> = Mutex::new(BTreeMap::new());
+/// Those of this process: locked, and how many instances work on each.
+static OWN: Mutex<BTreeMap<PathBuf, (File, usize)>> = Mutex::new(BTreeMap::new());
+
+/// An instance works in this process as long as this is there.
+#[derive(Debug)]
+pub(crate) struct Trail(PathBuf);
+
+impl Drop for Trail {
+    fn drop(&mut self) {
+        let mut own = OWN.lock().unwrap_or_else(PoisonError::into_inner);
+        let Some((_, instances)) = own.get_mut(&self.0) else { return };
+        *instances -= 1;
+        if *instances == 0 {
+            own.remove(&self.0);
+            // One that stays costs its library the place in honami's process, no more.
+            fs::remove_file(&self.0).unwrap_or_default();
+        }
+    }
+}
 
 impl Quarantine {
     /// The file of a library that is kept out of honami's process.
@@ -24,20 +41,31 @@ impl Quarantine {
         self.0.join(format!("{sha256}.out"))
     }
 
-    /// Whether a library has been in honami's process when that died.
+    /// Whether a library was in honami's process when that ended.
     pub(crate) fn is_kept_out(&self, sha256: &str) -> bool {
         self.kept_out(sha256).exists()
     }
 
-    /// Leaves the trail of a plugin's library until [`ended_well`].
+    /// Lets a library work in honami's process again; whether it was kept out.
+    ///
+    /// # Errors
+    /// When what is known of it cannot be removed.
+    pub(crate) fn let_in(&self, sha256: &str) -> io::Result<bool> {
+        let was_out = self.is_kept_out(sha256);
+        remove(&self.kept_out(sha256))?;
+        Ok(was_out)
+    }
+
+    /// Leaves the trail of a plugin's library, for one instance.
     ///
     /// # Errors
     /// When it cannot be written.
-    pub(crate) fn leave_trail(&self, sha256: &str, plugin: &str, library: &Path) -> io::Result<()> {
+    pub(crate) fn leave_trail(&self, sha256: &str, plugin: &str, library: &Path) -> io::Result<Trail> {
         let trail = self.0.join(format!("{sha256}.{}.{INSIDE}", process::id()));
         let mut own = OWN.lock().unwrap_or_else(PoisonError::into_inner);
-        if own.contains_key(&trail) {
-            return Ok(());
+        if let Some((_, instances)) = own.get_mut(&trail) {
+            *instances += 1;
+            return Ok(Trail(trail));
         }
         fs::create_dir_all(&self.0)?;
         // Under its name it is locked already: nobody takes it for that of a dead process.
@@ -46,8 +74,8 @@ impl Quarantine {
         file.lock()?;
         write!(file, "{plugin}\n{}", std::path::absolute(library)?.display())?;
         fs::rename(&new, &trail)?;
-        own.insert(trail, file);
-        Ok(())
+        own.insert(trail.clone(), (file, 1));
+        Ok(Trail(trail))
     }
 
     /// Keeps those libraries out from now on whose trails dead processes have left; names of their plugins, and the
@@ -79,7 +107,6 @@ impl Quarantine {
 pub fn ended_well() {
     let own = std::mem::take(&mut *OWN.lock().unwrap_or_else(PoisonError::into_inner));
     for trail in own.keys() {
-        // One that stays costs its library the place in honami's process, no more.
         fs::remove_file(trail).unwrap_or_default();
     }
 }

@@ -1,6 +1,6 @@
 //! Plugins in C++ that have all that the header for C++ offers: detection, dense motion, state, clusterers.
 
-use crate::tools::{host, isolating, named, pixels, point, scratch, start_in, stream, view};
+use crate::tools::{has_compiler, host, isolating, named, pixels, point, scratch, start_in, stream, view};
 use honami_host::{CallContext, DetectRequest, Host, HostError, Kind, Registry, Tracker, Tracks};
 use honami_model::picture::Gray;
 use honami_model::track::Status;
@@ -13,8 +13,7 @@ fn every() -> Option<Registry> {
     static BUILT: OnceLock<bool> = OnceLock::new();
     let library = scratch().join("every.so");
     let is_built = BUILT.get_or_init(|| {
-        if Command::new("c++").arg("--version").output().is_err() {
-            eprintln!("skipped: needs a C++ compiler (c++)");
+        if !has_compiler("c++") {
             return false;
         }
         std::fs::create_dir_all(scratch()).unwrap();

@@ -69,13 +69,20 @@ pub(crate) fn isolating() -> Host {
     host().hosting(Hosting::Isolated)
 }
 
+/// Whether there is a compiler of this name; says so if not, which `HONAMI_SKIP=never` forbids.
+pub(crate) fn has_compiler(name: &str) -> bool {
+    let is_there = Command::new(name).arg("--version").output().is_ok_and(|output| output.status.success());
+    let never = std::env::var_os("HONAMI_SKIP").is_some_and(|value| value == "never");
+    assert!(is_there || !never, "there is no compiler {name}, and HONAMI_SKIP=never forbids to do without");
+    if !is_there {
+        eprintln!("skipped: needs a compiler ({name})");
+    }
+    is_there
+}
+
 /// Whether there is a C compiler; says so if not.
 pub(crate) fn has_cc() -> bool {
-    let there = Command::new("cc").arg("--version").output().is_ok_and(|output| output.status.success());
-    if !there {
-        eprintln!("skipped: needs a C compiler (cc)");
-    }
-    there
+    has_compiler("cc")
 }
 
 /// Compiles a C plugin into the scratch folder.

@@ -9,8 +9,6 @@ use toml::{Table, Value};
 
 /// What can be settled.
 const NAMES: [&str; 5] = ["memory", "tell", "end", "stop", "hosting"];
-/// With less than this a process does not come as far as its plugin.
-const MEMORY_BYTES_MIN: u64 = 64 << 20;
 /// Nobody waits longer for a plugin.
 const SECONDS_MAX: f64 = 86_400.0;
 
@@ -81,20 +79,46 @@ impl Plugins {
         let strangers = self.hosting.keys().filter(|name| !is_there(name));
         strangers.map(|name| format!("plugins.hosting.{name}: no such plugin is here")).collect()
     }
+
+    /// What is said of plugins that do not work where it was settled because of the name, one line each; `find` looks for
+    /// the plugins that there are, if any is asked for.
+    #[must_use]
+    pub fn too_short(&self, find: impl FnOnce() -> Registry) -> Vec<String> {
+        if !self.hosting.values().any(|place| *place == Hosting::InProcess) {
+            return Vec::new();
+        }
+        let (registry, host) = (find(), self.host());
+        let plugins = registry.plugins().iter().filter(|plugin| host.is_named_too_shortly(plugin));
+        plugins
+            .map(|p| {
+                format!("plugins.hosting.{}: its whole id is wanted, {:?}: isolated", p.short_name, p.id)
+            })
+            .collect()
+    }
 }
 
-/// What is said of a plugin that was in honami when that died.
+/// What is said of a plugin that was in honami when that ended.
 pub(super) fn kept_out(plugin: &str, library: &Path) -> String {
     let file = library.display();
     format!(
-        "{plugin} works in a process of its own: honami died with it inside; `honami plugin retry {file}` lets it in again"
+        "{plugin} works in a process of its own: honami ended while it was inside; `honami plugin retry --in-process {file}` \
+         lets it in again"
     )
 }
 
-/// What is wrong with what the environment says of where plugins work.
-pub(super) fn misspelt(said: Option<Result<Hosting, String>>) -> Option<String> {
-    let word = said?.err()?;
-    Some(format!("HONAMI_HOSTING: \"isolated\" or \"in-process\" is wanted, got {word:?}: isolated"))
+/// What is wrong with what the environment says of where plugins work and what memory they may take, one line each.
+pub(super) fn misspelt(
+    hosting: Option<Result<Hosting, String>>,
+    memory_bytes: Option<Result<u64, String>>,
+) -> Vec<String> {
+    let hosting = hosting.and_then(Result::err).map(|word| {
+        format!("HONAMI_HOSTING: \"isolated\" or \"in-process\" is wanted, got {word:?}: isolated")
+    });
+    let memory = memory_bytes.and_then(Result::err).map(|word| {
+        let least = Limits::MEMORY_BYTES_MIN;
+        format!("HONAMI_PLUGIN_MEMORY: {least} bytes or more are wanted, got {word:?}: as config.toml has it")
+    });
+    hosting.into_iter().chain(memory).collect()
 }
 
 /// Where plugins work, by id or short name. What is misspelt is safe.
@@ -138,7 +162,7 @@ fn bytes(value: &Value) -> Option<u64> {
         }
         _ => return None,
     };
-    (bytes >= MEMORY_BYTES_MIN).then_some(bytes)
+    (bytes >= Limits::MEMORY_BYTES_MIN).then_some(bytes)
 }
 
 /// A time in seconds, whole or not.

@@ -84,12 +84,15 @@ fn what_is_wrong_of_plugins_is_named_and_is_as_usual() {
 
 #[test]
 fn a_misspelt_word_of_the_environment_is_named() {
-    let wanted = "HONAMI_HOSTING: \"isolated\" or \"in-process\" is wanted, got \"bogus\": isolated";
-    for (said, line) in [
-        (None, None),
-        (Some(Ok(Hosting::InProcess)), None),
-        (Some(Err("bogus".to_owned())), Some(wanted.to_owned())),
+    let place = "HONAMI_HOSTING: \"isolated\" or \"in-process\" is wanted, got \"bogus\": isolated";
+    let bytes =
+        "HONAMI_PLUGIN_MEMORY: 67108864 bytes or more are wanted, got \"8 GB\": as config.toml has it";
+    let wrong = |word: &str| word.to_owned();
+    for (hosting, memory, lines) in [
+        (None, None, &[][..]),
+        (Some(Ok(Hosting::InProcess)), Some(Ok(1 << 30)), &[]),
+        (Some(Err(wrong("bogus"))), Some(Err(wrong("8 GB"))), &[place, bytes]),
     ] {
-        assert_eq!(misspelt(said), line);
+        assert_eq!(misspelt(hosting, memory), lines);
     }
 }
