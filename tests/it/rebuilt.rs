@@ -21,7 +21,7 @@ use crate::isolated::has_cc;
 /// Compiles `mine.c` to `mine.so` at once, as a linker does not: another file takes the old one's place.
 pub(crate) fn build(bench: &Bench, flags: &[&str]) {
     let given = |name: &str| flags.iter().any(|flag| flag.starts_with(&format!("-D{name}=")));
-    let usual = ["-DVERSION=\"2\"", "-DWAIT=-1", "-DDIES=1000", "-DSTEP=1"];
+    let usual = ["-DVERSION=\"2\"", "-DWAIT=-1", "-DDIES=1000", "-DSTEP=1", "-DFIRST=0"];
     let usual = usual.iter().filter(|flag| !given(&flag[2..flag.find('=').unwrap()]));
     let output = Command::new("cc")
         .args(["-std=c11", "-O1", "-shared", "-fPIC", "-fvisibility=hidden", "-I"])
@@ -247,14 +247,22 @@ fn watched_it_tracks_again_with_every_build_in_ones_own_tree_until_it_is_stopped
     assert!(complaint.contains("there is no tracker \"mine\""), "{complaint}");
     build(&bench, &["-DSTEP=1.5f"]);
     wait();
+    // One that reports points elsewhere than they were put moves none for those after it.
+    build(&bench, &["-DFIRST=5"]);
+    wait();
+    build(&bench, &["-DVERSION=\"3\"", "-DSTEP=1.5f"]);
+    wait();
     kill_process(Pid::from_child(&child), Signal::INT).unwrap();
     let output = child.wait_with_output().unwrap();
     let said = String::from_utf8(output.stdout).unwrap();
     // Half a pixel more a frame: 0 to 14.5 px.
     let wanted = "on frames 0-29 it differs from the build before by 7.50 px in the median, 3 of 3 features by 1 px or more";
     assert!(output.status.success() && said.contains(wanted), "{said}");
-    assert_eq!(bench.log("p.honami", "run").len(), 2);
+    assert_eq!(bench.log("p.honami", "run").len(), 4);
     assert_eq!(moved(&bench), vec![3; 29]);
+    let rows = bench.samples("p.honami");
+    let first = |track| rows.iter().find(|row| row["track"] == track).map(|row| row["x"].parse());
+    assert_eq!(["1", "2", "3"].map(first), [20.0, 60.0, 60.0].map(|x: f64| Some(Ok(x))));
 }
 
 /// A tracker in Python that does what `mine.c` does.

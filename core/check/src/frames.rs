@@ -1,10 +1,10 @@
 //! Level 6: pictures that are as bad as a host may hand them over, and not a byte of memory beside them.
 
 use crate::clip::{Clip, FPS, Texture, grid};
-use crate::course::{HERE, at, difference, follow, is_at, of_tracker, refusal, row, tracker};
+use crate::course::{at, difference, follow, is_at, of_tracker, refusal, row, tracker};
 use crate::guarded::{Edge, Guarded};
 use crate::{Check, Fault, Subject, Verdict};
-use honami_host::{CallContext, FrameView, HostError, Point, Points, StreamInfo, Values};
+use honami_host::{CallContext, FrameView, HostError, Point, Points, StreamInfo};
 use honami_model::picture::{Chroma, Gray};
 use rand::RngExt;
 use std::time::Duration;
@@ -30,6 +30,13 @@ pub(crate) const CHECKS: &[Check] = &[
         claim: "it bears pictures that are 4096 wide or 2304 high",
         deadline: Duration::from_secs(60),
         run: |subject| of_tracker(subject, long),
+    },
+    Check {
+        id: "frames.many",
+        level: 6,
+        claim: "it works on for 120 frames",
+        deadline: Duration::from_secs(60),
+        run: |subject| of_tracker(subject, many),
     },
     Check {
         id: "frames.gaps",
@@ -136,6 +143,22 @@ fn sizes(subject: &Subject, sizes: &[[u32; 2]]) -> Result<Verdict, Fault> {
     Ok(Verdict::Holds(String::new()))
 }
 
+fn many(subject: &Subject) -> Result<Verdict, Fault> {
+    let clip = moving(subject, [64, 48], 6);
+    let seeds = grid([64, 48], 14.0, [4, 3], &mut subject.chance("frames.many"));
+    let (mut tracker, cx) = (tracker(subject)?, CallContext::silent());
+    tracker.begin(StreamInfo { n_frames: Some(120), ..clip.stream() }, &cx)?;
+    tracker.seed(&seeds, &cx)?;
+    for t in 0..120_usize {
+        // To and fro through the pictures.
+        let picture = 5 - (t % 10).abs_diff(5);
+        let view = FrameView { index: t as i64, time_s: t as f64 / FPS, ..clip.view(picture) };
+        tracker.push(&view, &cx).map_err(at(format!("frame {t}")))?;
+    }
+    tracker.end(&cx)?;
+    Ok(Verdict::Holds(String::new()))
+}
+
 fn gaps(subject: &Subject) -> Result<Verdict, Fault> {
     let clip = moving(subject, [64, 48], 6);
     let seeds = grid([64, 48], 14.0, [4, 3], &mut subject.chance("frames.gaps"));
@@ -170,7 +193,7 @@ fn in_order(
     order: &[i64],
     reversed: bool,
 ) -> Result<Vec<Points>, HostError> {
-    let (mut tracker, cx) = (subject.tracker(HERE, &Values::default())?, CallContext::silent());
+    let (mut tracker, cx) = (tracker(subject)?, CallContext::silent());
     tracker.begin(StreamInfo { reversed, n_frames: None, ..clip.stream() }, &cx)?;
     tracker.seed(seeds, &cx)?;
     let mut all = Vec::new();

@@ -113,7 +113,10 @@ pub enum WorkbenchError {
     )]
     NoFeatures,
     /// The tracker does not choose features.
-    #[error("{plugin} does not find features itself: give a table of points, or take a tracker that does")]
+    #[error(
+        "{plugin} does not find features itself: track once with a tracker that does, such as the default, \
+         and then with {plugin}, which follows the same tracks; or give a table of points (--points)"
+    )]
     CannotDetect {
         /// Its name.
         plugin: String,

@@ -352,7 +352,10 @@ pub(crate) fn any_reaches(project: &Project, tracks: &TrackSet, frame: u32) -> R
 }
 
 /// Seeds of the project's own tracks, or of some: where each is first seen, and each of its key-frames.
-fn existing(
+///
+/// # Errors
+/// What the project met.
+pub fn existing(
     session: &Session,
     frames: &Range<u32>,
     only: Option<&TrackSet>,

@@ -1,4 +1,5 @@
-/* mine.c - a tracker whose points move right by STEP pixels a frame; before frame WAIT it waits until somebody has opened
+/* mine.c - a tracker whose points move right by FIRST pixels in the first frame and by STEP in every later one; before frame
+ * WAIT it waits until somebody has opened
  * the pipe that it was given, and in frame DIES it dies. */
 #include "honami.h"
 #include <stdio.h>
@@ -66,7 +67,7 @@ static honami_code push(honami_instance *instance, const honami_call *call, cons
     fclose(pipe);
   }
   if (frame->index >= DIES) abort();
-  for (uint64_t i = 0; has_pushed && i < n_points; i++) xs[i] += STEP;
+  for (uint64_t i = 0; i < n_points; i++) xs[i] += has_pushed ? STEP : FIRST;
   has_pushed = 1;
   if (call->reserve(call, HONAMI_POINTS, n_points, 4, c) < 0) return HONAMI_E_MEMORY;
   memcpy(c[0].data, ids, n_points * 4);

@@ -110,6 +110,15 @@ impl World {
         notes.extend_from_slice(self.session.media.notes());
         notes.extend(state.read_only.iter().map(|holder| format!("read only: {holder} holds this project")));
         notes.extend(self.reviewing.is_none().then(|| "no thread: suspicion is not measured".to_owned()));
+        if state.read_only.is_none()
+            && let Some(run) = track::unfinished(project)?
+        {
+            let run = project.run(run)?;
+            let id = &run.head.provenance.plugin_id;
+            let name = id.rsplit('.').next().unwrap_or(id);
+            notes.push(format!("run {} of {name} ended early, at frame {}", run.id.0, run.found.end));
+            state.recovery = Some(Recovery::of_earlier(run.id));
+        }
         if !notes.is_empty() {
             state.notice = Some(Notice { text: notes.join(" · "), is_error: false });
         }

@@ -1,5 +1,6 @@
 //! What one key can do about work that has ended early.
 
+use honami_model::document::RunId;
 use honami_workbench::WorkbenchError;
 use honami_workbench::plugins::HostError;
 use honami_workbench::track::TrackOutcome;
@@ -24,6 +25,11 @@ impl Recovery {
         let words = format!("goes on from frame {}", outcome.unseen_from);
         let held = outcome.error.as_ref().and_then(held);
         is_early.then(|| Self::new(Effect::Resume(Some(outcome.run)), held, words))
+    }
+
+    /// Of a run that ended early in a session before this one.
+    pub(super) fn of_earlier(run: RunId) -> Self {
+        Self::new(Effect::Resume(Some(run)), None, "goes on with it".to_owned())
     }
 
     /// Of work that has failed and has left nothing; `None` where it would only fail again.

@@ -10,7 +10,7 @@ use honami_workbench::progress::{Flow, Progress as _};
 use honami_workbench::rebuilt::{Difference, LOOK_EVERY};
 use honami_workbench::session::Session;
 use honami_workbench::store::RunInfo;
-use honami_workbench::track::{PointSource, TrackRequest};
+use honami_workbench::track::{PointSource, TrackRequest, existing};
 use honami_workbench::versus;
 use serde_json::json;
 
@@ -29,8 +29,11 @@ pub(super) fn watch(args: &Track, common: &Common) -> anyhow::Result<ExitCode> {
             Ok((answer, run)) => {
                 answer.print(common.json)?;
                 file.seen.push(run.build_of(run.found.end).sha256);
-                // The same features from now on, also where the tracker has found them.
-                request.points = PointSource::Tracks(run.tracks.clone());
+                // From now on the same features where they are now: what a bad build reports moves no later one's.
+                if before.is_none() {
+                    let features = existing(&session, &request.frames, Some(&run.tracks))?;
+                    request.points = PointSource::Given(features);
+                }
                 before = Some(run);
             }
             // The next build may do better.

@@ -13,7 +13,7 @@
 enum fault {
   NONE,
   /* parameters */ NAN_AT_THE_END, INACTIVE, CHOICE, IN_BETWEEN, SECOND,
-  /* frames */ READS_PAST, READS_BEFORE, READS_GAPS, DIES_OF_SMALL, DIES_OF_BLACK, DIES_OF_LONG, DIES_OF_LATE,
+  /* frames */ READS_PAST, READS_BEFORE, READS_GAPS, DIES_OF_SMALL, DIES_OF_BLACK, DIES_OF_LONG, DIES_OF_LATE, DIES_OF_MANY,
   /* truth */ STAYS, DRIFTS, FORGETS, KEEPS_RETIRED, TRACKS_NOTHING,
   /* everywhere */ REACHES_OUT,
   /* running */ CLOCK, THREADS, ELSEWHERE, STATE, SHARED, SHARED_SMALL, FIRST_BESIDE, FALLS, DEAF, LEAKS_FILES, LEAKS_MEMORY
@@ -168,6 +168,7 @@ static float off(bad *self, const honami_frame *frame) {
   if (FAULT == DIES_OF_BLACK && frame->data[0] + frame->data[1] + frame->data[2] == 0) return *(volatile float *)NULL;
   if (FAULT == DIES_OF_LONG && frame->width > 4000) return *(volatile float *)NULL;
   if (FAULT == DIES_OF_LATE && frame->index > 1000) return *(volatile float *)NULL;
+  if (FAULT == DIES_OF_MANY && frame->index == 60) return *(volatile float *)NULL;
   if (FAULT == CLOCK && frame->index == 7) {
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);

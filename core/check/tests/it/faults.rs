@@ -355,6 +355,7 @@ const SEVERAL: &[(&str, &[&str], &[&str])] = &[
     ("DIES_OF_BLACK", &[], &["frames.odd"]),
     ("DIES_OF_LONG", &[], &["frames.long", "frames.large"]),
     ("DIES_OF_LATE", &[], &["frames.gaps"]),
+    ("DIES_OF_MANY", &[], &["frames.many"]),
     ("STAYS", &[], &["truth.turn", "truth.zoom", "truth.sway", "truth.light", "truth.blur"]),
     ("SHARED", &[], &["running.left"]),
     ("FIRST_BESIDE", &[], &["running.callers"]),
