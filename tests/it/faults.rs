@@ -45,6 +45,13 @@ const ROWS: &[Row] = &[
         0,
         "11011111",
     ),
+    (
+        "sleep, from frame 1 on",
+        C(&["-DFAULT=SLEEPS"]),
+        "it was ended after 10 s without a sign of life",
+        0,
+        "1011111",
+    ),
     ("sleep", C(&["-DFAULT=SLEEPS"]), "it was ended after 10 s without a sign of life", 0, "11011111"),
     ("segfault", C(&["-DFAULT=SEGFAULT"]), "started again at frame 2: it died of SIGSEGV", 0, "11011111"),
     (
@@ -122,7 +129,8 @@ fn check(&(name, made, wanted, code, seen): &Row) {
     project(&bench);
     let with = make(&bench, made);
     let before = files(&bench);
-    let line = format!("track p.honami --plugin plugin.so --with {with} --points points.csv");
+    let frames = if name.ends_with("from frame 1 on") { " --frames 1.." } else { "" };
+    let line = format!("track p.honami --plugin plugin.so --with {with} --points points.csv{frames}");
     let ran = ran(tracking(&bench, &line).output().unwrap());
     let said = format!("{}{}", ran.stdout, ran.stderr);
     assert!(ran.code == Some(code) && said.contains(wanted), "{name}: {ran:?}");
@@ -291,15 +299,17 @@ fn what_a_plugin_prints_is_told_where_that_is_asked_for() {
     let with = make(&bench, C(&["-DFAULT=SPEAKS"]));
     let line = format!("track p.honami --plugin plugin.so --with {with} --points points.csv");
     let said = ran(tracking(&bench, &format!("{line} -v")).output().unwrap());
-    // It dies twice in frame 2, and is told of once; each has its own last words.
+    // It dies twice in frame 2.
+    let died = "bad: error: died of SIGSEGV (it used memory that is not its own); it last printed: no weights for level 2, in frame 2";
     let wanted = [
         "bad: read weights",
         "bad: no weights for level 2",
-        "bad: error: died of SIGSEGV (it used memory that is not its own); it last printed: no weights for level 2, in frame 2",
+        died,
         "bad: warning: started again at frame 2",
         "bad: read weights",
         "bad: no weights for level 2",
-        "bad: warning: started again at frame 2",
+        died,
+        "bad: warning: started again, and frame 2 is left out",
     ];
     assert_eq!(said.stderr.lines().collect::<Vec<_>>(), wanted, "{said:?}");
     // The reason stays with the run.

@@ -44,6 +44,8 @@ pub struct Silence {
     pub is_too_long: bool,
     /// After so long a silence it is.
     pub at_most: Duration,
+    /// Whether it is never ended: a debugger holds it, or `HONAMI_NO_WATCHDOG` is set.
+    pub is_spared: bool,
 }
 
 /// What becomes of a plugin that gives no sign of life.

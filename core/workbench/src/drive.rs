@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use honami_host::{
     CallContext, DetectRequest, FrameView, HostError, Point, PointRow, Points, StreamInfo, Tracker,
@@ -137,8 +137,8 @@ pub enum Death {
 pub struct Driven {
     /// The first frame that was not tracked.
     pub end: u32,
-    /// Time spent in the tracker on each frame, seconds, decoding and keeping aside; what the end of the stream took is
-    /// with the last.
+    /// Time spent in the tracker on each frame, seconds, decoding and keeping aside, also what is written while a tracker
+    /// in this process waits for that; what the end of the stream took is with the last.
     pub step_secs: Vec<f64>,
     /// What the tracker warned of.
     pub warnings: Vec<String>,
@@ -190,6 +190,7 @@ pub fn drive(
     let ear = Ear::new(tracker.plugin(), progress);
     let mut ride = Ride {
         media,
+        ear: &ear,
         tracker,
         plan: &plan,
         board: Board::new(first),
@@ -216,7 +217,7 @@ pub fn drive(
                 continue;
             }
             if frame < end {
-                outcome = ride.revive(frame, outcome, &mut **relay, numbers, &ear);
+                outcome = ride.revive(frame, outcome, &mut **relay, numbers);
             }
             if outcome.is_ok() {
                 ride.settle(frame, &mut **relay);
@@ -243,9 +244,30 @@ pub fn drive(
     Ok(Driven { end: ride.board.end, step_secs: ride.step_secs, warnings: ear.warnings() })
 }
 
+/// Measures what a tracker takes.
+struct Watch {
+    begun: Instant,
+    /// How busy whoever watches had been before.
+    busy: Duration,
+}
+
+impl Watch {
+    fn start(ear: &Ear<'_>) -> Self {
+        Self { begun: Instant::now(), busy: ear.busy() }
+    }
+
+    /// Seconds since then. A tracker in a process of its own goes on while whoever watches is busy, one in this process
+    /// waits for them.
+    fn seconds(&self, ride: &Ride<'_>) -> f64 {
+        let waited = if ride.tracker.can_end() { Duration::ZERO } else { ride.ear.busy() - self.busy };
+        self.begun.elapsed().saturating_sub(waited).as_secs_f64()
+    }
+}
+
 /// A tracker on its way through the clip.
 struct Ride<'a> {
     media: &'a Media,
+    ear: &'a Ear<'a>,
     tracker: &'a mut Tracker,
     plan: &'a Plan,
     board: Board,
@@ -301,7 +323,9 @@ impl Ride<'_> {
     ) -> Result<(), WorkbenchError> {
         let picture = self.media.frame(frame)?;
         let view = view(self.media, &picture, frame);
-        let begun = Instant::now();
+        // Another tracker may do earlier frames again.
+        self.ear.at(frame);
+        let watch = Watch::start(self.ear);
         let first = frame == self.plan.frames.start;
         // Seeds hold in the frame pushed last; only those of the first frame come before it.
         if !first {
@@ -330,7 +354,7 @@ impl Ride<'_> {
         } else {
             self.board.place(frame, &new);
         }
-        let seconds = begun.elapsed().as_secs_f64();
+        let seconds = watch.seconds(self);
         self.saved.worked(seconds);
         self.step_secs.push(seconds);
         Ok(())
@@ -392,10 +416,10 @@ impl Ride<'_> {
     }
 
     fn end(&mut self, numbers: Numbers<'_>, call: &CallContext<'_>) -> Result<(), WorkbenchError> {
-        let begun = Instant::now();
+        let watch = Watch::start(self.ear);
         let answers = self.tracker.end(call)?;
         self.take(answers, numbers)?;
-        let secs = begun.elapsed().as_secs_f64();
+        let secs = watch.seconds(self);
         self.step_secs.last_mut().into_iter().for_each(|last| *last += secs);
         Ok(())
     }

@@ -2,6 +2,7 @@
 
 use std::sync::atomic::{AtomicI64, Ordering};
 use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use honami_host::{CallContext, Level};
 
@@ -18,18 +19,37 @@ pub(crate) struct Ear<'a> {
     warnings: Mutex<Vec<String>>,
     /// The frame that it is at; below 0 where it is at none.
     frame: AtomicI64,
+    /// How long whoever watches took while it was at work.
+    busy: Mutex<Duration>,
 }
 
 impl<'a> Ear<'a> {
     /// Listens to the plugin of this id.
     pub(crate) fn new(plugin: &str, progress: &'a dyn Progress) -> Self {
         let plugin = plugin.rsplit('.').next().unwrap_or(plugin).to_owned();
-        Self { plugin, progress, warnings: Mutex::default(), frame: AtomicI64::new(-1) }
+        let (warnings, frame, busy) = (Mutex::default(), AtomicI64::new(-1), Mutex::default());
+        Self { plugin, progress, warnings, frame, busy }
     }
 
     /// From now on it is at this frame of the clip.
     pub(crate) fn at(&self, frame: u32) {
         self.frame.store(i64::from(frame), Ordering::Relaxed);
+        self.progress.at(frame);
+    }
+
+    /// The frame that it is at, where it is at one.
+    fn frame(&self) -> Option<u32> {
+        u32::try_from(self.frame.load(Ordering::Relaxed)).ok()
+    }
+
+    /// Its process has ended in this frame, and how; then what became of it.
+    pub(crate) fn died(&self, frame: u32, how: &str, then: Option<&str>) {
+        self.progress.died(&self.plugin, frame, how, then);
+    }
+
+    /// For how long whoever watches has been busy while a plugin was at work, all calls together.
+    pub(crate) fn busy(&self) -> Duration {
+        *self.busy.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Makes one call while `done` of `total` steps are done.
@@ -51,11 +71,14 @@ impl<'a> Ear<'a> {
         let at = Mutex::new(String::new());
         let progress = |share: f64, words: &str| {
             words.clone_into(&mut at.lock().unwrap_or_else(PoisonError::into_inner));
-            report(share)
+            let begun = Instant::now();
+            let flow = report(share);
+            *self.busy.lock().unwrap_or_else(PoisonError::into_inner) += begun.elapsed();
+            flow
         };
         let silent = |silence| {
             let at = at.lock().unwrap_or_else(PoisonError::into_inner);
-            self.progress.silent(&self.plugin, &at, silence)
+            self.progress.silent(&self.plugin, self.frame(), &at, silence)
         };
         let done = work(&CallContext {
             progress: &progress,
@@ -68,8 +91,7 @@ impl<'a> Ear<'a> {
     }
 
     fn hear(&self, level: Level, text: &str) {
-        let frame = u32::try_from(self.frame.load(Ordering::Relaxed)).ok();
-        self.progress.hear(&self.plugin, frame, level, text);
+        self.progress.hear(&self.plugin, self.frame(), level, text);
         let mut warnings = self.warnings.lock().unwrap_or_else(PoisonError::into_inner);
         let is_new = !warnings.iter().any(|known| known == text);
         if level >= Level::Warning && is_new && warnings.len() < MAX_WARNINGS {
@@ -82,3 +104,6 @@ impl<'a> Ear<'a> {
         self.warnings.into_inner().unwrap_or_else(PoisonError::into_inner)
     }
 }
+
+#[cfg(test)]
+mod tests;

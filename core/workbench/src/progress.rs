@@ -15,12 +15,16 @@ pub trait Progress: Sync {
     /// one; called from any thread.
     fn hear(&self, _plugin: &str, _frame: Option<u32>, _level: Level, _line: &str) {}
 
-    /// The process of a plugin, by its short name, has ended in this frame, and how; another one is started.
-    fn died(&self, _plugin: &str, _frame: u32, _how: &str) {}
+    /// The plugin at work comes to this frame of the clip; what is done may be fewer frames, or more steps.
+    fn at(&self, _frame: u32) {}
 
-    /// Whether a plugin, which last said that it was at something, is waited for while it gives no sign of life; asked
-    /// all the while, with `None` once it lives.
-    fn silent(&self, _plugin: &str, _at: &str, _silence: Option<Silence>) -> Patience {
+    /// The process of a plugin, by its short name, has ended in this frame, and how; then what became of it, or `None`
+    /// where it is not started again: the job ends with the reason.
+    fn died(&self, _plugin: &str, _frame: u32, _how: &str, _then: Option<&str>) {}
+
+    /// Whether a plugin, which is at this frame of the clip, where it is at one, and last said that it was at something,
+    /// is waited for while it gives no sign of life; asked all the while, with `None` once it lives.
+    fn silent(&self, _plugin: &str, _frame: Option<u32>, _at: &str, _silence: Option<Silence>) -> Patience {
         Patience::Usual
     }
 
@@ -45,12 +49,16 @@ impl Progress for Named<'_> {
         self.progress.hear(plugin, frame, level, line);
     }
 
-    fn died(&self, plugin: &str, frame: u32, how: &str) {
-        self.progress.died(plugin, frame, how);
+    fn at(&self, frame: u32) {
+        self.progress.at(frame);
     }
 
-    fn silent(&self, plugin: &str, at: &str, silence: Option<Silence>) -> Patience {
-        self.progress.silent(plugin, at, silence)
+    fn died(&self, plugin: &str, frame: u32, how: &str, then: Option<&str>) {
+        self.progress.died(plugin, frame, how, then);
+    }
+
+    fn silent(&self, plugin: &str, frame: Option<u32>, at: &str, silence: Option<Silence>) -> Patience {
+        self.progress.silent(plugin, frame, at, silence)
     }
 
     fn say(&self, line: &str) {

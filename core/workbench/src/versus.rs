@@ -24,7 +24,9 @@ use crate::stamp::REBUILT;
 pub struct Entrant {
     /// The run.
     pub run: RunId,
-    /// Short name of its tracker.
+    /// Id of its tracker.
+    pub plugin_id: String,
+    /// Short name of that.
     pub tracker: String,
     /// Content hash of its library.
     pub sha256: String,
@@ -55,7 +57,7 @@ impl Entrant {
 
     /// Whether the same build of a tracker with the same parameters made both.
     fn is_alike(&self, other: &Self) -> bool {
-        let made = |one: &Self| (one.tracker.clone(), one.sha256.clone(), one.params.clone());
+        let made = |one: &Self| (one.plugin_id.clone(), one.sha256.clone(), one.params.clone());
         made(self) == made(other)
     }
 
@@ -82,6 +84,7 @@ pub fn entrants(project: &Project) -> Result<Vec<Entrant>, WorkbenchError> {
         let Provenance { what, plugin_id, plugin_sha256, .. } = &run.head.provenance;
         Entrant {
             run: run.id,
+            plugin_id: plugin_id.clone(),
             tracker: plugin_id.rsplit('.').next().unwrap_or(plugin_id).to_owned(),
             sha256: plugin_sha256.clone(),
             build: build(&run.head.provenance, &made),
@@ -111,7 +114,8 @@ fn build(own: &Provenance, all: &[Provenance]) -> Option<String> {
 #[must_use]
 pub fn last_builds(entrants: &[Entrant]) -> Option<[Entrant; 2]> {
     entrants.iter().enumerate().find_map(|(at, b)| {
-        let is_before = |a: &&Entrant| a.tracker == b.tracker && a.sha256 != b.sha256 && a.shares_tracks(b);
+        let is_before =
+            |a: &&Entrant| a.plugin_id == b.plugin_id && a.sha256 != b.sha256 && a.shares_tracks(b);
         Some([entrants[at + 1..].iter().find(is_before)?.clone(), b.clone()])
     })
 }

@@ -465,7 +465,8 @@ impl World {
             _ => 0,
         };
         let (done, is_stopping) = ((0, 0), false);
-        let job = Job { plugin, what, done, first, since, keeps_frames, is_stopping, quiet: None };
+        let (frame, quiet) = (None, None);
+        let job = Job { plugin, what, done, first, since, keeps_frames, is_stopping, frame, quiet };
         match Running::start(work, self.waker.clone()) {
             Ok(running) => {
                 self.running = Some((running, job.clone()));
@@ -497,9 +498,15 @@ impl World {
         facts.extend(running.said().into_iter().map(Fact::Happened));
         if !is_finished {
             let step = running.step();
-            let (done, quiet) = ((step.done, step.total), running.quiet());
-            if done != job.done || step.what != job.what || quiet != job.quiet {
-                (job.done, job.what, job.quiet) = (done, step.what, quiet);
+            let is = Job {
+                done: (step.done, step.total),
+                what: step.what,
+                frame: step.frame,
+                quiet: running.quiet(),
+                ..job.clone()
+            };
+            if is != *job {
+                *job = is;
                 facts.push(Fact::Job(Some(job.clone())));
             }
             return facts;

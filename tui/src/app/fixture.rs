@@ -206,6 +206,7 @@ fn ghost(state: &State, wish: &Wish) -> Option<Correction> {
 pub(super) fn entrants() -> Vec<Entrant> {
     let entrant = |(run, radius, is_shown)| Entrant {
         run: RunId(run),
+        plugin_id: "org.honami.klt".to_owned(),
         tracker: "klt".to_owned(),
         sha256: "3f2a".to_owned(),
         is_beside: false,

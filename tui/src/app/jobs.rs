@@ -40,6 +40,8 @@ pub(super) struct Step {
     pub(super) done: u64,
     pub(super) total: u64,
     pub(super) what: String,
+    /// The frame of the clip that its plugin is at.
+    pub(super) frame: Option<u32>,
 }
 
 /// A job that runs.
@@ -65,7 +67,7 @@ struct Shared {
 impl Progress for Shared {
     fn report(&self, done: u64, total: u64, what: &str) -> Flow {
         let mut step = self.step.lock().unwrap_or_else(PoisonError::into_inner);
-        step.0 = Step { done, total, what: what.to_owned() };
+        step.0 = Step { done, total, what: what.to_owned(), frame: step.0.frame };
         if step.1.is_none_or(|last| last.elapsed() >= TICK) {
             step.1 = Some(Instant::now());
             self.waker.wake();
@@ -73,8 +75,12 @@ impl Progress for Shared {
         if self.stop.load(Ordering::Relaxed) { Flow::Stop } else { Flow::Continue }
     }
 
-    fn silent(&self, plugin: &str, at: &str, silence: Option<Silence>) -> Patience {
-        self.watch.lock().unwrap_or_else(PoisonError::into_inner).look(plugin, at, silence)
+    fn at(&self, frame: u32) {
+        self.step.lock().unwrap_or_else(PoisonError::into_inner).0.frame = Some(frame);
+    }
+
+    fn silent(&self, plugin: &str, frame: Option<u32>, at: &str, silence: Option<Silence>) -> Patience {
+        self.watch.lock().unwrap_or_else(PoisonError::into_inner).look(plugin, frame, at, silence)
     }
 
     fn say(&self, line: &str) {
@@ -91,9 +97,12 @@ impl Progress for Shared {
         }
     }
 
-    fn died(&self, plugin: &str, frame: u32, how: &str) {
+    fn died(&self, plugin: &str, frame: u32, how: &str, then: Option<&str>) {
         self.hear(plugin, Some(frame), Level::Error, how);
-        self.say(&format!("{plugin} {how}; it is started again at frame {frame}"));
+        if let Some(then) = then {
+            self.hear(plugin, Some(frame), Level::Warning, then);
+            self.say(&format!("{plugin}, frame {frame}: {how}; {then}"));
+        }
     }
 }
 
@@ -108,15 +117,15 @@ struct Watch {
 
 impl Watch {
     /// Somebody is there to be asked: nothing is ended unless they say so.
-    fn look(&mut self, plugin: &str, at: &str, silence: Option<Silence>) -> Patience {
-        let Some(Silence { since, is_too_long, at_most }) = silence else {
+    fn look(&mut self, plugin: &str, frame: Option<u32>, at: &str, silence: Option<Silence>) -> Patience {
+        let Some(Silence { since, is_too_long, at_most, .. }) = silence else {
             *self = Self::default();
             return Patience::Usual;
         };
         let is_asked = is_too_long && since >= self.waits;
         let (plugin, at) = (plugin.to_owned(), at.to_owned());
         let (seconds, limit_s) = (since.as_secs(), at_most.as_secs());
-        self.quiet = Some(Quiet { plugin, seconds, limit_s, at, is_asked });
+        self.quiet = Some(Quiet { plugin, frame, seconds, limit_s, at, is_asked });
         if std::mem::take(&mut self.is_to_end) { Patience::End } else { Patience::Wait }
     }
 

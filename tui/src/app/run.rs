@@ -24,7 +24,7 @@ use super::plotted::{Lot, PlotRequest, Plotted};
 use super::prints::Print;
 use super::recent;
 use super::seat::Seat;
-use super::state::{Display, Job, Link, Mode, Notice, State};
+use super::state::{Display, Link, Mode, Notice, State};
 use super::stills::{self, Stills};
 use super::tally::Tally;
 use super::update::{Effect, Fact, Msg, update};
@@ -256,7 +256,7 @@ impl App {
 
     /// Takes in what was printed in this process: nothing of it is on the screen.
     fn overhear(&mut self, screen: &Screen) {
-        let frame = self.state.job.as_ref().and_then(Job::frame);
+        let frame = self.state.job.as_ref().and_then(|job| job.frame);
         let print =
             |line: String| Print { frame, plugin: String::new(), level: Level::Info, text: plain(&line) };
         let prints: Vec<Print> = screen.printed().into_iter().map(print).collect();

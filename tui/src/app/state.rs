@@ -238,16 +238,10 @@ pub struct Job {
     pub keeps_frames: bool,
     /// Whether it has been told to stop.
     pub is_stopping: bool,
+    /// The frame of the clip that its plugin is at; what is written may be less.
+    pub frame: Option<u32>,
     /// A plugin of it that gives no sign of life.
     pub quiet: Option<Quiet>,
-}
-
-impl Job {
-    /// The frame of the clip that it is at; `None` where its steps are no frames.
-    #[must_use]
-    pub fn frame(&self) -> Option<u32> {
-        u32::try_from(self.first + self.done.0).ok().filter(|_| self.what == "frame")
-    }
 }
 
 /// A plugin that gives no sign of life.
@@ -255,6 +249,8 @@ impl Job {
 pub struct Quiet {
     /// Its short name.
     pub plugin: String,
+    /// The frame of the clip that it is at, where it is at one.
+    pub frame: Option<u32>,
     /// For how long, seconds.
     pub seconds: u64,
     /// After so many seconds its user is asked.

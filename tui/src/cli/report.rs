@@ -68,22 +68,22 @@ impl Progress for Bar {
         }
     }
 
-    fn died(&self, plugin: &str, frame: u32, how: &str) {
+    fn died(&self, plugin: &str, frame: u32, how: &str, then: Option<&str>) {
         self.hear(plugin, Some(frame), Level::Error, &format!("{how}, in frame {frame}"));
+        if let Some(then) = then {
+            self.hear(plugin, Some(frame), Level::Warning, then);
+        }
     }
 
-    fn silent(&self, plugin: &str, _at: &str, silence: Option<Silence>) -> Patience {
+    fn silent(&self, plugin: &str, frame: Option<u32>, _at: &str, silence: Option<Silence>) -> Patience {
         let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
         match silence {
             None => *told = Duration::ZERO,
-            Some(Silence { since, at_most, .. }) if since >= *told => {
+            Some(silence) if silence.since >= *told => {
                 // Again when it has lasted twice as long.
-                *told = 2 * since;
-                let (what, done) = (self.bar.message(), self.bar.position());
-                let (since, at_most) = (since.as_secs_f64(), at_most.as_secs_f64());
-                self.say(&format!(
-                    "{plugin}, {what} {done}: no sign of life for {since:.0} s; after {at_most:.0} s it is ended"
-                ));
+                *told = 2 * silence.since;
+                let place = frame.map_or_else(|| self.bar.message(), |frame| format!("frame {frame}"));
+                self.say(&format!("{plugin}, {place}: {}", silence_words(silence)));
             }
             Some(_) => {}
         }
@@ -99,6 +99,14 @@ impl Progress for Bar {
     fn say(&self, line: &str) {
         self.bar.suspend(|| say(line));
     }
+}
+
+/// `no sign of life for 2 s; after 10 s it is ended`.
+fn silence_words(Silence { since, at_most, is_spared, .. }: Silence) -> String {
+    let [since, at_most] = [since, at_most].map(|time| time.as_secs_f64());
+    let end =
+        if is_spared { "it is not ended".to_owned() } else { format!("after {at_most:.0} s it is ended") };
+    format!("no sign of life for {since:.0} s; {end}")
 }
 
 /// One line on standard error; where that is gone with the terminal, nobody is left to hear it.
@@ -141,3 +149,6 @@ pub(super) fn with_warnings(line: &str, warnings: &[String]) -> String {
     let warnings = warnings.iter().map(|warning| format!("\nwarning: {warning}"));
     std::iter::once(line.to_owned()).chain(warnings).collect()
 }
+
+#[cfg(test)]
+mod tests;

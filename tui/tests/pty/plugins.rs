@@ -101,7 +101,7 @@ fn a_plugin_that_hangs_is_named_and_a_stopped_run_goes_on() {
     let Some(library) = bad(folder.path(), "SLEEPS") else { return };
     let mut terminal = open(folder.path(), &library, "isolated");
     terminal.press("\r");
-    terminal.wait_for_text("bad, frame 2/12: no sign of life for");
+    terminal.wait_for_text("bad, frame 2: no sign of life for");
     terminal.press("\x1b");
     terminal.wait_for_text("! goes on from frame 2");
     bad(folder.path(), "NONE");

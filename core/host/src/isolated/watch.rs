@@ -54,10 +54,12 @@ impl Isolated {
             self.is_asked_to_stop = true;
         }
         let is_too_long = silent > watch.at_most;
-        let silence = (silent >= self.limits.tell).then_some(Silence {
+        let is_spared = || std::env::var_os("HONAMI_NO_WATCHDOG").is_some() || self.process.is_traced();
+        let silence = (silent >= self.limits.tell).then(|| Silence {
             since: silent,
             is_too_long,
             at_most: watch.at_most,
+            is_spared: is_spared(),
         });
         let is_to_end = match (cx.silent)(silence) {
             Patience::Usual => is_too_long,
@@ -68,7 +70,7 @@ impl Isolated {
         let to_end = ABORT.min(self.limits.stop / 3);
         let to_stop = self.limits.stop.saturating_sub(to_end);
         let is_late = watch.asked.map_or(is_to_end, |asked| asked.elapsed() > to_stop);
-        if !is_late || std::env::var_os("HONAMI_NO_WATCHDOG").is_some() || self.process.is_traced() {
+        if !is_late || is_spared() {
             return None;
         }
         self.process.signal(Signal::ABORT);

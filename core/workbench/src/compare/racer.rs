@@ -41,7 +41,7 @@ impl Racer {
 pub(super) struct Spare {
     host: Host,
     made: Made,
-    /// Frames, or whole measurements beside the run, that it has died in.
+    /// How often its process has died, in the run and beside it.
     pub(super) n_deaths: u32,
 }
 
@@ -52,8 +52,8 @@ impl Spare {
 }
 
 impl Relay for Spare {
-    fn again(&mut self, _: &Seam, death: Death) -> Result<Tracker, WorkbenchError> {
-        self.n_deaths += u32::from(death == Death::First);
+    fn again(&mut self, _: &Seam, _: Death) -> Result<Tracker, WorkbenchError> {
+        self.n_deaths += 1;
         self.another()
     }
 }

@@ -9,7 +9,6 @@ use honami_model::track::TrackId;
 use honami_store::Seam;
 
 use super::{Death, MAX_DEATHS, Numbers, Relay, Ride, Seed, due, is_inside, view};
-use crate::ear::Ear;
 use crate::error::WorkbenchError;
 
 /// A tracker is not asked what it carries before it has worked so many times as long as its last answer took.
@@ -122,9 +121,8 @@ impl Ride<'_> {
         mut outcome: Result<(), WorkbenchError>,
         relay: &mut dyn Relay,
         numbers: Numbers<'_>,
-        ear: &Ear<'_>,
     ) -> Result<(), WorkbenchError> {
-        let Range { start, end } = self.plan.frames;
+        let (Range { start, end }, ear) = (self.plan.frames.clone(), self.ear);
         let (done, total) = (u64::from(frame - start), u64::from(end - start));
         let mut death = Death::First;
         for n_deaths in 1..=MAX_DEATHS {
@@ -135,7 +133,18 @@ impl Ride<'_> {
                 // What it carried may be what it dies of.
                 self.saved.forget();
             }
-            *self.tracker = relay.again(&seam, death)?;
+            let died_in = match error {
+                HostError::Ended { frame: Some(frame), .. } => u32::try_from(*frame).unwrap_or_default(),
+                _ => frame,
+            };
+            let another = relay.again(&seam, death);
+            let then = if death == Death::Again && frame > start {
+                format!("started again, and frame {frame} is left out")
+            } else {
+                format!("started again at frame {}", seam.frame)
+            };
+            ear.died(died_in, &seam.why, another.is_ok().then_some(&then));
+            *self.tracker = another?;
             self.tracker.pardon(true);
             outcome = ear.call(done, total, |call| self.resume(frame, death, numbers, call));
             self.tracker.pardon(false);

@@ -19,13 +19,18 @@ const BESIDE: usize = 50;
 const WAIT_PER_WRITE: u32 = 100;
 /// but no shorter, for what is written in small pieces takes longer to be put together;
 const WAIT_MIN: Duration = Duration::from_millis(250);
-/// nor longer: before its user is told that a plugin is silent, all frames before are written.
+/// nor longer: before its user is told that a plugin is silent, all frames before are written;
 const WAIT_MAX: Duration = Duration::from_secs(1);
+/// unless the disk is so slow that a run would be written for much of its time.
+const WAIT_PER_SLOW_WRITE: u32 = 10;
 
 /// Frames that are tracked, and the pen that keeps them a chunk at a time.
 pub(super) struct Kept {
     pub(super) writer: RunWriter,
+    /// The first frame that is not written.
     pub(super) first_frame: u32,
+    /// The first of the run.
+    start: u32,
     frames: Vec<Rows>,
     /// The last frames.
     recent: VecDeque<(u32, Rows)>,
@@ -37,7 +42,8 @@ pub(super) struct Kept {
 
 impl Kept {
     pub(super) fn new(writer: RunWriter, first_frame: u32, hidden: TrackSet) -> Self {
-        Self { writer, first_frame, frames: Vec::new(), recent: VecDeque::new(), due: None, hidden }
+        let (start, frames, recent) = (first_frame, Vec::new(), VecDeque::new());
+        Self { writer, first_frame, start, frames, recent, due: None, hidden }
     }
 
     pub(super) fn add(&mut self, frame: u32, rows: &Rows) -> Result<(), WorkbenchError> {
@@ -63,23 +69,27 @@ impl Kept {
     pub(super) fn flush(&mut self) -> Result<(), WorkbenchError> {
         let begun = Instant::now();
         let written = self.writer.append(self.first_frame, &self.frames);
-        let wait = (begun.elapsed() * WAIT_PER_WRITE).clamp(WAIT_MIN, WAIT_MAX);
-        self.due = Some(Instant::now() + wait);
+        self.due = Some(Instant::now() + wait_after(begun.elapsed()));
         written?;
         self.first_frame += u32::try_from(self.frames.len()).unwrap_or(u32::MAX);
         self.frames.clear();
         Ok(())
     }
 
-    /// Writes what has come, if it is time; how many frames are not written.
-    fn look(&mut self, now: Instant) -> usize {
+    /// Writes what has come, if it is time; how many frames are written.
+    fn look(&mut self, now: Instant) -> u32 {
         let is_due = self.due.is_none_or(|due| now >= due);
         if is_due && !self.frames.is_empty() {
             // They are not lost: the next write has them, too, and whoever asks for that is told.
             drop(self.flush());
         }
-        self.frames.len()
+        self.first_frame - self.start
     }
+}
+
+/// How long the next write waits after one that took so long.
+fn wait_after(write: Duration) -> Duration {
+    (write * WAIT_PER_WRITE).clamp(WAIT_MIN, WAIT_MAX.max(write * WAIT_PER_SLOW_WRITE))
 }
 
 /// Several have the run in hand: who tracks, and who looks whether frames are to be written.
@@ -95,8 +105,9 @@ pub(super) struct Keeper<'a> {
 
 impl Progress for Keeper<'_> {
     fn report(&self, done: u64, total: u64, what: &str) -> Flow {
-        let n_waiting = hand(self.kept).look(Instant::now());
-        self.progress.report(done.saturating_sub(n_waiting as u64), total, what)
+        let n_written = hand(self.kept).look(Instant::now());
+        // What a tracker has not answered yet, or has done on trial, is nobody's yet.
+        self.progress.report(done.min(u64::from(n_written)), total, what)
     }
 
     fn part(&self, name: &str) {
@@ -107,12 +118,16 @@ impl Progress for Keeper<'_> {
         self.progress.hear(plugin, frame, level, line);
     }
 
-    fn died(&self, plugin: &str, frame: u32, how: &str) {
-        self.progress.died(plugin, frame, how);
+    fn at(&self, frame: u32) {
+        self.progress.at(frame);
     }
 
-    fn silent(&self, plugin: &str, at: &str, silence: Option<Silence>) -> Patience {
-        self.progress.silent(plugin, at, silence)
+    fn died(&self, plugin: &str, frame: u32, how: &str, then: Option<&str>) {
+        self.progress.died(plugin, frame, how, then);
+    }
+
+    fn silent(&self, plugin: &str, frame: Option<u32>, at: &str, silence: Option<Silence>) -> Patience {
+        self.progress.silent(plugin, frame, at, silence)
     }
 
     fn say(&self, line: &str) {

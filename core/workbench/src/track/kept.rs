@@ -10,7 +10,7 @@ use honami_store::Seam;
 use super::frames::{Keeper, Kept, hand};
 use crate::drive::{self, Death, Driven, Plan, Relay, Rows};
 use crate::error::WorkbenchError;
-use crate::progress::{Level, Progress};
+use crate::progress::Progress;
 use crate::rebuilt::{Beside, Found, Lookout, Made, Stretch};
 
 /// How far a run came, and what a rebuilt tracker makes of the frames before it took over.
@@ -130,13 +130,7 @@ impl Shift<'_> {
 
 impl Relay for Shift<'_> {
     fn again(&mut self, seam: &Seam, death: Death) -> Result<Tracker, WorkbenchError> {
-        let name = self.made.plugin.short_name.clone();
-        if death == Death::First {
-            self.progress.died(&name, seam.frame, &seam.why);
-        }
         let (tracker, made) = self.another()?;
-        let again = format!("started again at frame {}", seam.frame);
-        self.progress.hear(&name, Some(seam.frame), Level::Warning, &again);
         let build = (!made.is(&self.made)).then(|| made.build());
         if build.is_some() {
             self.since = seam.frame;

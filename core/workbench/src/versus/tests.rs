@@ -34,7 +34,7 @@ fn run(session: &mut Session, plugin: &str, radius: i64, tracks: Range<u32>, off
             _ => "track",
         }
         .to_owned(),
-        plugin_id: format!("org.honami.{plugin}"),
+        plugin_id: if plugin.contains('.') { plugin.to_owned() } else { format!("org.honami.{plugin}") },
         plugin_version: "0.1.0".to_owned(),
         plugin_sha256: build.to_owned(),
         abi: (1, 0),
@@ -124,6 +124,8 @@ fn builds_of_a_plugin_are_told_apart_and_the_last_two_are_offered() {
     assert_eq!(usual_of(&session), named(b, "run 4 klt"), "only where there are several");
     run(&mut session, "flow@cc", 5, 7..9, 0.0);
     assert_eq!(last_two(&session), named(a, b), "the newest has no track that another has");
+    run(&mut session, "org.other.klt@dd", 5, 1..4, 0.0);
+    assert_eq!(last_two(&session), named(a, b), "a namesake is no build of it");
 }
 
 #[test]

@@ -51,8 +51,9 @@ fn what_a_plugin_prints_is_told_once_and_bounded() {
 #[test]
 fn a_silent_plugin_is_asked_about_once_it_is_too_long_and_ended_when_its_user_says_so() {
     let at_most = Duration::from_secs(10);
-    let silence =
-        |since, is_too_long| Some(Silence { since: Duration::from_secs(since), is_too_long, at_most });
+    let silence = |since, is_too_long| {
+        Some(Silence { since: Duration::from_secs(since), is_too_long, at_most, is_spared: false })
+    };
     let mut watch = Watch::default();
     // Seconds of silence and whether that is too long, what the user then answers, whether they are asked before.
     let steps = [
@@ -65,11 +66,11 @@ fn a_silent_plugin_is_asked_about_once_it_is_too_long_and_ended_when_its_user_sa
         (26, true, None, true, Patience::Wait),
     ];
     for (since, is_too_long, answer, is_asked, wanted) in steps {
-        assert_eq!(watch.look("mine", "", silence(since, is_too_long)), wanted, "{since} s");
+        assert_eq!(watch.look("mine", None, "", silence(since, is_too_long)), wanted, "{since} s");
         assert_eq!(watch.quiet.as_ref().map(|quiet| quiet.is_asked), Some(is_asked), "{since} s");
         answer.into_iter().for_each(|answer| watch.answer(answer));
     }
-    assert_eq!(watch.look("mine", "", None), Patience::Usual);
+    assert_eq!(watch.look("mine", None, "", None), Patience::Usual);
     assert_eq!((watch.quiet.take(), watch.waits), (None, Duration::ZERO));
     // Who answers before they are asked is asked later.
     for (since, is_too_long, answer, is_asked) in [
@@ -78,7 +79,7 @@ fn a_silent_plugin_is_asked_about_once_it_is_too_long_and_ended_when_its_user_sa
         (19, true, None, false),
         (20, true, None, true),
     ] {
-        assert_eq!(watch.look("mine", "", silence(since, is_too_long)), Patience::Wait, "{since} s");
+        assert_eq!(watch.look("mine", None, "", silence(since, is_too_long)), Patience::Wait, "{since} s");
         assert_eq!(watch.quiet.as_ref().map(|quiet| quiet.is_asked), Some(is_asked), "{since} s");
         answer.into_iter().for_each(|answer| watch.answer(answer));
     }
@@ -86,16 +87,29 @@ fn a_silent_plugin_is_asked_about_once_it_is_too_long_and_ended_when_its_user_sa
 
 #[test]
 fn a_death_is_told_at_once_and_among_what_was_printed() {
+    let how = "died of SIGSEGV; it last printed: no weights";
     let (waker, _woken) = signals::pair().unwrap();
-    let running = Running::spawn(waker, |progress| {
-        progress.died("mine", 12, "died of SIGSEGV; it last printed: no weights");
+    let running = Running::spawn(waker, move |progress| {
+        progress.at(12);
+        progress.died("mine", 12, how, Some("started again at frame 10"));
+        // What is not started again the end of the job tells of.
+        progress.died("mine", 13, how, None);
         Done::Track(Box::new(Err(WorkbenchError::Stopped)))
     });
     let running = running.unwrap();
     assert!(running.ends_within(Duration::from_secs(60)));
-    let how = "died of SIGSEGV; it last printed: no weights";
-    let wanted =
-        Print { frame: Some(12), plugin: "mine".to_owned(), level: Level::Error, text: how.to_owned() };
-    assert_eq!(running.prints(), [wanted]);
-    assert_eq!(running.said(), [format!("mine {how}; it is started again at frame 12")]);
+    let print = |frame, level, text: &str| Print {
+        frame: Some(frame),
+        plugin: "mine".to_owned(),
+        level,
+        text: text.to_owned(),
+    };
+    let wanted = [
+        print(12, Level::Error, how),
+        print(12, Level::Warning, "started again at frame 10"),
+        print(13, Level::Error, how),
+    ];
+    assert_eq!(running.prints(), wanted);
+    assert_eq!(running.step().frame, Some(12));
+    assert_eq!(running.said(), [format!("mine, frame 12: {how}; started again at frame 10")]);
 }

@@ -44,6 +44,7 @@ pub(super) fn start(words: &str) -> State {
                     since,
                     keeps_frames: true,
                     is_stopping: false,
+                    frame: Some(10),
                     quiet: None,
                 });
             }

@@ -575,11 +575,11 @@ fn recovery_line(recovery: &Recovery, state: &State) -> Line<'static> {
     Line::from([key(Action::GoOn, &recovery.words).to_vec(), prints].concat())
 }
 
-/// `my-flow, frame 212/378: no sign of life for 12 s   W waits   I ends it   Esc stops`.
+/// `my-flow, frame 212: no sign of life for 12 s   W waits   I ends it   Esc stops`.
 fn quiet_words(job: &Job, quiet: &Quiet, state: &State) -> String {
-    let Quiet { plugin, seconds, at, is_asked, .. } = quiet;
-    let [now, end] = [job.done.0, job.done.1].map(|n| job.first + n);
-    let mut words = format!("{plugin}, {} {now}/{end}: no sign of life for {seconds} s", job.what);
+    let Quiet { plugin, frame, seconds, at, is_asked, .. } = quiet;
+    let place = frame.map_or_else(|| job.what.clone(), |frame| format!("frame {frame}"));
+    let mut words = format!("{plugin}, {place}: no sign of life for {seconds} s");
     if !at.is_empty() && !is_asked {
         words.push_str(&format!(" (at: {at})"));
     }

@@ -102,6 +102,7 @@ fn job(state: &mut State) {
         since,
         keeps_frames: true,
         is_stopping: false,
+        frame: Some(50),
         quiet: None,
     });
 }

@@ -24,12 +24,13 @@ fn what_plugins_print() {
 fn silent(seconds: u64, is_asked: bool) -> impl FnOnce(&mut State) {
     move |state| {
         let (plugin, at) = ("my-flow".to_owned(), "level 2".to_owned());
-        let quiet = Some(Quiet { plugin: plugin.clone(), seconds, limit_s: 10, at, is_asked });
+        let frame = Some(40);
+        let quiet = Some(Quiet { plugin: plugin.clone(), frame, seconds, limit_s: 10, at, is_asked });
         let (what, since) = ("frame".to_owned(), Duration::ZERO);
         // The frames 10 to 99 of the clip.
         let (done, first) = ((30, 90), 10);
-        state.job =
-            Some(Job { plugin, what, done, first, since, keeps_frames: true, is_stopping: false, quiet });
+        let (keeps_frames, is_stopping) = (true, false);
+        state.job = Some(Job { plugin, what, done, first, since, keeps_frames, is_stopping, frame, quiet });
     }
 }
 
