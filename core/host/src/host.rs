@@ -267,12 +267,7 @@ impl Host {
     }
 
     /// Makes an instance where it is to work.
-    fn instance(
-        &self,
-        info: &PluginInfo,
-        values: &Values,
-        cx: &CallContext<'_>,
-    ) -> Result<Made, HostError> {
+    fn instance(&self, info: &PluginInfo, values: &Values, cx: &CallContext<'_>) -> Result<Made, HostError> {
         match self.hosting_of(info) {
             Hosting::InProcess => {
                 let trail = self.leave_trail(info)?;
