@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::fs;
 
-use honami_tests::{Bench, data, rows};
+use honami_tests::{Bench, data, program, root, rows, skipped};
 use serde_json::Value;
 
 /// A rod of 1 m and 2 cm radius as a digitised plant: centimetres, and tenths of them for diameters.
@@ -62,6 +62,25 @@ fn the_digitised_walnut_swings_as_measured_and_as_another_program_says() {
     assert!(worst.fold(0.0, f64::max) < 1e-9);
     let notes = mean["notes"].as_array().unwrap();
     assert!(notes.len() >= 4, "{notes:?}");
+}
+
+/// OpenSees finds the same frequencies on the same beams, to 1e-8, where it is installed.
+#[test]
+fn another_program_finds_the_same_modes_of_the_same_beams() {
+    let python = |args: &[&str]| std::process::Command::new("python3").args(args).output();
+    let is_there = python(&["-c", "import openseespy.opensees"]).is_ok_and(|output| output.status.success());
+    if !is_there {
+        skipped("openseespy (pip install openseespy)");
+        return;
+    }
+    let script = root().join("tests/peers/beams_opensees.py");
+    let program = program().to_str().unwrap();
+    let plants: [&[&str]; 2] =
+        [&["synth::tree:40,1", "--modes", "10"], &["synth::tree:300,2", "--modes", "25", "--longest", "0.2"]];
+    for plant in plants {
+        let output = python(&[&[script.to_str().unwrap(), program], plant].concat()).unwrap();
+        assert!(output.status.success(), "{plant:?}: {output:?}");
+    }
 }
 
 /// Pulled out and let go, the first mode swings at its frequency and falls by its damping.
@@ -140,6 +159,24 @@ fn a_swing_has_its_frequency_and_damping_back_from_its_sensors() {
         ran.code == Some(1) && ran.stderr.contains("line 2: wanted 2 numbers as before, came 1"),
         "{ran:?}"
     );
+}
+
+/// A plant is filmed as it swings, tracked, and its tracks have its frequency and damping back.
+#[test]
+fn the_loop_from_a_plant_to_a_clip_to_its_frequency_is_closed() {
+    let bench = Bench::new();
+    let made = bench.json(
+        "synth swing.y4m --plant synth::tree:60,1 --pull 0.5 --modes 3 --frames 250 --fps 12.5 --size 320x240 \
+         --leaves 120",
+    );
+    bench.json("new swing.honami swing.y4m");
+    bench.json("track swing.honami");
+    let lines = &bench.json("spectrum swing.honami")["lines"];
+    let swing = &lines[0]["swing"];
+    for (name, tolerance) in [("hz", 0.02), ("damping", 0.2)] {
+        let (wanted, got) = (made["plant"][name].as_f64().unwrap(), swing[name].as_f64().unwrap());
+        assert!((got / wanted - 1.0).abs() < tolerance, "{name}: {got} {wanted}");
+    }
 }
 
 /// Strain of a real tree after it was pulled and let go, as published: 0.29 Hz in winter, 0.22 to 0.23 Hz in leaf.

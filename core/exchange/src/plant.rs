@@ -1,12 +1,14 @@
 //! Plants as others have measured them, in.
 
 pub mod anemometer;
+mod beam_table;
 pub mod mtg;
 pub mod qsm;
 mod rooted;
 mod sway_table;
 pub mod swc;
 
+pub use beam_table::BeamRow;
 pub use sway_table::SwayRow;
 
 use honami_model::plant::{Plant, PlantError};

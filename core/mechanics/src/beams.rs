@@ -159,6 +159,24 @@ impl Beams {
         self.nodes[node].position
     }
 
+    /// The node that bears a node; `None` for the root.
+    ///
+    /// # Panics
+    /// When there is no such node.
+    #[must_use]
+    pub fn parent(&self, node: usize) -> Option<u32> {
+        self.nodes[node].parent
+    }
+
+    /// Radius of the segment that leads to a node, metres.
+    ///
+    /// # Panics
+    /// When there is no such node.
+    #[must_use]
+    pub fn radius(&self, node: usize) -> f64 {
+        self.nodes[node].radius
+    }
+
     /// Nodes that bear no other.
     #[must_use]
     pub fn ends(&self) -> Vec<u32> {

@@ -18,6 +18,7 @@
 
 mod cover;
 mod geometry;
+mod moving;
 mod outline;
 mod plant;
 mod pose;
@@ -32,6 +33,7 @@ mod wind;
 #[cfg(test)]
 mod tests;
 
+pub use moving::Moving;
 pub use render::Picture;
 pub use scene::Scene;
 pub use settings::{Level, Settings, SynthError};

@@ -5,6 +5,7 @@ use rand_pcg::Pcg64Mcg;
 use rayon::prelude::*;
 
 use crate::cover::Cover;
+use crate::moving::{Given, Moving};
 use crate::plant::{Plant, frames_of};
 use crate::pose::Pose;
 use crate::render::{Camera, Picture};
@@ -20,12 +21,32 @@ const STRETCH: u32 = 16;
 pub struct Scene {
     pub(crate) settings: Settings,
     pub(crate) plant: Plant,
-    wind: Wind,
-    /// Amplitude of all sways.
-    scale: f64,
+    motion: Motion,
     pub(crate) camera: Camera,
     truth: Truth,
     mean_step_px: f64,
+}
+
+/// What moves the plant.
+#[derive(Clone, Debug)]
+enum Motion {
+    /// Sways of every branch.
+    Sways {
+        wind: Wind,
+        /// Amplitude of all.
+        scale: f64,
+    },
+    /// Whoever gave it.
+    Given(Given),
+}
+
+impl Motion {
+    fn pose(&self, plant: &Plant, settings: &Settings, frame: u32) -> Pose {
+        match self {
+            Self::Sways { wind, scale } => Pose::at(plant, wind, *scale, time_secs(settings, frame)),
+            Self::Given(given) => given.pose(plant, frame),
+        }
+    }
 }
 
 impl Scene {
@@ -40,8 +61,25 @@ impl Scene {
         let wind = Wind::new(&mut rng, f64::from(settings.width));
         let camera = Camera::new(settings, &mut rng);
         let (scale, mean_step_px) = fit_scale(settings, &plant, &wind)?;
-        let truth = observe(settings, &plant, &wind, scale);
-        Ok(Self { settings: settings.clone(), plant, wind, scale, camera, truth, mean_step_px })
+        let motion = Motion::Sways { wind, scale };
+        let truth = observe(settings, &plant, &motion);
+        Ok(Self { settings: settings.clone(), plant, motion, camera, truth, mean_step_px })
+    }
+
+    /// Films a plant that moves by itself; the level of the settings is not looked at.
+    ///
+    /// # Errors
+    /// A setting out of its range, [`SynthError::Moving`] for what is no plant.
+    pub fn of(settings: &Settings, moving: &Moving) -> Result<Self, SynthError> {
+        settings.check()?;
+        let mut rng = Pcg64Mcg::seed_from_u64(settings.seed);
+        let (given, sticks) = moving.given(settings)?;
+        let plant = Plant::of(settings, &sticks, &mut rng);
+        let camera = Camera::new(settings, &mut rng);
+        let motion = Motion::Given(given);
+        let truth = observe(settings, &plant, &motion);
+        let mean_step_px = mean_step_px(settings, &plant, |frame| motion.pose(&plant, settings, frame));
+        Ok(Self { settings: settings.clone(), plant, motion, camera, truth, mean_step_px })
     }
 
     /// The settings it was grown from.
@@ -80,7 +118,7 @@ impl Scene {
     }
 
     pub(crate) fn pose(&self, frame: u32) -> Pose {
-        Pose::at(&self.plant, &self.wind, self.scale, time_secs(&self.settings, frame))
+        self.motion.pose(&self.plant, &self.settings, frame)
     }
 }
 
@@ -98,7 +136,8 @@ fn fit_scale(settings: &Settings, plant: &Plant, wind: &Wind) -> Result<(f64, f6
     let mut scale = 0.02;
     let mut reached_px = 0.0;
     for attempt in 0..40 {
-        reached_px = mean_step_px(settings, plant, wind, scale);
+        reached_px =
+            mean_step_px(settings, plant, |frame| Pose::at(plant, wind, scale, time_secs(settings, frame)));
         if (reached_px / wanted_px - 1.0).abs() < 1e-3 {
             return Ok((scale, reached_px));
         }
@@ -114,8 +153,7 @@ fn fit_scale(settings: &Settings, plant: &Plant, wind: &Wind) -> Result<(f64, f6
     Err(SynthError::Level { wanted_px, reached_px })
 }
 
-fn mean_step_px(settings: &Settings, plant: &Plant, wind: &Wind, scale: f64) -> f64 {
-    let pose = |frame| Pose::at(plant, wind, scale, time_secs(settings, frame));
+fn mean_step_px(settings: &Settings, plant: &Plant, pose: impl Fn(u32) -> Pose + Sync) -> f64 {
     let step_px = |from: &Pose, to: &Pose| -> f64 {
         from.leaves.iter().zip(&to.leaves).map(|(a, b)| (b.frame.origin - a.frame.origin).norm()).sum()
     };
@@ -138,11 +176,11 @@ fn mean_step_px(settings: &Settings, plant: &Plant, wind: &Wind, scale: f64) -> 
     stretches.iter().sum::<f64>() / (f64::from(n_steps) * plant.leaves.len() as f64)
 }
 
-fn observe(settings: &Settings, plant: &Plant, wind: &Wind, scale: f64) -> Truth {
+fn observe(settings: &Settings, plant: &Plant, motion: &Motion) -> Truth {
     let seen: Vec<Vec<At>> = (0..settings.n_frames)
         .into_par_iter()
         .map(|frame| {
-            let pose = Pose::at(plant, wind, scale, time_secs(settings, frame));
+            let pose = motion.pose(plant, settings, frame);
             Cover::new(settings, plant, &pose).observe()
         })
         .collect();

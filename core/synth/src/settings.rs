@@ -167,6 +167,17 @@ pub enum SynthError {
         /// What the plant came to.
         reached_px: f64,
     },
+    /// What is to be filmed is no plant, or not for so many frames.
+    #[error(
+        "wanted a moving plant: nodes after their parents, each with a radius and a place in every frame; got {n_nodes} \
+         nodes and {n_frames} frames that are not"
+    )]
+    Moving {
+        /// Nodes that it names.
+        n_nodes: usize,
+        /// Frames that it has.
+        n_frames: usize,
+    },
     /// Not the name of a level.
     #[error("wanted calm, wind or storm, got {0:?}")]
     UnknownLevel(String),

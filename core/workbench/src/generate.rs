@@ -3,9 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use honami_exchange::{TruthRow, Writer};
-use honami_media::write::{self, Format};
+use honami_media::write as movie;
+use honami_media::write::Format;
 use honami_model::picture::Range;
-use honami_synth::{Scene, Settings};
+use honami_synth::{Moving, Scene, Settings};
 
 use crate::error::WorkbenchError;
 use crate::progress::{Flow, Progress};
@@ -34,10 +35,27 @@ pub fn generate(
     clip: &Path,
     progress: &dyn Progress,
 ) -> Result<Generated, WorkbenchError> {
-    let scene = Scene::new(settings)?;
+    write(&Scene::new(settings)?, clip, progress)
+}
+
+/// Films a plant that moves by itself as [`generate`] does its own.
+///
+/// # Errors
+/// As [`generate`].
+pub fn film(
+    settings: &Settings,
+    moving: &Moving,
+    clip: &Path,
+    progress: &dyn Progress,
+) -> Result<Generated, WorkbenchError> {
+    write(&Scene::of(settings, moving)?, clip, progress)
+}
+
+fn write(scene: &Scene, clip: &Path, progress: &dyn Progress) -> Result<Generated, WorkbenchError> {
+    let settings = scene.settings();
     let truth = truth_beside(clip);
     let mut table = Writer::create(&truth)?;
-    for row in rows(&scene) {
+    for row in rows(scene) {
         table.write(&row)?;
     }
     let format = Format {
@@ -47,7 +65,7 @@ pub fn generate(
         colour: true,
         range: Range::Full,
     };
-    let mut movie = write::create(clip, &format)?;
+    let mut movie = movie::create(clip, &format)?;
     for frame in 0..settings.n_frames {
         if progress.report(u64::from(frame), u64::from(settings.n_frames), "frame") == Flow::Stop {
             return Err(WorkbenchError::Stopped);

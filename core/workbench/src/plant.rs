@@ -1,6 +1,7 @@
 //! Plants: from whatever they were measured as to their vibration modes, and how they move in the wind.
 
 pub mod bench;
+pub mod film;
 pub mod sway;
 pub mod weather;
 
@@ -8,7 +9,8 @@ use std::fs;
 use std::path::Path;
 use std::time::Instant;
 
-use honami_exchange::plant::{Measured, PlantFileError, mtg, qsm, swc};
+use honami_exchange::Writer;
+use honami_exchange::plant::{BeamRow, Measured, PlantFileError, mtg, qsm, swc};
 use honami_mechanics::{Beams, Drag, Modes, Options, WindBasis};
 use honami_model::plant::RadiusRule;
 
@@ -106,6 +108,20 @@ pub fn vibrate(wish: &Wish) -> Result<Vibrating, WorkbenchError> {
     let basis = WindBasis::new(&beams, &modes, &drag);
     let (n_measured, height) = (plant.nodes().len(), plant.height());
     Ok(Vibrating { n_measured, height, beams, modes, basis, notes, seconds })
+}
+
+/// Writes the beams of a plant as a table, for other programs.
+///
+/// # Errors
+/// What the disk says; nothing is left behind then.
+pub fn write_beams(plant: &Vibrating, path: &Path) -> Result<(), WorkbenchError> {
+    let mut table = Writer::create(path)?;
+    for node in 0..plant.beams.len() {
+        let at = plant.beams.position(node);
+        let (parent, radius) = (plant.beams.parent(node), plant.beams.radius(node));
+        table.write(&BeamRow { node: node as u32, parent, x: at.x, y: at.y, z: at.z, radius })?;
+    }
+    Ok(table.finish()?)
 }
 
 /// In words: how thick a segment is.

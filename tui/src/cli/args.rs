@@ -329,7 +329,8 @@ pub(super) enum ExportWhat {
 pub(super) struct Synth {
     /// Clip to write: a .y4m or .mp4 file, or a folder of PNG files. The truth goes beside it.
     pub(super) out: PathBuf,
-    /// How hard it blows: mean leaf displacement of 1.5, 3.4 or 5.8 px per frame at 960x720.
+    /// How hard it blows: mean leaf displacement of 1.5, 3.4 or 5.8 px per frame at 960x720; of a --plant gusts of 3, 8 or
+    /// 18 m/s.
     #[arg(long, default_value = "calm")]
     pub(super) wind: Wind,
     /// Number of frames.
@@ -347,6 +348,24 @@ pub(super) struct Synth {
     /// The same seed gives the same clip.
     #[arg(long, value_name = "S", default_value_t = 1)]
     pub(super) seed: u64,
+    /// Film this plant as it moves by its own modes, with leaves on the ends of its branches: what `simulate` takes.
+    #[arg(long, value_name = "PLANT")]
+    pub(super) plant: Option<String>,
+    /// Of a .mtg plant: only parts of these classes, such as S.
+    #[arg(long, value_name = "C,…", value_delimiter = ',', requires = "plant")]
+    pub(super) classes: Vec<String>,
+    /// Of a plant: how many modes, the slowest first.
+    #[arg(long, value_name = "M", default_value_t = 25, requires = "plant")]
+    pub(super) modes: u32,
+    /// Of a plant: in still air, the slowest mode pulled out by so many metres and let go.
+    #[arg(
+        long,
+        value_name = "M",
+        allow_negative_numbers = true,
+        requires = "plant",
+        conflicts_with = "wind"
+    )]
+    pub(super) pull: Option<f64>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

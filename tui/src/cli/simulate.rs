@@ -25,6 +25,9 @@ pub(super) fn simulate(args: &Simulate) -> anyhow::Result<Answer> {
     let wind = weather::blow(&args.wind)?;
     let wish = wish(&args.plant);
     let plant = plant::vibrate(&wish)?;
+    if let Some(beams) = &args.beams {
+        plant::write_beams(&plant, beams)?;
+    }
     let damping = Damping { alpha: args.alpha, beta: args.beta, mass: args.heavier };
     let (mut text, mut json) = describe(&wish, &plant, &damping);
     let is_moved =
@@ -132,6 +135,11 @@ fn describe(wish: &Wish, plant: &Vibrating, damping: &Damping) -> (String, serde
         "nodes": plant.n_measured,
         "beam_nodes": beams.len(),
         "radius": rule,
+        "material": {
+            "young": wish.beams.material.young,
+            "poisson": wish.beams.material.poisson,
+            "density": wish.beams.material.density,
+        },
         "notes": notes,
         "seconds": plant.seconds,
     });

@@ -7,6 +7,8 @@ use std::path::Path;
 use anyhow::Context as _;
 use honami_workbench::generate::{self, Generated};
 use honami_workbench::media;
+use honami_workbench::plant::sway::Motion;
+use honami_workbench::plant::{self, Wish, weather};
 use honami_workbench::progress::{Flow, Progress};
 use honami_workbench::session::Session;
 use honami_workbench::synth::{Level, Settings};
@@ -38,7 +40,37 @@ pub(super) fn synth(args: &Synth) -> anyhow::Result<Answer> {
         settings.n_leaves = n_leaves;
     }
     anyhow::ensure!(!args.out.exists(), "{} is there already: choose another name", args.out.display());
+    if let Some(source) = &args.plant {
+        return film(args, source, &settings);
+    }
     Ok(describe(&generate::generate(&settings, &args.out, &report::Bar::new())?))
+}
+
+/// Films a plant that moves by its own modes.
+fn film(args: &Synth, source: &str, settings: &Settings) -> anyhow::Result<Answer> {
+    let wish = Wish { classes: args.classes.clone(), ..Wish::of(source, args.modes as usize) };
+    let plant = plant::vibrate(&wish)?;
+    let weather = match (args.pull, args.wind) {
+        (Some(_), _) => "still",
+        (None, Wind::Calm) => "calm",
+        (None, Wind::Wind) => "wind",
+        (None, Wind::Storm) => "storm",
+    };
+    let wind = weather::blow(&format!(
+        "{weather}{}",
+        if args.pull.is_none() { format!(":seed={}", args.seed) } else { String::new() }
+    ))?;
+    let motion =
+        Motion { n_frames: args.frames, fps: args.fps, pull: args.pull.unwrap_or(0.0), ..Motion::default() };
+    let bar = report::Bar::new();
+    let moving = plant::film::film(&plant, &*wind, &motion, &bar)?;
+    let mut answer = describe(&generate::film(settings, &moving, &args.out, &bar)?);
+    let damping = motion.damping;
+    let (hz, omega) = (plant.modes.hz(0), plant.modes.omegas[0]);
+    let ratio = (damping.alpha + damping.beta * omega.powi(2)) / (2.0 * omega);
+    answer.text += &format!("\nslowest mode: {hz:.4} Hz, damping {:.2} %", 100.0 * ratio);
+    answer.json["plant"] = json!({ "source": source, "hz": hz, "damping": ratio, "notes": plant.notes });
+    Ok(answer)
 }
 
 fn describe(made: &Generated) -> Answer {

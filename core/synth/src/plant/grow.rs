@@ -7,6 +7,7 @@ use rand_pcg::Pcg64Mcg;
 
 use super::{Branch, Item, Leaf, Plant};
 use crate::geometry::{Frame, Point};
+use crate::moving::Stick;
 use crate::settings::Settings;
 use crate::texture::Texture;
 use crate::wind::{self, Mode};
@@ -28,6 +29,18 @@ impl Plant {
         let mut grower = Grower::new(settings, rng);
         let n_bearing = ((0.82 * f64::from(settings.n_leaves).sqrt()).round() as usize).max(1);
         grower.wood(n_bearing);
+        grower.foliage(settings.n_leaves as usize);
+        grower.finish()
+    }
+}
+
+impl Plant {
+    /// A plant of given branches, with leaves on those that end.
+    pub(crate) fn of(settings: &Settings, sticks: &[Stick], rng: &mut Pcg64Mcg) -> Self {
+        let mut grower = Grower::new(settings, rng);
+        for stick in sticks {
+            grower.stick(stick);
+        }
         grower.foliage(settings.n_leaves as usize);
         grower.finish()
     }
@@ -159,6 +172,30 @@ impl<'a> Grower<'a> {
         self.frames.push(frame);
         self.nearness.push(nearness);
         self.branches.len() - 1
+    }
+
+    /// A branch that stands by itself, straight.
+    fn stick(&mut self, stick: &Stick) {
+        let [base, tip] = stick.ends;
+        let way = tip - base;
+        let light = self.rng.random_range(0.8..1.0) as f32;
+        let branch = Branch {
+            parent: None,
+            // Leaves grow on what is of order 2.
+            order: if stick.is_end { 2 } else { 1 },
+            base,
+            turn_rad: way.y.atan2(way.x),
+            length_px: way.norm().max(1e-3),
+            bend_px: 0.0,
+            radius_px: [stick.radius_px; 2],
+            gust_x_px: base.x,
+            modes: Vec::new(),
+            colour: [104.0, 84.0, 62.0].map(|c: f32| c * light),
+        };
+        self.frames.push(branch.frame(None, 0.0));
+        self.branches.push(branch);
+        let nearness = self.vary(0.5);
+        self.nearness.push(nearness);
     }
 
     /// Leaves on all branches of order 2 and 3, as many as their length asks for.

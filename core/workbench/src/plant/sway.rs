@@ -46,6 +46,25 @@ pub struct Motion {
     pub n_threads: usize,
 }
 
+impl Default for Motion {
+    /// A plant alone, twenty seconds of it in steps of a frame.
+    fn default() -> Self {
+        Self {
+            n_copies: 1,
+            n_frames: 500,
+            fps: 25.0,
+            n_substeps: 1,
+            integrator: Integrator::Exact,
+            damping: Damping::default(),
+            form: Form::Mode(2),
+            pull: 0.0,
+            n_sensors: 1,
+            seed: 1,
+            n_threads: 1,
+        }
+    }
+}
+
 /// What became of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moved {
@@ -132,7 +151,7 @@ fn spread(path: &[[f64; 3]], rest: [f64; 3]) -> (f64, f64) {
 }
 
 /// Amplitudes with the slowest mode pulled out.
-fn pulled(plant: &Vibrating, metres: f64) -> Vec<f32> {
+pub(super) fn pulled(plant: &Vibrating, metres: f64) -> Vec<f32> {
     let most =
         (0..plant.beams.len()).map(|node| plant.modes.displacement(0, node).norm()).fold(0.0, f64::max);
     let mut amplitudes = vec![0.0; plant.modes.len()];

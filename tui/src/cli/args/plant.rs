@@ -49,6 +49,9 @@ pub(in crate::cli) struct Simulate {
     /// Write where they are, metres: sensor,node,frame,time_s,x,y,z.
     #[arg(long, value_name = "FILE.csv")]
     pub(in crate::cli) out: Option<PathBuf>,
+    /// Write the beams that the plant was made into, metres: node,parent,x,y,z,radius.
+    #[arg(long, value_name = "FILE.csv")]
+    pub(in crate::cli) beams: Option<PathBuf>,
     /// Threads (default: as many as there are cores).
     #[arg(long, value_name = "N")]
     pub(in crate::cli) threads: Option<usize>,

@@ -1,0 +1,60 @@
+//! A plant that is filmed while it moves, from the side on which it moves most.
+
+use honami_mechanics::wind::Wind;
+use honami_mechanics::{Direction, Forest, Kind, Pace, Stand, Stirring, Threads};
+use honami_synth::Moving;
+
+use super::Vibrating;
+use super::sway::{Motion, free, pulled};
+use crate::error::WorkbenchError;
+use crate::progress::{Flow, Progress};
+
+/// Where all nodes are in every frame of a motion, in the plane in which they move most.
+///
+/// # Errors
+/// What [`Forest`] refuses, and [`WorkbenchError::Stopped`].
+pub fn film(
+    plant: &Vibrating,
+    wind: &dyn Wind,
+    motion: &Motion,
+    progress: &dyn Progress,
+) -> Result<Moving, WorkbenchError> {
+    let n_nodes = plant.beams.len();
+    let stirring = Stirring::new(&plant.beams, &plant.modes, plant.basis.clone(), motion.form);
+    let pace =
+        Pace { step: 1.0 / (motion.fps * f64::from(motion.n_substeps)), integrator: motion.integrator };
+    let kinds = [Kind { scale: 1.0, damping: motion.damping }];
+    let mut forest = Forest::new(&stirring, vec![Stand::default()], &kinds, &pace, &[], free())?;
+    let threads = Threads::new(motion.n_threads)?;
+    if motion.pull.abs() > 0.0 {
+        forest.pull(0, &pulled(plant, motion.pull));
+    }
+    let mut frames: Vec<Vec<Direction>> = Vec::new();
+    // Sums over all nodes and frames: of x x, y y and x y of displacements.
+    let mut spread = [0.0; 3];
+    for frame in 0..motion.n_frames {
+        if progress.report(u64::from(frame), u64::from(motion.n_frames), "motion") == Flow::Stop {
+            return Err(WorkbenchError::Stopped);
+        }
+        forest.pose(None, &threads)?;
+        let moved = forest.displacements(0).as_chunks::<3>().0;
+        let places = moved.iter().zip(stirring.rest()).map(|(moved, rest)| {
+            let [x, y, z] = moved.map(f64::from);
+            spread = [spread[0] + x * x, spread[1] + y * y, spread[2] + x * y];
+            rest + Direction::new(x, y, z)
+        });
+        frames.push(places.collect());
+        for _ in 0..motion.n_substeps {
+            forest.step(wind, &threads)?;
+        }
+    }
+    // The longer axis of the ellipse of displacements.
+    let angle = (2.0 * spread[2]).atan2(spread[0] - spread[1]) / 2.0;
+    let (sin, cos) = angle.sin_cos();
+    let seen = |at: &Direction| [cos * at.x + sin * at.y, at.z];
+    Ok(Moving {
+        parents: (0..n_nodes).map(|node| plant.beams.parent(node)).collect(),
+        radii: (0..n_nodes).map(|node| plant.beams.radius(node)).collect(),
+        frames: frames.iter().map(|frame| frame.iter().map(seen).collect()).collect(),
+    })
+}
