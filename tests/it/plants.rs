@@ -165,9 +165,14 @@ fn a_swing_has_its_frequency_and_damping_back_from_its_sensors() {
 #[test]
 fn the_loop_from_a_plant_to_a_clip_to_its_frequency_is_closed() {
     let bench = Bench::new();
+    let stem =
+        "1 1 0 0 0 .07 -1\n2 1 0 0 1.2 .065 1\n3 1 0 0 2.4 .06 2\n4 1 .05 0 3.4 .045 3\n5 1 0 0 4.4 .03 4\n";
+    let branches =
+        "6 1 .7 .1 3 .025 3\n7 1 1.3 .2 3.5 .015 6\n8 1 -.8 0 3.2 .025 3\n9 1 -1.4 .1 3.8 .015 8\n";
+    let twigs = "10 1 .5 -.5 4 .02 4\n11 1 .9 -.8 4.6 .012 10\n12 1 .3 0 4.9 .015 5\n13 1 -.2 .1 5 .015 5\n";
+    fs::write(bench.path("tree.swc"), [stem, branches, twigs].concat()).unwrap();
     let made = bench.json(
-        "synth swing.y4m --plant synth::tree:60,1 --pull 0.5 --modes 3 --frames 250 --fps 12.5 --size 320x240 \
-         --leaves 120",
+        "synth swing.y4m --plant tree.swc --pull 0.3 --modes 5 --frames 200 --size 320x240 --leaves 100",
     );
     bench.json("new swing.honami swing.y4m");
     bench.json("track swing.honami");
