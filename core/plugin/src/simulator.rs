@@ -29,8 +29,7 @@ pub trait Simulator: Sized + Send + 'static {
     ///
     /// # Errors
     /// When it cannot go by them; it then goes on as before.
-    fn retune(&mut self, params: &Self::Params) -> Result<()> {
-        let _none = params;
+    fn retune(&mut self, _params: &Self::Params) -> Result<()> {
         Ok(())
     }
 
@@ -55,8 +54,7 @@ pub trait Simulator: Sized + Send + 'static {
     ///
     /// # Errors
     /// When the bytes are not what it has saved.
-    fn load(&mut self, bytes: &[u8]) -> Result<()> {
-        let _none = bytes;
+    fn load(&mut self, _bytes: &[u8]) -> Result<()> {
         Err(Error::unsupported("it cannot save what it carries"))
     }
 }

@@ -43,58 +43,10 @@ pub const WEATHERS: &[Weather] = &[
         values: &[("speed", 8.0), ("towards", 0.0)],
         make: |v| Box::new(Constant(v.blowing())),
     },
-    Weather {
-        name: "calm",
-        doc: "gusts of 3 m/s",
-        values: &[
-            ("speed", 3.0),
-            ("towards", 0.0),
-            ("deviation", 0.6),
-            ("scale", 60.0),
-            ("decay", 10.0),
-            ("seed", 1.0),
-        ],
-        make: gusts,
-    },
-    Weather {
-        name: "wind",
-        doc: "gusts of 8 m/s",
-        values: &[
-            ("speed", 8.0),
-            ("towards", 0.0),
-            ("deviation", 1.6),
-            ("scale", 60.0),
-            ("decay", 10.0),
-            ("seed", 1.0),
-        ],
-        make: gusts,
-    },
-    Weather {
-        name: "storm",
-        doc: "gusts of 18 m/s",
-        values: &[
-            ("speed", 18.0),
-            ("towards", 0.0),
-            ("deviation", 3.6),
-            ("scale", 60.0),
-            ("decay", 10.0),
-            ("seed", 1.0),
-        ],
-        make: gusts,
-    },
-    Weather {
-        name: "gusts",
-        doc: GUSTS,
-        values: &[
-            ("speed", 8.0),
-            ("towards", 0.0),
-            ("deviation", 1.6),
-            ("scale", 60.0),
-            ("decay", 10.0),
-            ("seed", 1.0),
-        ],
-        make: gusts,
-    },
+    Weather { name: "calm", doc: "gusts of 3 m/s", values: &gusty(3.0, 0.6), make: gusts },
+    Weather { name: "wind", doc: "gusts of 8 m/s", values: &gusty(8.0, 1.6), make: gusts },
+    Weather { name: "storm", doc: "gusts of 18 m/s", values: &gusty(18.0, 3.6), make: gusts },
+    Weather { name: "gusts", doc: GUSTS, values: &gusty(8.0, 1.6), make: gusts },
     Weather {
         name: "rough",
         doc: "turbulence of spectrum density / f^beta about a mean",
@@ -202,6 +154,18 @@ impl Values<'_> {
 fn about(v: &Values<'_>, shape: Shape) -> Box<dyn Wind> {
     let (centre, strength, core) = ([v.of("x"), v.of("y")], v.of("strength"), v.of("core"));
     Box::new(Primitive { shape, centre, strength, core })
+}
+
+/// What gusts of this mean and deviation, metres per second, can be told.
+const fn gusty(speed: f64, deviation: f64) -> [(&'static str, f64); 6] {
+    [
+        ("speed", speed),
+        ("towards", 0.0),
+        ("deviation", deviation),
+        ("scale", 60.0),
+        ("decay", 10.0),
+        ("seed", 1.0),
+    ]
 }
 
 /// Across and up it swings less than along the mean (Burton and others, Wind Energy Handbook, 2.6).
