@@ -142,6 +142,10 @@ fn check(&(name, made, wanted, code, seen): &Row) {
     let (silent, told): (Vec<&str>, Vec<&str>) =
         said.lines().partition(|line| line.starts_with("bad, frame 2: no sign of life for "));
     assert_eq!(!silent.is_empty(), wanted.contains("without a sign of life"), "{name}: {ran:?}");
+    // A frame that was given up is told of beside the reason.
+    let (given_up, told): (Vec<&str>, Vec<&str>) =
+        told.into_iter().partition(|line| line.starts_with("warning: frame 2 is left out: "));
+    assert_eq!(given_up.len(), usize::from(seen.contains("01")), "{name}: {ran:?}");
     assert!(!said.contains('\u{1b}') && told.len() == 1, "{name}: {ran:?}");
     assert_whole(&bench, name, seen);
     assert_eq!(files(&bench), before, "{name}");

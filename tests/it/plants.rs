@@ -141,6 +141,27 @@ fn scanned_trees_swing_as_trees_do() {
     }
 }
 
+/// A point cache has all nodes of all copies; the first copy's are where its sensors are.
+#[test]
+fn a_point_cache_has_every_node_of_every_copy() {
+    let bench = Bench::new();
+    let made = bench.json(
+        "simulate synth::tree:30,1 --modes 4 --wind wind --forest 7 --seconds 1 --fps 10 --sensors 1 --out sway.csv \
+         --cache sway.pc2",
+    );
+    let bytes = fs::read(bench.path("sway.pc2")).unwrap();
+    assert_eq!(bytes.len(), 32 + 10 * 7 * 30 * 12);
+    let node = made["motion"]["sensors"][0].as_u64().unwrap() as usize;
+    for (frame, row) in rows(&bench.path("sway.csv")).iter().enumerate() {
+        for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+            let at = 32 + ((frame * 7 * 30 + node) * 3 + axis) * 4;
+            let got = f32::from_le_bytes(bytes[at..at + 4].try_into().unwrap());
+            let wanted: f64 = row[name].parse().unwrap();
+            assert!((f64::from(got) - wanted).abs() < 1e-4, "frame {frame}, {name}: {got} {wanted}");
+        }
+    }
+}
+
 /// What simulate writes, spectrum reads: frequency and damping come back.
 #[test]
 fn a_swing_has_its_frequency_and_damping_back_from_its_sensors() {
@@ -208,7 +229,9 @@ fn a_benchmark_of_a_forest_prints_its_cell_beside_the_thesis() {
     for key in ["fps", "corrected_fps"] {
         assert!(cell[key].as_f64().unwrap() > 0.0, "{cell}");
     }
-    assert!(bench.text("bench forest --cell 10x20x3 --runs 1 --seconds 0").contains("GFLOP/s"));
+    assert!(answer["boundary"]["ratio"][1].as_f64().unwrap() > 0.0, "{answer}");
+    let text = bench.text("bench forest --cell 10x20x3 --runs 1 --seconds 0");
+    assert!(text.contains("GFLOP/s") && text.contains("ms through the plugin"), "{text}");
     assert_eq!(bench.line("bench forest --cell 10x20").code, Some(2));
 }
 
@@ -226,6 +249,38 @@ fn a_forest_in_the_wind_is_the_same_on_any_number_of_threads() {
     }
     let [one, three] = ["1.csv", "3.csv"].map(|name| fs::read(bench.path(name)).unwrap());
     assert!(one == three && one.len() > 1000);
+}
+
+/// A simulator of one's own moves the same plant, is told what it can be told, and refuses the rest.
+#[test]
+fn another_simulator_takes_the_place_of_the_one_that_ships() {
+    let bench = Bench::new();
+    let (source, header) = (root().join("core/check/tests/bad/simulator.c"), root().join("core/abi/include"));
+    let built = std::process::Command::new("cc")
+        .args(["-shared", "-fPIC", "-O1", "-DFAULT=NONE", "-o"])
+        .args([bench.path("own.so"), source])
+        .arg(format!("-I{}", header.display()))
+        .arg("-lm")
+        .status();
+    if !built.is_ok_and(|status| status.success()) {
+        skipped("a C compiler (cc)");
+        return;
+    }
+    let line = "simulate synth::tree:40,1 --modes 3 --wind wind --forest 3 --seconds 1";
+    let own = format!("--plugin own.so {line} --with bad");
+    for (line, simulator) in [(line, "org.honami.modal"), (&own, "org.honami.bad")] {
+        let motion = &bench.json(&format!("{line} --out sway.csv"))["motion"];
+        assert!(
+            motion["simulator"] == simulator && motion["deviation_m"].as_f64().unwrap() > 1e-4,
+            "{motion}"
+        );
+        let n_sensors = motion["sensors"].as_array().unwrap().len();
+        assert_eq!(rows(&bench.path("sway.csv")).len(), n_sensors * 25);
+    }
+    let ran = bench.line(&format!("{own} --alpha 0.5"));
+    assert!(ran.code == Some(2) && ran.stderr.contains("there is no parameter \"alpha\""), "{ran:?}");
+    let set = bench.json(&format!("{line} --set alpha=2"));
+    assert!(set["motion"]["deviation_m"] != bench.json(line)["motion"]["deviation_m"]);
 }
 
 #[test]
@@ -254,12 +309,45 @@ fn what_cannot_be_moved_is_refused_with_what_is_wanted() {
         ("simulate two.mtg --modes 2 --wind gale", 2, "\"gale\" is no wind and no file: there are still"),
         ("simulate two.mtg --modes 2 --wind nan.csv", 1, "line 3: \"NaN\" is no number"),
         ("simulate two.mtg --modes 2 --wind calm --method symplectic", 1, "is wanted, or another method"),
-        ("simulate two.mtg --modes 2 --wind calm --heavier 0", 1, "masses are more than 0"),
+        ("simulate two.mtg --modes 2 --heavier 0", 2, "masses are more than 0"),
+        ("simulate two.mtg --modes 2 --wind calm --heavier 1000", 2, "heavier: wanted a number, 0.01 to 100"),
+        ("simulate two.mtg --modes 2 --wind calm --with klt", 2, "no simulator \"klt\""),
+        ("simulate two.mtg --modes 2 --wind calm --set bent=s2", 2, "there is no parameter \"bent\""),
         (
             "simulate synth::tree:3437,1 --modes 2 --forest 10000000",
             1,
             "10000000 copies of 3437 nodes take 41",
         ),
+        (
+            "simulate two.mtg --modes 2 --pull nan",
+            1,
+            "is pulled by a number of metres from -1000 to 1000, not by NaN",
+        ),
+        ("simulate two.mtg --modes 2 --pull inf", 1, "is pulled by a number of metres"),
+        ("synth two.y4m --plant two.mtg --modes 2 --frames 2 --pull 1e30", 1, "not by 1e30"),
+        (
+            "simulate two.mtg --modes 2 --wind steady:speed=1e200",
+            2,
+            "speed of steady is a number from -1000000 to 1000000, not \"1e200\"",
+        ),
+        (
+            "simulate two.mtg --modes 2 --wind calm --threads 100000",
+            2,
+            "wanted 1 to 1024 threads, got 100000",
+        ),
+        (
+            "simulate two.mtg --modes 2 --out two.mtg",
+            2,
+            "two.mtg is read or written already: choose another name",
+        ),
+        (
+            "simulate two.mtg --modes 2 --sensor 9 --out a.csv",
+            1,
+            "there is no node 9: the beams have nodes 0 to 1",
+        ),
+        ("simulate two.mtg --modes 2 --longest 1e-9", 1, "nodes of beams, and 4000000 are the most"),
+        ("simulate synth::tree:100000000,1", 1, "100000000 nodes of beams, and 4000000 are the most"),
+        ("spectrum two.mtg --fps 4 --above=-1", 2, "wanted hertz, a number of 0 or more"),
         ("simulate two.mtg --modes 2 --wind calm --seconds 0", 2, "a motion has 1 to 100000000 frames"),
     ];
     for (line, code, wanted) in cases {

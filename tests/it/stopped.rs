@@ -1,6 +1,7 @@
 //! A run that is stopped, and one that is killed: what was tracked is kept, and nothing else is hurt.
 
 use std::fs::File;
+use std::os::unix::process::ExitStatusExt as _;
 use std::process::{Child, Stdio};
 
 use honami_tests::{Bench, by_track};
@@ -150,6 +151,56 @@ fn a_run_that_is_killed_in_a_slow_frame_keeps_all_before_it() {
     // The next session shows them.
     assert_eq!(bench.edit("p.honami", "key 1 5 40 50").code, Some(0));
     assert_eq!(bench.samples("p.honami").len(), 3 * 12);
+}
+
+/// Whether this process was begun with a signal ignored, which all that it begins inherits.
+fn is_ignored(signal: Signal) -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    mask.is_some_and(|mask| u64::from_str_radix(mask.trim(), 16).unwrap() >> (signal.as_raw() - 1) & 1 == 1)
+}
+
+#[test]
+fn what_ends_a_command_is_not_blamed_on_the_plugin_that_is_inside() {
+    if !has_cc() {
+        return;
+    }
+    for (signal, wanted) in [
+        (Signal::TERM, (None, Some(15))),
+        (Signal::HUP, (None, Some(1))),
+        // The first asks it to stop, which it does not hear.
+        (Signal::INT, (Some(130), None)),
+    ] {
+        // What `nohup` begins lives through it, as it should.
+        if signal == Signal::HUP && is_ignored(signal) {
+            continue;
+        }
+        let bench = rebuilt::project();
+        rebuilt::build(&bench, &["-DWAIT=12"]);
+        let gate = bench.path("gate");
+        let line = "track p.honami --with mine --plugin mine.so --points points.csv --set";
+        let mut command = bench.command(line.split(' '));
+        command.arg(format!("gate={}", gate.display())).env("HONAMI_HOSTING", "in-process");
+        let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+        let _within = rebuilt::Within::begin(&child, &gate);
+        let _open = File::options().write(true).open(&gate).unwrap();
+        let trails = || {
+            let known = std::fs::read_dir(bench.path("XDG_CACHE_HOME/honami/quarantine")).unwrap();
+            known
+                .filter(|entry| entry.as_ref().unwrap().path().extension().is_some_and(|e| e == "inside"))
+                .count()
+        };
+        assert_eq!(trails(), 1, "it is inside");
+        let status = loop {
+            kill_process(Pid::from_child(&child), signal).unwrap();
+            if let Some(status) = child.try_wait().unwrap() {
+                break status;
+            }
+            std::thread::yield_now();
+        };
+        assert_eq!((status.code(), status.signal()), wanted);
+        assert_eq!(trails(), 0, "{signal:?}");
+    }
 }
 
 #[test]

@@ -23,11 +23,13 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("honami-vision", &["honami-model"]),
     ("honami-motion", &["honami-model"]),
     ("honami-mechanics", &["honami-model"]),
+    ("honami-structure", &["honami-model"]),
     ("honami-review", &["honami-model", "honami-vision"]),
     ("honami-synth", &["honami-model"]),
     ("honami-follow", &["honami-plugin", "honami-vision"]),
     ("honami-tracker-*", &["honami-plugin", "honami-vision", "honami-follow"]),
     ("honami-clusterer-*", &["honami-plugin", "honami-motion"]),
+    ("honami-simulator-*", &["honami-plugin", "honami-mechanics", "honami-model"]),
     (
         "honami-workbench",
         &[
@@ -40,6 +42,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "honami-motion",
             "honami-mechanics",
             "honami-review",
+            "honami-structure",
             "honami-synth",
             "honami-vision",
         ],

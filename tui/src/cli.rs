@@ -9,6 +9,7 @@ mod edit;
 mod ends;
 mod exchange;
 mod groups;
+mod grow;
 mod help;
 mod keys;
 mod log;
@@ -29,7 +30,7 @@ use std::process::ExitCode;
 use clap::error::ErrorKind;
 use clap::{CommandFactory as _, Parser as _};
 use honami_workbench::WorkbenchError;
-use honami_workbench::plugins::{HostError, ValueError, file_of};
+use honami_workbench::plugins::{HostError, ValueError, file_of, quoted};
 use honami_workbench::session::{Session, SessionOptions};
 use honami_workbench::store::{Access, Project};
 
@@ -188,12 +189,13 @@ fn run(command: Command, common: &Common) -> anyhow::Result<Outcome> {
         Command::Track(args) if args.watch => return watch::watch(&args, common).map(Outcome::Exit),
         Command::Track(args) => track::track(&args, common)?,
         Command::Cluster(args) => groups::cluster(&args, common)?,
+        Command::Grow(args) => grow::grow(&args)?,
         Command::Edit(args) => {
             return edit::edit(&args.project, common).map(|()| Outcome::Exit(ExitCode::SUCCESS));
         }
         Command::Compare(args) => compare::compare(&args, common)?,
         Command::Spectrum(args) => spectrum::spectrum(&args)?,
-        Command::Simulate(args) => simulate::simulate(&args)?,
+        Command::Simulate(args) => simulate::simulate(&args, common)?,
         Command::Export(args) => exchange::export(&args)?,
         Command::Import(args) => exchange::import(&args)?,
         Command::Synth(args) => synth::synth(&args)?,
@@ -204,7 +206,7 @@ fn run(command: Command, common: &Common) -> anyhow::Result<Outcome> {
         Command::Log(args) => log::log(&args)?,
         Command::Replay(args) => replay::replay(&args, common)?,
         Command::Keys(args) => keys::keys(&args),
-        Command::Bench(args::plant::Bench::Forest(args)) => bench::forest(&args)?,
+        Command::Bench(args::plant::Bench::Forest(args)) => bench::forest(&args, common)?,
         Command::Doctor => help::doctor(common),
         Command::Completions { shell } => help::completions(shell),
         Command::Man { folder } => help::manual(&folder)?,
@@ -294,7 +296,7 @@ fn look(path: &Path) -> anyhow::Result<Project> {
 
 /// Refuses a project that is not there, and says how to make one.
 fn there(path: &Path) -> anyhow::Result<()> {
-    let shown = path.display();
-    anyhow::ensure!(path.exists(), "there is no project {shown}: make it with `honami new {shown} CLIP`");
+    let (shown, typed) = (path.display(), quoted(path));
+    anyhow::ensure!(path.exists(), "there is no project {shown}: make it with `honami new {typed} CLIP`");
     Ok(())
 }

@@ -10,7 +10,7 @@ use crate::{BUILD, accuracy, forest};
 /// Name, what it measures, and how to run it.
 type Bench = (&'static str, &'static str, fn(&[&str]) -> anyhow::Result<()>);
 
-const BENCHES: [Bench; 14] = [
+const BENCHES: [Bench; 16] = [
     ("encode", "the encoder's time, bytes and likeness: `bench encode [BYTES] [CLIP…]`", encode),
     ("trackers", "KLT against OpenCV's calcOpticalFlowPyrLK, same frames, alternating", trackers),
     ("box", "box matching against OpenCV's matchTemplate: `bench box [CLIP…]`", box_matching),
@@ -24,7 +24,13 @@ const BENCHES: [Bench; 14] = [
         "forests in the wind beside numpy's product of matrices: `bench forest [--json] [KxNxM…]`",
         forest::run,
     ),
-    ("cluster", "composite distance + Ward, N = 2000, T = 500, against SciPy's linkage", cluster),
+    ("modes", "vibrations of trees beside SciPy's, a row a size: `bench modes [NODES…]`", modes),
+    ("cluster", "distances and components + Ward, N = 2000, against SciPy's linkage", cluster),
+    (
+        "grouping",
+        "groups of branches that are known, by every method: `bench grouping [--trees N] [--large] [--development]`",
+        grouping,
+    ),
     ("media", "decoding, seeking, stepping back: `bench media CLIP`", media),
     ("store", "opening, editing and appending to a project of 10,000 tracks", store),
     (
@@ -72,9 +78,18 @@ fn box_matching(args: &[&str]) -> anyhow::Result<()> {
     example("honami-vision", "box_bench", args).run()
 }
 
+fn modes(args: &[&str]) -> anyhow::Result<()> {
+    example("honami-mechanics", "modes_bench", args).run()
+}
+
 fn cluster(args: &[&str]) -> anyhow::Result<()> {
     example("honami-motion", "cluster_bench", args).run()?;
+    example("honami-motion", "bod_bench", &[]).run()?;
     Step::new("python3").arg("tests/peers/linkage_scipy.py").run()
+}
+
+fn grouping(args: &[&str]) -> anyhow::Result<()> {
+    example("honami-motion", "grouping_bench", args).run()
 }
 
 fn media(args: &[&str]) -> anyhow::Result<()> {

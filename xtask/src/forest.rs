@@ -49,7 +49,7 @@ const TABLES: [(&str, &[&str]); 2] = [
 pub(crate) fn run(args: &[&str]) -> anyhow::Result<()> {
     let is_json = args.contains(&"--json");
     let wanted: Vec<&str> = args.iter().copied().filter(|arg| *arg != "--json").collect();
-    cargo(BUILD).args(["-p", "honami"]).run()?;
+    cargo(BUILD).args(["-p", "honami", "-p", "honami-simulator-modal"]).run()?;
     let mut tables = json!({});
     let mut roof = json!(null);
     for (table, cells) in TABLES {
@@ -60,6 +60,7 @@ pub(crate) fn run(args: &[&str]) -> anyhow::Result<()> {
             let numpy = read(&Step::new("python3").args(["tests/peers/forest_numpy.py", cell]).output()?)?;
             let mut row = ours["cells"][0].clone();
             row["numpy_fps"] = numpy[*cell].clone();
+            row["boundary"] = ours["boundary"].clone();
             roof = ours["roof"].clone();
             if !is_json {
                 println!("{}", line(cell, &row));
@@ -86,7 +87,7 @@ fn line(cell: &str, row: &Value) -> String {
     let number = |value: &Value| value.as_f64().map_or_else(|| "-".to_owned(), |fps| format!("{fps:.1}"));
     let share = |form: &str| format!("{:.0} %", 100.0 * row[form]["of_limit"].as_f64().unwrap_or_default());
     format!(
-        "{cell:14} thesis {:>7}  numpy {:>8}  linear {:>8} ({})  s,s2 {:>8} ({})  s,s2,s3 {:>8} ({})  state {:.1} %",
+        "{cell:14} thesis {:>7}  numpy {:>8}  linear {:>8} ({})  s,s2 {:>8} ({})  s,s2,s3 {:>8} ({})  state {:.1} %  plugin {:+.1} %",
         number(&row["thesis_fps"]),
         number(&row["numpy_fps"]),
         number(&row["fps"]),
@@ -96,5 +97,6 @@ fn line(cell: &str, row: &Value) -> String {
         number(&row["cubed"]["fps"]),
         share("cubed"),
         100.0 * row["squared"]["state_share"].as_f64().unwrap_or_default(),
+        100.0 * (row["boundary"]["ratio"][1].as_f64().unwrap_or_default() - 1.0),
     )
 }

@@ -27,16 +27,8 @@ cargo xtask <command>
 const BUILD: &[&str] = &["build", "--release"];
 
 /// The packages of a working installation: the program and what the demo uses of the plugins.
-const DEMO: [&str; 8] = [
-    "-p",
-    "honami",
-    "-p",
-    "honami-plughost",
-    "-p",
-    "honami-tracker-anchored",
-    "-p",
-    "honami-clusterer-movement",
-];
+const DEMO: [&str; 8] =
+    ["-p", "honami", "-p", "honami-plughost", "-p", "honami-tracker-anchored", "-p", "honami-clusterer-bod"];
 
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();

@@ -160,8 +160,9 @@ typedef struct honami_table {
 #define HONAMI_WIND "honami.wind/1"
 /* nodes u32, modes u32; a row a copy: how much of it is wanted, see honami_simulator_v1.step. */
 #define HONAMI_DETAIL "honami.detail/1"
-/* d f32 x 3: how far a node is from where it rests, in the world; a row a node, copy after copy. What is reserved for it
- * is NOT zeroed: it holds what the last step left. */
+/* d f32 x 3: how far a node is from where it rests, in the axes and the size of the plant, whatever its copy's yaw and
+ * scale: who shows a copy turns and scales it; a row a node, copy after copy. What is reserved for it is NOT zeroed: it
+ * holds what the last step left. */
 #define HONAMI_MOTION "honami.motion/1"
 /* hz f64 (above 0, rising), residual f64 (|K x - w2 M x| over |K x|); a row a mode. Optional: certified u8, 1 where it was
  * proved that there is no other mode below. */
@@ -453,7 +454,7 @@ typedef struct honami_simulator_input {
 /* How far it is to go. */
 typedef struct honami_step_input {
   uint32_t struct_size;
-  uint32_t n_steps;            /* at least 1 */
+  uint32_t n_steps;            /* 0: only where everything is now */
   double dt;                   /* seconds a step, above 0 */
   const honami_table *wind;    /* honami.wind/1; NULL: still air */
   const honami_table *detail;  /* honami.detail/1; NULL: everything of every copy */

@@ -8,6 +8,7 @@ mod worker;
 pub use worker::Asker;
 
 use crate::{Check, Finding, Subject};
+use honami_host::quoted;
 use std::collections::BTreeMap;
 use std::num::NonZero;
 use std::path::PathBuf;
@@ -114,7 +115,7 @@ impl Plan {
     /// The command that does a check again, where somebody can look on.
     #[must_use]
     pub fn repeat(&self, check: &Check) -> String {
-        let (file, plugin) = (self.file.display(), &self.plugin);
+        let (file, plugin) = (quoted(&self.file), &self.plugin);
         format!("honami plugin check {file} --plugin-id {plugin} --reproduce {}:{}", check.id, self.seed)
     }
 }

@@ -51,7 +51,7 @@ pub(crate) const CHECKS: &[Check] = &[
     Check {
         id: "simulator.turned",
         level: 8,
-        claim: "a copy that is turned with its wind moves turned",
+        claim: "a copy that is turned with its wind moves in its own axes as one that is not",
         deadline: DEADLINE,
         run: |subject| of_simulator(subject, turned),
     },
@@ -179,7 +179,7 @@ fn calms(subject: &Subject) -> Result<Verdict, Fault> {
 fn chunks(subject: &Subject) -> Result<Verdict, Fault> {
     let mut simulator = prepared(subject, HERE, &[PLAIN])?;
     let wanted = go(&mut simulator, 60, GUST)?;
-    for parts in [&[60][..], &[1; 60], &[7, 13, 40]] {
+    for parts in [&[60][..], &[1; 60], &[7, 0, 13, 40, 0]] {
         simulator.reset(&CallContext::silent())?;
         let mut last = Vec::new();
         for &n in parts {
@@ -233,8 +233,7 @@ fn turned(subject: &Subject) -> Result<Verdict, Fault> {
         [cos * x - sin * y, sin * x + cos * y, z]
     };
     let winds: Vec<_> = GUST.velocities.iter().map(|wind| turn(*wind)).collect();
-    let plain: Vec<_> =
-        go(&mut prepared(subject, HERE, &[PLAIN])?, 60, GUST)?.into_iter().map(turn).collect();
+    let plain = go(&mut prepared(subject, HERE, &[PLAIN])?, 60, GUST)?;
     let mut other = prepared(subject, HERE, &[PlantInstance { yaw: yaw as f32, ..PLAIN }])?;
     let moved = go(&mut other, 60, WindRows { velocities: &winds, ..GUST })?;
     let off = apart(&plain, &moved) / largest(&plain);

@@ -25,6 +25,7 @@ pub mod origin;
 mod parquet;
 pub mod plant;
 pub mod rows;
+pub mod skeleton;
 pub mod spans;
 pub mod table;
 mod track_table;

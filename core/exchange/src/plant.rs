@@ -2,13 +2,17 @@
 
 pub mod anemometer;
 mod beam_table;
+mod glb;
 pub mod mtg;
+mod point_cache;
 pub mod qsm;
 mod rooted;
 mod sway_table;
 pub mod swc;
 
 pub use beam_table::BeamRow;
+pub use glb::{Body, GlbError, Placed, Sizes, Target, write_glb};
+pub use point_cache::{PointCache, PointCacheError};
 pub use sway_table::SwayRow;
 
 use honami_model::plant::{Plant, PlantError};

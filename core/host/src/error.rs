@@ -2,6 +2,7 @@
 
 use crate::isolated::Ended;
 use crate::manifest::Kind;
+use crate::shell::quoted;
 use honami_abi::code;
 use std::path::PathBuf;
 
@@ -28,6 +29,16 @@ pub enum HostError {
         name: String,
         /// The candidates, comma-separated.
         ids: String,
+    },
+    /// A file that the user named cannot be used, and what has that name elsewhere may be another.
+    #[error("{problem}; {name} is in {}, too, which is not taken in its place: mend the one, or do not name it", library.display())]
+    Instead {
+        /// As it was asked for.
+        name: String,
+        /// The plugin elsewhere.
+        library: PathBuf,
+        /// What is wrong with the file, and which it is.
+        problem: String,
     },
     /// A plugin that nobody has vouched for.
     #[error("{} is not trusted: {why}", path.display())]
@@ -94,7 +105,7 @@ pub enum HostError {
     #[error(
         "{plugin} has failed three times within ten minutes and is not started again ({why}) until its file has changed; \
          as it is it is started after `honami plugin retry {}`",
-        library.display()
+        quoted(library)
     )]
     Quarantined {
         /// Its id.

@@ -3,6 +3,7 @@
 use crate::host::{Host, Hosting};
 use crate::plughost;
 use crate::registry::{PluginInfo, Trust};
+use crate::shell::quoted;
 
 /// Where a plugin works when it is started here, and how far it is shut in there.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -39,9 +40,15 @@ impl Host {
         Prospect { hosting, sandbox: level.word(), why, is_bare: false }
     }
 
-    /// Why a plugin works in a process of its own against its user's wish.
+    /// Why a plugin is not started at all, or works in a process of its own against its user's wish.
     fn against(&self, info: &PluginInfo) -> Option<String> {
-        let file = info.library.display();
+        let file = quoted(&info.library);
+        if let Some(why) = self.held(info) {
+            return Some(format!(
+                "it has failed three times within ten minutes and is not started ({why}), `honami plugin retry {file}` lets it \
+                 start again"
+            ));
+        }
         if self.is_kept_out(info) {
             let let_in = format!("`honami plugin retry --in-process {file}` lets it in again");
             return Some(format!("honami has ended while it was inside, {let_in}"));

@@ -106,6 +106,12 @@ impl Quarantine {
         Ok(times.len())
     }
 
+    /// Whether any library is held: if not, none need be read to tell.
+    pub(crate) fn holds_any(&self) -> bool {
+        let files = fs::read_dir(&self.0).into_iter().flatten().flatten();
+        files.map(|file| file.path()).any(|file| file.extension().is_some_and(|kind| kind == "held"))
+    }
+
     /// Why a library is held.
     pub(crate) fn why(&self, sha256: &str) -> Option<String> {
         fs::read_to_string(self.held(sha256)).ok()

@@ -179,6 +179,10 @@ pub struct Registry {
     plugins: Vec<PluginInfo>,
     shadowed: Vec<PluginInfo>,
     problems: Vec<HostError>,
+    /// How many of the plugins come from places that the user named.
+    n_named: usize,
+    /// What cannot be used there: whether the file itself was named, which, and why.
+    unusable: Vec<(bool, PathBuf, String)>,
 }
 
 impl Registry {
@@ -191,7 +195,7 @@ impl Registry {
     /// Looks along a search path.
     #[must_use]
     pub fn scan_path(path: &SearchPath) -> Self {
-        let mut registry = Self { problems: path.book.problem().into_iter().collect(), ..Self::default() };
+        let mut registry = Self::default();
         let of_named = |file: &Path| path.book.of_named(&script::manifest_of(file));
         for named in &path.named {
             if named.is_dir() {
@@ -203,6 +207,8 @@ impl Registry {
         for folder in path.dev.iter().flat_map(|tree| dev::folders(tree)) {
             registry.scan_folder(&folder, false, |file| path.book.of_dev(file));
         }
+        registry.n_named = registry.plugins.len();
+        registry.unusable = unusable(&registry.problems, &path.named);
         if let Some((executable, folder)) =
             path.executable.as_deref().and_then(|exe| Some((exe, exe.parent()?)))
         {
@@ -219,6 +225,7 @@ impl Registry {
                 false => path.book.of(file),
             });
         }
+        registry.problems.extend(path.book.problem());
         registry
     }
 
@@ -254,8 +261,32 @@ impl Registry {
     /// The plugin with this full id or short name.
     ///
     /// # Errors
-    /// [`HostError::NotFound`], or [`HostError::Ambiguous`] for a short name that several share.
+    /// [`HostError::NotFound`], or [`HostError::Ambiguous`] for a short name that several share. [`HostError::Instead`]
+    /// where a file that the user named cannot be used, or one of that name in a folder that was named: it may be the one
+    /// that is meant, and nothing from elsewhere takes its place unsaid.
     pub fn find(&self, kind: Kind, name: &str) -> Result<&PluginInfo, HostError> {
+        let found = self.among_all(kind, name)?;
+        if self.plugins[..self.n_named].iter().any(|plugin| plugin.id == found.id) {
+            return Ok(found);
+        }
+        let is_meant = |(is_named, file, _): &&(bool, PathBuf, String)| {
+            *is_named || file.file_name() == found.library.file_name()
+        };
+        match self.unusable.iter().find(is_meant) {
+            Some((_, _, problem)) => {
+                let (name, library) = (name.to_owned(), found.library.clone());
+                Err(HostError::Instead { name, library, problem: problem.clone() })
+            }
+            None => Ok(found),
+        }
+    }
+
+    /// Why a file cannot be used that the user named, or that lies in a folder that was named.
+    pub fn unusable(&self) -> impl Iterator<Item = &str> {
+        self.unusable.iter().map(|(_, _, problem)| problem.as_str())
+    }
+
+    fn among_all(&self, kind: Kind, name: &str) -> Result<&PluginInfo, HostError> {
         let of_kind = || self.plugins.iter().filter(|plugin| plugin.kind == kind);
         if let Some(plugin) = of_kind().find(|plugin| plugin.id == name) {
             return Ok(plugin);
@@ -350,6 +381,16 @@ impl Registry {
             if hidden { self.shadowed.push(info) } else { self.plugins.push(info) }
         }
     }
+}
+
+/// Files that cannot be used, and whether they are among those that were named themselves.
+fn unusable(problems: &[HostError], named: &[PathBuf]) -> Vec<(bool, PathBuf, String)> {
+    let named: Vec<PathBuf> = named.iter().map(|file| script::manifest_of(file)).collect();
+    let of_file = |problem: &HostError| match problem {
+        HostError::File { path, .. } => Some((named.contains(path), path.clone(), problem.to_string())),
+        _ => None,
+    };
+    problems.iter().filter_map(of_file).collect()
 }
 
 /// Beside the executable, with its owner and no other writer.

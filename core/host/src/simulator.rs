@@ -44,7 +44,7 @@ pub struct ModeRow {
 pub struct Steps<'a> {
     /// Seconds a step, above 0.
     pub dt: f64,
-    /// At least 1.
+    /// How many; 0: only where everything is now.
     pub n: u32,
     /// The wind on the way.
     pub wind: WindRows<'a>,
@@ -154,7 +154,8 @@ impl Simulator {
         self.handle.ask(&Request::Reset, cx, &mut self.reply).map(|_| ())
     }
 
-    /// Goes so many steps; gives how far every wanted node is from where it rests, metres in the world, copy after copy.
+    /// Goes so many steps; gives how far every wanted node is from where it rests, metres in the axes and the size of the
+    /// plant, whatever its copy's yaw and scale; copy after copy.
     /// It lies in memory that the next call uses again.
     ///
     /// # Errors

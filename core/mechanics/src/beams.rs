@@ -12,6 +12,9 @@ use nalgebra::{Matrix6, Vector3};
 /// Nodes closer than so many metres are one.
 const SAME_PLACE: f64 = 1e-6;
 
+/// More nodes than that a plant does not have: their matrices alone take thousands of bytes a node.
+pub const MOST_NODES: usize = 4_000_000;
+
 /// How a plant becomes beams.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Options {
@@ -55,6 +58,14 @@ pub enum BeamsError {
     /// All nodes of the plant lie in one place.
     #[error("all nodes of the plant lie in one place: it has no segment that could bend")]
     Point,
+    /// More nodes than can be worked with.
+    #[error(
+        "the plant becomes {nodes:.0} nodes of beams, and {MOST_NODES} are the most: fewer nodes, or longer segments, are wanted"
+    )]
+    TooMany {
+        /// Nodes of the plant, or parts of its segments.
+        nodes: f64,
+    },
     /// A length of segments that is none.
     #[error("the longest segment is more than 0 m long, not {0} m")]
     Longest(f64),
@@ -69,6 +80,10 @@ impl Beams {
         options.material.check()?;
         if let Some(longest) = options.longest.filter(|longest| !(longest.is_finite() && *longest > 0.0)) {
             return Err(BeamsError::Longest(longest));
+        }
+        let nodes = n_nodes(plant, options.longest);
+        if nodes > MOST_NODES as f64 {
+            return Err(BeamsError::TooMany { nodes });
         }
         let mut made = Self {
             nodes: Vec::with_capacity(plant.nodes().len()),
@@ -102,7 +117,7 @@ impl Beams {
         if length < f64::midpoint(base, tip) {
             self.n_stubby += 1;
         }
-        let n_parts = options.longest.map_or(1.0, |longest| (length / longest).ceil());
+        let n_parts = n_parts(length, options.longest);
         for part in 1..=n_parts as u32 {
             let middle = (f64::from(part) - 0.5) / n_parts;
             let radius = base + middle * (tip - base);
@@ -187,6 +202,20 @@ impl Beams {
         (0..self.nodes.len() as u32).filter(|node| is_end[*node as usize]).collect()
     }
 
+    /// Nodes by how much wood they bear, that of their own segment included, most first: each comes after its parent, and
+    /// the first so many are the plant in so much detail.
+    #[must_use]
+    pub fn coarse_to_fine(&self) -> Vec<u32> {
+        let mut wood = vec![0.0; self.nodes.len()];
+        for (base, tip, section, _) in self.segments().collect::<Vec<_>>().into_iter().rev() {
+            wood[tip] += section.area() * section.length;
+            wood[base] += wood[tip];
+        }
+        let mut order: Vec<u32> = (0..self.nodes.len() as u32).collect();
+        order.sort_by(|a, b| wood[*b as usize].total_cmp(&wood[*a as usize]).then(a.cmp(b)));
+        order
+    }
+
     pub(crate) fn nodes(&self) -> &[Beam] {
         &self.nodes
     }
@@ -220,6 +249,23 @@ impl Beams {
         }
         mass
     }
+}
+
+/// Into so many parts a segment is divided.
+fn n_parts(length: f64, longest: Option<f64>) -> f64 {
+    longest.map_or(1.0, |longest| (length / longest).ceil().max(1.0))
+}
+
+/// Nodes of the plant, those between parts of its segments included.
+fn n_nodes(plant: &Plant, longest: Option<f64>) -> f64 {
+    let nodes = plant.nodes();
+    let parts = nodes.iter().map(|node| {
+        let length = node.parent.map_or(0.0, |parent| {
+            (Vector3::from(node.position) - Vector3::from(nodes[parent as usize].position)).norm()
+        });
+        n_parts(length, longest)
+    });
+    parts.sum()
 }
 
 /// Rows of the plant so that each comes after its parent and a branch's nodes follow one another.

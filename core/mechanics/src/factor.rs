@@ -11,8 +11,10 @@
 mod tests;
 
 use crate::beams::Beams;
-use crate::tree_matrix::{DOF, TreeMatrix};
-use nalgebra::{Matrix3, Matrix6, SMatrix, Vector3};
+use crate::six::{self, DOF, Six, add, add_transposed, minus, product, put, rows, sum, transposed};
+use crate::tree_matrix::TreeMatrix;
+use nalgebra::{Matrix6, Vector3};
+use pulp::Arch;
 
 /// The factors of K - s M.
 #[derive(Clone, Debug)]
@@ -25,8 +27,8 @@ pub struct Factor {
 #[derive(Clone, Copy, Debug)]
 struct Pivot {
     parent: Option<u32>,
-    inverse: Matrix6<f64>,
-    above: Matrix6<f64>,
+    above: Six,
+    inverse: Six,
 }
 
 /// A shift that is an eigenvalue of a part of the plant to the last digit: the pivot of this node is 0 or no number.
@@ -51,25 +53,29 @@ pub(crate) struct Flexibility {
 struct Flexible {
     /// F = G G^T: displacement and rotation of the tip by forces and moments there, with the base clamped.
     root: Matrix6<f64>,
-    /// What the tip does when the base moves and nothing is strained.
-    carried: Matrix6<f64>,
+    /// From base to tip.
+    arm: Vector3<f64>,
 }
 
 impl Flexibility {
     pub(crate) fn new(beams: &Beams) -> Self {
         let flexible = |(_, _, section, direction): (usize, usize, crate::Section, Vector3<f64>)| Flexible {
             root: section.flexibility_root(&direction),
-            carried: carried(&(direction * section.length)),
+            arm: direction * section.length,
         };
         Self { nodes: beams.segments().map(flexible).collect() }
     }
 }
 
-/// Displacement and rotation at the end of a rigid arm.
-fn carried(arm: &Vector3<f64>) -> Matrix6<f64> {
-    let mut carried = Matrix6::identity();
-    // psi x r = -r x psi.
-    carried.fixed_view_mut::<3, 3>(0, 3).copy_from(&(Matrix3::zeros() - arm.cross_matrix()));
+/// `a` times what a rigid arm does to its end when its base moves: displacement u + psi x r, rotation psi.
+#[inline(always)]
+fn carried(a: &Six, arm: &Vector3<f64>) -> Six {
+    let (mut carried, [x, y, z]) = (*a, [arm.x, arm.y, arm.z]);
+    for k in 0..DOF {
+        carried[3][k] += a[2][k] * y - a[1][k] * z;
+        carried[4][k] += a[0][k] * z - a[2][k] * x;
+        carried[5][k] += a[1][k] * x - a[0][k] * y;
+    }
     carried
 }
 
@@ -79,29 +85,24 @@ impl Factor {
     /// # Errors
     /// [`Singular`].
     pub(crate) fn new(flexibility: &Flexibility, mass: &TreeMatrix, shift: f64) -> Result<Self, Singular> {
-        // S of every node: its own mass, then what its children add.
-        let mut dynamic: Vec<Matrix6<f64>> = mass.nodes.iter().map(|block| block.own * -shift).collect();
-        let empty = Pivot { parent: None, inverse: Matrix6::zeros(), above: Matrix6::zeros() };
-        let (mut nodes, mut n_negative) = (vec![empty; mass.len()], 0);
-        for (node, block) in mass.nodes.iter().enumerate().rev() {
-            let (Flexible { root, carried }, borne) = (&flexibility.nodes[node], &dynamic[node]);
-            let (middle, negative) =
-                invert(&(Matrix6::identity() + root.tr_mul(borne) * root)).ok_or(Singular { node })?;
-            n_negative += negative;
-            let inverse = root * middle * root.transpose();
-            // (F^-1 + S)^-1 F^-1.
-            let still = Matrix6::identity() - inverse * borne;
-            let follows = still * carried;
-            let link = block.link * shift;
-            let above = -follows - inverse * link;
-            if let Some(parent) = block.parent {
-                let across = follows.tr_mul(&link);
-                let felt = carried.tr_mul(borne) * follows - across - across.transpose();
-                dynamic[parent as usize] += felt - link.tr_mul(&(inverse * link));
-            }
-            nodes[node] = Pivot { parent: block.parent, inverse, above };
-        }
+        let empty = Pivot { parent: None, above: six::ZERO, inverse: six::ZERO };
+        let mut nodes = vec![empty; mass.len()];
+        let n_negative = Arch::new().dispatch(
+            #[inline(always)]
+            || eliminated(flexibility, mass, shift, |node, pivot| nodes[node] = pivot),
+        )?;
         Ok(Self { nodes, n_negative })
+    }
+
+    /// How many eigenvalues of K x = lambda M x lie below a shift, with no factors kept.
+    ///
+    /// # Errors
+    /// [`Singular`].
+    pub(crate) fn count(flexibility: &Flexibility, mass: &TreeMatrix, shift: f64) -> Result<usize, Singular> {
+        Arch::new().dispatch(
+            #[inline(always)]
+            || eliminated(flexibility, mass, shift, |_, _| ()),
+        )
     }
 
     /// How many eigenvalues of K x = lambda M x lie below the shift (Sylvester's law of inertia).
@@ -110,69 +111,116 @@ impl Factor {
         self.n_negative
     }
 
-    /// Solves in place.
+    /// Solves in place, for as many columns as there are, one after the other.
     ///
     /// # Panics
-    /// When the vector is not 6 numbers a node.
+    /// When a column is not 6 numbers a node.
     pub fn solve(&self, x: &mut [f64]) {
-        self.solve_columns::<1>(x);
+        let height = DOF * self.nodes.len();
+        assert!(x.len().is_multiple_of(height), "6 numbers a node");
+        Arch::new().dispatch(
+            #[inline(always)]
+            || {
+                for x in x.chunks_mut(WIDE * height) {
+                    if x.len() == height { self.solve_columns::<1>(x) } else { self.solve_columns::<WIDE>(x) }
+                }
+            },
+        );
     }
 
-    /// Solves for columns that lie one after the other.
-    pub(crate) fn solve_columns<const N: usize>(&self, x: &mut [f64]) {
-        let height = DOF * self.nodes.len();
-        assert_eq!(x.len(), N * height, "6 numbers a node");
-        let at = |x: &[f64], node: usize| {
-            SMatrix::<f64, DOF, N>::from_fn(|row, column| x[column * height + DOF * node + row])
-        };
-        let put = |x: &mut [f64], node: usize, value: &SMatrix<f64, DOF, N>| {
-            for column in 0..N {
-                let place = column * height + DOF * node;
-                x[place..place + DOF].copy_from_slice(value.column(column).as_slice());
-            }
-        };
+    #[inline(always)]
+    fn solve_columns<const N: usize>(&self, x: &mut [f64]) {
         for (node, pivot) in self.nodes.iter().enumerate().rev() {
             if let Some(parent) = pivot.parent {
-                let above = at(x, parent as usize) - pivot.above.tr_mul(&at(x, node));
+                let mut above = rows::<N>(x, parent as usize);
+                add_transposed(&pivot.above, &minus(rows::<N>(x, node)), &mut above);
                 put(x, parent as usize, &above);
             }
         }
         for (node, pivot) in self.nodes.iter().enumerate() {
-            let mut mine = pivot.inverse * at(x, node);
+            let mut mine = [[0.0; N]; DOF];
+            add(&pivot.inverse, &rows::<N>(x, node), &mut mine);
             if let Some(parent) = pivot.parent {
-                mine -= pivot.above * at(x, parent as usize);
+                add(&pivot.above, &minus(rows::<N>(x, parent as usize)), &mut mine);
             }
             put(x, node, &mine);
         }
     }
 }
 
+/// Eliminates all nodes, the last first; the number of negative pivots.
+#[inline(always)]
+fn eliminated(
+    flexibility: &Flexibility,
+    mass: &TreeMatrix,
+    shift: f64,
+    mut keep: impl FnMut(usize, Pivot),
+) -> Result<usize, Singular> {
+    let mut n_negative = 0;
+    // S of every node: its own mass, then what its children add.
+    let mut dynamic: Vec<Six> =
+        mass.nodes.iter().map(|block| sum(&six::ZERO, &block.own.data.0, -shift)).collect();
+    for (node, block) in mass.nodes.iter().enumerate().rev() {
+        let (Flexible { root, arm }, borne) = (&flexibility.nodes[node], &dynamic[node]);
+        let (root, root_across) = (&root.data.0, transposed(&root.data.0));
+        let inner = sum(&six::unit(), &product(&root_across, &product(borne, root)), 1.0);
+        let (middle, negative) = invert(&inner).ok_or(Singular { node })?;
+        n_negative += negative;
+        let inverse = product(root, &product(&middle, &root_across));
+        // (F^-1 + S)^-1 F^-1 = 1 - (F^-1 + S)^-1 S.
+        let follows = carried(&sum(&six::unit(), &product(&inverse, borne), -1.0), arm);
+        let link = sum(&six::ZERO, &block.link.data.0, shift);
+        let pulled = product(&inverse, &link);
+        let above = sum(&sum(&six::ZERO, &follows, -1.0), &pulled, -1.0);
+        if let Some(parent) = block.parent {
+            // The transpose of a product with the arm is the product of the transpose.
+            let felt = transposed(&carried(&transposed(&product(borne, &follows)), arm));
+            let across = product(&transposed(&follows), &link);
+            let drawn = product(&transposed(&link), &pulled);
+            let place = &mut dynamic[parent as usize];
+            *place = sum(place, &felt, 1.0);
+            *place = sum(place, &across, -1.0);
+            *place = sum(place, &transposed(&across), -1.0);
+            *place = sum(place, &drawn, -1.0);
+        }
+        keep(node, Pivot { parent: block.parent, above, inverse });
+    }
+    Ok(n_negative)
+}
+
 /// The inverse of a symmetric block by L D L^T, and how many of its pivots are negative.
-fn invert(block: &Matrix6<f64>) -> Option<(Matrix6<f64>, usize)> {
-    let (mut lower, mut pivots) = (Matrix6::identity(), [0.0; DOF]);
+#[inline(always)]
+#[expect(clippy::needless_range_loop, reason = "rows and columns of triangles")]
+fn invert(block: &Six) -> Option<(Six, usize)> {
+    // By columns: of the triangle and, beside it, of what is left of the block.
+    let (mut lower, mut left, mut pivots) = (six::unit(), *block, [0.0; DOF]);
     for j in 0..DOF {
-        let pivot = block[(j, j)] - (0..j).map(|k| lower[(j, k)] * lower[(j, k)] * pivots[k]).sum::<f64>();
+        let pivot = left[j][j];
         // Blocks are near 1; whatever is left of it here is more than rounding.
         if !(pivot.is_finite() && pivot.abs() > f64::EPSILON) {
             return None;
         }
         pivots[j] = pivot;
         for i in j + 1..DOF {
-            let sum: f64 = (0..j).map(|k| lower[(i, k)] * lower[(j, k)] * pivots[k]).sum();
-            lower[(i, j)] = (block[(i, j)] - sum) / pivot;
+            lower[j][i] = left[j][i] / pivot;
+        }
+        for k in j + 1..DOF {
+            for i in k..DOF {
+                left[k][i] -= lower[j][i] * left[j][k];
+            }
         }
     }
     // The inverse of a unit lower triangle, forward.
-    let mut inverse = Matrix6::identity();
+    let mut inverse = six::unit();
     for column in 0..DOF {
         for i in column + 1..DOF {
-            inverse[(i, column)] = -(column..i).map(|k| lower[(i, k)] * inverse[(k, column)]).sum::<f64>();
+            inverse[column][i] = -(column..i).map(|k| lower[k][i] * inverse[column][k]).sum::<f64>();
         }
     }
-    let mut scaled = inverse;
-    for (mut row, pivot) in scaled.row_iter_mut().zip(pivots) {
-        row /= pivot;
+    let mut scaled = transposed(&inverse);
+    for (column, pivot) in scaled.iter_mut().zip(pivots) {
+        column.iter_mut().for_each(|v| *v /= pivot);
     }
     let n_negative = pivots.iter().filter(|pivot| **pivot < 0.0).count();
-    Some((inverse.tr_mul(&scaled), n_negative))
+    Some((product(&scaled, &inverse), n_negative))
 }

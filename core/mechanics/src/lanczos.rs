@@ -5,18 +5,24 @@
 //! SIAM J. Matrix Anal. Appl. 15, 1994).
 
 use crate::factor::{Factor, WIDE};
-use crate::simd::{accumulate, combined, dot, products};
-use crate::tree_matrix::{DOF, TreeMatrix};
-use nalgebra::{DMatrix, SymmetricEigen};
+use crate::simd::{accumulate, dot, mixed, products};
+use crate::six::DOF;
+use crate::tree_matrix::TreeMatrix;
+use nalgebra::{DMatrix, DMatrixView, SymmetricEigen};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
+use std::mem::{replace, take};
 
 /// An eigenvalue counts as found when its vector solves (K - s M)^-1 M x = nu x to so small a share of nu.
-const TOLERANCE: f64 = 1e-11;
+const TOLERANCE: f64 = 3e-11;
 /// What is left of a column in all those before it is nothing new.
 const NOTHING: f64 = 1e-10;
-/// Blocks between two looks at how far it is.
-const BLOCKS_A_LOOK: usize = 4;
+/// Where so small a share of a column lay in those before, its product with M is still as good as new.
+const STALE: f64 = 1e-14;
+/// Where so small a share lay in those before, what is left is orthogonal to them but for rounding.
+const ENOUGH: f64 = 1e-6;
+/// A column is freed of those before at most so many times.
+const FREED_MAX: usize = 3;
 
 /// A growing basis in which (K - s M)^-1 M is tridiagonal by blocks.
 pub(crate) struct Lanczos<'a> {
@@ -29,6 +35,9 @@ pub(crate) struct Lanczos<'a> {
     basis: Vec<f64>,
     /// M times the last block.
     mass_last: Vec<f64>,
+    /// Room for the next block, and for its product with M.
+    next: Vec<f64>,
+    mass_next: Vec<f64>,
     /// Diagonal blocks, and those that lead to the next block.
     diagonal: Vec<Square>,
     below: Vec<Square>,
@@ -46,15 +55,27 @@ pub(crate) struct Ritz {
 }
 
 impl<'a> Lanczos<'a> {
-    pub(crate) fn new(factor: &'a Factor, shift: f64, mass: &'a TreeMatrix, seed: u64) -> Self {
+    /// With room for so many columns, which may become more.
+    pub(crate) fn new(
+        factor: &'a Factor,
+        shift: f64,
+        mass: &'a TreeMatrix,
+        seed: u64,
+        n_columns: usize,
+    ) -> Self {
         let height = DOF * mass.len();
         let mut chance = Pcg64::seed_from_u64(seed);
         let mut first: Vec<f64> = (0..WIDE * height).map(|_| chance.random_range(-1.0..1.0)).collect();
         // Chance is mostly fast vibrations: one step towards the slow ones.
-        factor.solve_columns::<WIDE>(&mut first);
-        let (basis, mass_last, diagonal, below) = Default::default();
-        let mut made = Self { factor, shift, mass, height, basis, mass_last, diagonal, below, chance };
-        made.append(first);
+        factor.solve(&mut first);
+        let (diagonal, below) = Default::default();
+        let basis = Vec::with_capacity(n_columns * height);
+        let [mass_last, mut mass_next] = [0, 1].map(|_| vec![0.0; WIDE * height]);
+        mass.times(&first, &mut mass_next);
+        let next = first;
+        let mut made =
+            Self { factor, shift, mass, height, basis, mass_last, next, mass_next, diagonal, below, chance };
+        made.append();
         made
     }
 
@@ -63,70 +84,96 @@ impl<'a> Lanczos<'a> {
         self.basis.len() / self.height
     }
 
-    /// Some blocks more.
-    pub(crate) fn grow(&mut self) {
-        for _ in 0..BLOCKS_A_LOOK {
-            let mut next = self.mass_last.clone();
-            self.factor.solve_columns::<WIDE>(&mut next);
-            let last = self.width() - WIDE;
-            let mut own = Square::default();
-            // All before; and the last ones again, which is where the most of it was.
-            for from in [0, last.saturating_sub(WIDE)] {
-                let mass_next = self.times_mass(&next);
-                let old = &self.basis[from * self.height..];
-                let mut shares = products(self.height, old, &mass_next);
-                for (own, share) in own.iter_mut().zip(&shares[last - from..]) {
-                    own.iter_mut().zip(share).for_each(|(own, share)| *own += share);
-                }
-                shares.iter_mut().flatten().for_each(|share| *share = -*share);
-                accumulate(self.height, old, &shares, &mut next);
-            }
+    /// So many blocks more.
+    pub(crate) fn grow(&mut self, n_blocks: usize) {
+        for _ in 0..n_blocks {
+            let (mut next, mut mass_next) = (take(&mut self.next), take(&mut self.mass_next));
+            let own = self.follow(&mut next, &mut mass_next);
+            (self.next, self.mass_next) = (next, mass_next);
             self.diagonal.push(own);
-            let below = self.append(next);
+            let below = self.append();
             self.below.push(below);
         }
     }
 
-    fn times_mass(&self, wide: &[f64]) -> Vec<f64> {
-        let mut product = vec![0.0; wide.len()];
-        for (x, product) in wide.chunks(self.height).zip(product.chunks_mut(self.height)) {
-            self.mass.times(x, product);
+    /// The operator on the last block, less what lies in the basis, and M times that; the share of the last block itself.
+    fn follow(&self, next: &mut [f64], mass_next: &mut [f64]) -> Square {
+        next.copy_from_slice(&self.mass_last);
+        self.factor.solve(next);
+        // In exact numbers it lies in the last two blocks alone, and how much in the last but one is known.
+        let mut own = Square::default();
+        own.copy_from_slice(&products(self.height, &self.mass_last, next));
+        let mut shares: Vec<[f64; WIDE]> = Vec::new();
+        if let Some(below) = self.below.last() {
+            shares.extend((0..WIDE).map(|j| std::array::from_fn(|k| below[k][j])));
         }
-        product
+        shares.extend(own);
+        self.free(&shares, next);
+        self.mass.times(next, mass_next);
+        for _ in 0..FREED_MAX {
+            let shares = products(self.height, &self.basis, mass_next);
+            self.free(&shares, next);
+            for (own, share) in own.iter_mut().zip(&shares[shares.len() - WIDE..]) {
+                own.iter_mut().zip(share).for_each(|(own, share)| *own += share);
+            }
+            let squares = products(self.height, next, mass_next);
+            let is_within = |share: f64| {
+                let most = |k: usize| shares.iter().fold(0.0_f64, |most, share| most.max(share[k].abs()));
+                (0..WIDE).all(|k| most(k).powi(2) <= share.powi(2) * squares[k][k].abs())
+            };
+            if is_within(STALE) {
+                break;
+            }
+            self.mass.times(next, mass_next);
+            if is_within(ENOUGH) {
+                break;
+            }
+        }
+        own
     }
 
-    /// Makes columns orthogonal to one another and of length 1 and adds them; what was given is they times what is
-    /// returned. A column that is nothing new is another, by chance.
-    #[expect(clippy::needless_range_loop, reason = "k counts columns of three arrays")]
-    fn append(&mut self, mut wide: Vec<f64>) -> Square {
+    /// Takes from two columns their shares in the last of the basis.
+    fn free(&self, shares: &[[f64; WIDE]], wide: &mut [f64]) {
+        let from = self.basis.len() - shares.len() * self.height;
+        let shares: Vec<[f64; WIDE]> = shares.iter().map(|share| share.map(|share| -share)).collect();
+        accumulate(self.height, &self.basis[from..], &shares, wide);
+    }
+
+    /// Makes the next columns orthogonal to one another and of length 1 and adds them; what was there is they
+    /// times what is returned. A column that is nothing new is another, by chance.
+    fn append(&mut self) -> Square {
+        let (mut wide, mut mass_wide) = (take(&mut self.next), take(&mut self.mass_next));
         let height = self.height;
         let mut triangle = Square::default();
-        let mut mass_wide = self.times_mass(&wide);
-        for k in 0..WIDE {
-            let at = k * height..(k + 1) * height;
-            let before = dot(&wide[at.clone()], &mass_wide[at.clone()]).max(0.0).sqrt();
-            // Twice is enough (Kahan and Parlett).
-            for j in (0..k).chain(0..k) {
-                let share = dot(&wide[j * height..][..height], &mass_wide[at.clone()]);
-                triangle[j][k] += share;
-                for columns in [&mut wide, &mut mass_wide] {
-                    let (done, open) = columns.split_at_mut(k * height);
-                    let done = &done[j * height..][..height];
-                    open.iter_mut().zip(done).for_each(|(x, v)| *x -= share * v);
-                }
-            }
-            let mut length = dot(&wide[at.clone()], &mass_wide[at.clone()]).max(0.0).sqrt();
-            triangle[k][k] = length;
-            if length <= NOTHING * before {
-                triangle[k][k] = 0.0;
-                length = self.replace(&mut wide, &mut mass_wide, k);
-            }
-            for columns in [&mut wide, &mut mass_wide] {
-                columns[at.clone()].iter_mut().for_each(|x| *x /= length);
-            }
+        let mut squares = products(height, &wide, &mass_wide);
+        let before = squares[1][1].max(0.0).sqrt();
+        triangle[0][0] = squares[0][0].max(0.0).sqrt();
+        if triangle[0][0] < f64::MIN_POSITIVE {
+            self.replace(&mut wide, &mut mass_wide, 0);
+            squares = products(height, &wide, &mass_wide);
+        }
+        let first = squares[0][0].max(0.0).sqrt().max(f64::MIN_POSITIVE);
+        triangle[0][1] = squares[0][1] / first;
+        for columns in [&mut wide, &mut mass_wide] {
+            mixed(columns, [first.recip(), -triangle[0][1] / first, 1.0]);
+        }
+        // Twice is enough (Kahan and Parlett).
+        squares = products(height, &wide, &mass_wide);
+        let share = squares[0][1];
+        triangle[0][1] += share;
+        let second = (squares[1][1] - share.powi(2)).max(0.0).sqrt();
+        let by = if second <= NOTHING * before {
+            [1.0, 0.0, self.replace(&mut wide, &mut mass_wide, 1).recip()]
+        } else {
+            triangle[1][1] = second;
+            [1.0, -share / second, second.recip()]
+        };
+        for columns in [&mut wide, &mut mass_wide] {
+            mixed(columns, by);
         }
         self.basis.extend_from_slice(&wide);
-        self.mass_last = mass_wide;
+        self.next = wide;
+        self.mass_next = replace(&mut self.mass_last, mass_wide);
         triangle
     }
 
@@ -202,6 +249,7 @@ impl<'a> Lanczos<'a> {
 
     /// Vectors of the first few that are found, one after the other, of length 1 in M.
     pub(crate) fn vectors(&self, ritz: &Ritz, n: usize) -> Vec<f64> {
-        combined(self.height, &self.basis, &ritz.small.columns(0, n).into_owned())
+        let basis = DMatrixView::from_slice(&self.basis, self.height, ritz.small.nrows());
+        (basis * ritz.small.columns(0, n)).data.into()
     }
 }

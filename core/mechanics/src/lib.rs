@@ -9,23 +9,28 @@ mod element;
 mod factor;
 mod forest;
 mod lanczos;
+mod leaves;
 mod material;
 mod modes;
 mod oscillator;
 mod rig;
 mod roof;
 mod simd;
+mod six;
 mod stirring;
 mod threads;
 mod tree_matrix;
 pub mod wind;
 mod wind_basis;
 
-pub use beams::{Beams, BeamsError, Options};
+pub use beams::{Beams, BeamsError, MOST_NODES, Options};
 pub use bending::{Bending, Form, unstretched};
 pub use element::{Section, frame, shape};
 pub use factor::Factor;
-pub use forest::{Detail, DetailError, Forest, ForestError, Kind, Pace, Seen, Stand, View};
+pub use forest::{
+    Blowing, Detail, DetailError, Details, Forest, ForestError, Pace, Pose, Stand, StateError, View,
+};
+pub use leaves::{Leaves, LeavesError};
 pub use material::{Material, MaterialError};
 pub use modes::{Modes, ModesError};
 pub use oscillator::{Damping, Integrator, LimitError, Oscillator, State, Step, symplectic_limit};

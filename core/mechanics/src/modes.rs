@@ -4,10 +4,11 @@
 mod tests;
 
 use crate::beams::Beams;
-use crate::factor::{Factor, Flexibility, Singular};
+use crate::factor::{Factor, Flexibility, Singular, WIDE};
 use crate::lanczos::Lanczos;
 use crate::simd::dot;
-use crate::tree_matrix::{DOF, TreeMatrix};
+use crate::six::DOF;
+use crate::tree_matrix::TreeMatrix;
 use nalgebra::{DMatrix, Dyn, SymmetricEigen, Vector3};
 use std::f64::consts::TAU;
 
@@ -17,6 +18,14 @@ const DENSE_MAX: usize = 96;
 const GAP: f64 = 1e-7;
 /// Vibrations beyond the wanted ones that are looked at to find a gap.
 const BEYOND: usize = 3;
+/// Columns that it mostly takes to find so many vibrations, each.
+const WIDTH: usize = 3;
+/// Blocks that tell about where the first eigenvalue lies.
+const BLOCKS_FIRST: usize = 4;
+/// Blocks between two looks at how far it is.
+const BLOCKS_A_LOOK: usize = 2;
+/// Attempts at a shift amid what is wanted; where all fail, many eigenvalues are as one, and any shift serves.
+const SHIFTS_MAX: usize = 12;
 
 /// Vibration modes of a plant, slowest first, each of modal mass 1 kg m^2 per its unit: phi^T M phi = 1.
 #[derive(Clone, Debug)]
@@ -79,16 +88,21 @@ impl Modes {
     fn checked(factor: &Factor, mass: &TreeMatrix, lambdas: &[f64], shapes: Vec<f64>) -> Self {
         let height = DOF * mass.len();
         let omegas: Vec<f64> = lambdas.iter().map(|lambda| lambda.sqrt()).collect();
-        let mut product = vec![0.0; height];
-        let residual = |(shape, lambda): (&[f64], &f64)| {
-            mass.times(shape, &mut product);
-            let mut other = product.clone();
-            factor.solve(&mut other);
-            other.iter_mut().zip(shape).for_each(|(y, x)| *y = x - *y * lambda);
-            mass.times(&other, &mut product);
-            dot(&other, &product).max(0.0).sqrt()
-        };
-        let residuals = shapes.chunks(height).zip(lambdas).map(residual).collect();
+        let (mut left, mut product) = (Vec::new(), Vec::new());
+        let mut residuals = Vec::with_capacity(lambdas.len());
+        for (shapes, lambdas) in shapes.chunks(WIDE * height).zip(lambdas.chunks(WIDE)) {
+            left.resize(shapes.len(), 0.0);
+            product.resize(shapes.len(), 0.0);
+            mass.times(shapes, &mut left);
+            factor.solve(&mut left);
+            let columns = left.chunks_mut(height).zip(shapes.chunks(height));
+            for ((left, shape), lambda) in columns.zip(lambdas) {
+                left.iter_mut().zip(shape).for_each(|(y, x)| *y = x - *y * lambda);
+            }
+            mass.times(&left, &mut product);
+            let columns = left.chunks(height).zip(product.chunks(height));
+            residuals.extend(columns.map(|(left, product)| dot(left, product).max(0.0).sqrt()));
+        }
         Self { omegas, residuals, shapes, n_nodes: mass.len() }
     }
 
@@ -177,8 +191,8 @@ fn all(factor: &Factor, mass: &TreeMatrix, n_modes: usize) -> (Vec<f64>, Vec<f64
 
 /// The smallest eigenvalues of K x = lambda M x and their vectors, with the proof that none was missed.
 ///
-/// They are sought about a shift that most of them lie below: there the wanted ones are far apart for the iteration,
-/// and the factors of K - s M tell how many lie below.
+/// They are sought about a shift amid them: there the wanted ones are far apart for the iteration, and the factors of
+/// K - s M tell how many lie below.
 fn few(
     flexibility: &Flexibility,
     factor: &Factor,
@@ -186,57 +200,65 @@ fn few(
     n_modes: usize,
     seed: u64,
 ) -> Result<(Vec<f64>, Vec<f64>), ModesError> {
-    let (shift, shifted) = shift(flexibility, factor, mass, n_modes, seed)?;
+    let (shift, shifted) = amid(flexibility, factor, mass, n_modes, seed)?;
     let n_below = shifted.n_negative();
-    let mut lanczos = Lanczos::new(&shifted, shift, mass, seed);
+    let mut lanczos = Lanczos::new(&shifted, shift, mass, seed, WIDTH * n_modes);
     let width_max = (12 * (n_modes + BEYOND) + 100).min(DOF * mass.len());
     let mut found = 0;
     while lanczos.width() < width_max {
-        lanczos.grow();
+        lanczos.grow(BLOCKS_A_LOOK);
         if lanczos.width() < n_modes + found.max(n_modes / 2) {
             continue;
         }
         let ritz = lanczos.ritz(n_below);
         found = ritz.lambdas.len();
-        let gap = (n_modes..found).find(|&k| ritz.lambdas[k] > ritz.lambdas[k - 1] * (1.0 + GAP));
+        // Below the next that is another; nothing is known yet of what comes after the last.
+        let past = |k: usize| ritz.lambdas[k - 1] * (1.0 + GAP);
+        let next = |k: usize| ritz.lambdas.get(k).copied();
+        let gap = (n_modes..=found).find(|&k| next(k).is_none_or(|next| next > past(k)));
         let Some(below) = gap else { continue };
-        let between = f64::midpoint(ritz.lambdas[below - 1], ritz.lambdas[below]);
-        let counted = Factor::new(flexibility, mass, between)?.n_negative();
-        if counted == below {
+        let between = next(below).map_or(past(below), |next| f64::midpoint(ritz.lambdas[below - 1], next));
+        if Factor::count(flexibility, mass, between)? == below {
             return Ok((ritz.lambdas[..n_modes].to_vec(), lanczos.vectors(&ritz, n_modes)));
         }
     }
     Err(ModesError::Uncertain { wanted: n_modes, found })
 }
 
-/// A shift, and the factors of K - s M there, that half of the wanted eigenvalues lie below at least, and no others.
-fn shift(
+/// A shift that about half of the wanted eigenvalues lie below, and the factors of K - s M there.
+fn amid(
     flexibility: &Flexibility,
     factor: &Factor,
     mass: &TreeMatrix,
     n_modes: usize,
     seed: u64,
 ) -> Result<(f64, Factor), ModesError> {
-    let mut lanczos = Lanczos::new(factor, 0.0, mass, seed);
-    lanczos.grow();
-    let (mut low, mut high) = (lanczos.smallest(), f64::INFINITY);
-    let mut shift = 2.0 * low;
-    loop {
+    let mut lanczos = Lanczos::new(factor, 0.0, mass, seed, 0);
+    lanczos.grow(BLOCKS_FIRST);
+    let first = lanczos.smallest();
+    let half = n_modes as f64 / 2.0;
+    let near = (half / 3.0).max(1.0);
+    // A shift that too few lie below, one that too many lie below, and how many.
+    let (mut low, mut high): ((f64, f64), Option<(f64, f64)>) = ((first, 1.0), None);
+    let mut shift = 2.0 * first;
+    for _ in 1..SHIFTS_MAX {
         let shifted = Factor::new(flexibility, mass, shift)?;
-        let n_below = shifted.n_negative();
-        if n_below > n_modes {
-            high = shift;
-        } else if n_below < n_modes / 2 {
-            low = shift;
+        let n_below = shifted.n_negative() as f64;
+        if (n_below - half).abs() <= near {
+            return Ok((shift, shifted));
+        }
+        if n_below < half {
+            low = (shift, n_below.max(1.0));
         } else {
-            return Ok((shift, shifted));
+            high = Some((shift, n_below));
         }
-        // Eigenvalues that many share leave nothing in between: any shift serves.
-        if high < low * (1.0 + GAP) {
-            return Ok((shift, shifted));
-        }
-        shift = if high.is_finite() { (low * high).sqrt() } else { 2.0 * low };
+        shift = high.map_or(2.0 * low.0, |high| {
+            // Counts grow about as a power.
+            let share = (half.max(1.0) / low.1).ln() / (high.1 / low.1).ln();
+            low.0 * (high.0 / low.0).powf(share.clamp(0.3, 0.7))
+        });
     }
+    Ok((shift, Factor::new(flexibility, mass, shift)?))
 }
 
 /// Places of the largest eigenvalues, in order.

@@ -13,10 +13,10 @@ use crate::threads::Threads;
 use arc::arc_tangent;
 use nalgebra::Vector3;
 use pulp::Arch;
-use tile::Tiles;
+use tile::{PANEL, Tiles};
 
 /// Copies that one thread poses before it goes through all tiles again: their rows of S stay in the cache.
-pub(crate) const BATCH: usize = 48;
+pub(crate) const BATCH: usize = 8 * PANEL;
 
 /// A plant ready to be posed.
 #[derive(Clone, Debug)]
@@ -29,8 +29,8 @@ pub struct Rig {
 }
 
 impl Rig {
-    /// Some nodes of the beams, by how all of them bend in every mode: linear or by powers of one arc tangent a mode, the
-    /// same number in all modes.
+    /// Some nodes of the beams, in this order, by how all of them bend in every mode: linear or by powers of one arc tangent
+    /// a mode, the same number in all modes.
     ///
     /// # Panics
     /// When a mode has an arc tangent a node ([`Form::Node`](crate::Form::Node)), of which there is no such product.
@@ -38,13 +38,12 @@ impl Rig {
     pub fn new(bendings: &[Bending], nodes: &[u32]) -> Self {
         assert!(bendings.iter().all(Bending::is_product), "one arc tangent a mode, or none");
         let n_powers = bendings.first().map_or(1, |bending| bending.powers().len());
-        // Row by row: all modes of the first power, then of the next.
-        let rows =
-            (0..n_powers).flat_map(|power| bendings.iter().map(move |bending| &bending.powers()[power]));
         let numbers = |row: &Vec<Vector3<f64>>| -> Vec<f32> {
             nodes.iter().flat_map(|&node| row[node as usize].iter().map(|v| *v as f32)).collect()
         };
-        let rows: Vec<Vec<f32>> = rows.map(numbers).collect();
+        // Row by row, mode after mode, so that those of the first modes stand together.
+        let rows: Vec<Vec<f32>> =
+            bendings.iter().flat_map(|bending| bending.powers().iter().map(numbers)).collect();
         let b = bendings.iter().map(|bending| bending.b().unwrap_or(0.0) as f32).collect();
         Self { n_nodes: nodes.len(), b, n_powers, tiles: Tiles::new(&rows, 3 * nodes.len()) }
     }
@@ -53,6 +52,11 @@ impl Rig {
     #[must_use]
     pub fn n_modes(&self) -> usize {
         self.b.len()
+    }
+
+    /// Nodes that it poses.
+    pub(crate) fn n_nodes(&self) -> usize {
+        self.n_nodes
     }
 
     /// Numbers of a copy's pose: three a node.
@@ -77,32 +81,36 @@ impl Rig {
         assert_eq!(amplitudes.len() / n_modes * n_columns, displacements.len(), "a row a copy");
         let batches = amplitudes.chunks(BATCH * n_modes).zip(displacements.chunks_mut(BATCH * n_columns));
         threads.each(batches, |(amplitudes, displacements)| {
-            self.pose_batch(amplitudes.chunks(n_modes), displacements);
+            self.pose_batch(amplitudes.chunks(n_modes), n_modes, displacements);
         });
     }
 
-    /// Displacements of some copies by rows of amplitudes, of which the first count where there are more than modes.
+    /// Displacements of the first nodes of some copies, so many as there is room for in a row of `displacements` a copy,
+    /// by the first `n_modes` of their amplitudes; the same bits whatever is left out.
     pub(crate) fn pose_batch<'a>(
         &self,
-        amplitudes: impl Iterator<Item = &'a [f32]>,
+        amplitudes: impl ExactSizeIterator<Item = &'a [f32]>,
+        n_modes: usize,
         displacements: &mut [f32],
     ) {
-        let mut shares = Vec::with_capacity(BATCH * self.n_modes() * self.n_powers);
-        let mut turned = vec![0.0; self.n_modes()];
-        for row in amplitudes {
+        let (n_columns, n_rows) = (displacements.len() / amplitudes.len().max(1), n_modes * self.n_powers);
+        let mut panels = vec![[0.0; PANEL]; amplitudes.len().div_ceil(PANEL) * n_rows];
+        let mut turned = vec![0.0; n_modes];
+        for (copy, row) in amplitudes.enumerate() {
             self.arcs(row, &mut turned);
-            shares.extend_from_slice(&turned);
-            for _ in 1..self.n_powers {
-                let last = shares.len() - turned.len();
-                shares.extend_from_within(last..);
-                let next = &mut shares[last + turned.len()..];
-                next.iter_mut().zip(&turned).for_each(|(power, s)| *power *= s);
+            let panel = &mut panels[copy / PANEL * n_rows..][..n_rows];
+            for (shares, s) in panel.chunks_exact_mut(self.n_powers).zip(&turned) {
+                let mut power = 1.0;
+                for shares in shares {
+                    power *= s;
+                    shares[copy % PANEL] = power;
+                }
             }
         }
-        self.tiles.multiply(&shares, displacements);
+        self.tiles.multiply(&panels, n_rows, n_columns, displacements);
     }
 
-    /// s of every mode.
+    /// s of the first modes.
     fn arcs(&self, row: &[f32], turned: &mut [f32]) {
         let bent = self.n_powers > 1;
         Arch::new().dispatch(
@@ -113,22 +121,5 @@ impl Rig {
                 }
             },
         );
-    }
-
-    /// Displacement of one node of one copy, metres, by the amplitudes of its modes.
-    ///
-    /// # Panics
-    /// When there is no such node.
-    #[must_use]
-    pub fn displacement(&self, amplitudes: &[f32], node: usize) -> [f32; 3] {
-        let mut turned = vec![0.0; self.n_modes()];
-        self.arcs(amplitudes, &mut turned);
-        std::array::from_fn(|axis| {
-            let share = |(row, s): (usize, &f32)| {
-                let power = (row / turned.len()) as i32 + 1;
-                s.powi(power) * self.tiles.at(row, 3 * node + axis)
-            };
-            (0..self.n_powers).flat_map(|_| &turned).enumerate().map(share).sum()
-        })
     }
 }

@@ -19,8 +19,8 @@ pub struct Stirring {
     pub(crate) basis: WindBasis,
     pub(crate) bendings: Vec<Bending>,
     pub(crate) rest: Vec<Vector3<f64>>,
-    /// Nodes by how much wood they bear, the root first: each after its parent.
-    pub(crate) by_wood: Vec<u32>,
+    /// Metres by which the slowest mode moves the node that it moves most, a unit of its amplitude.
+    widest: f64,
     pub(crate) height: f64,
     pub(crate) reach: f64,
 }
@@ -36,17 +36,11 @@ impl Stirring {
             .collect();
         let root = beams.nodes()[0].position;
         let rest: Vec<Vector3<f64>> = beams.nodes().iter().map(|node| node.position - root).collect();
-        let mut wood = vec![0.0; rest.len()];
-        for (base, tip, section, _) in beams.segments().collect::<Vec<_>>().into_iter().rev() {
-            wood[tip] += section.area() * section.length;
-            wood[base] += wood[tip];
-        }
-        let mut by_wood: Vec<u32> = (0..rest.len() as u32).collect();
-        by_wood.sort_by(|a, b| wood[*b as usize].total_cmp(&wood[*a as usize]).then(a.cmp(b)));
         let height = rest.iter().map(|at| at.z).fold(0.0, f64::max);
         let centre = Vector3::z() * (height / 2.0);
         let reach = rest.iter().map(|at| (at - centre).norm()).fold(0.0, f64::max) * SWAY;
-        Self { omegas: modes.omegas.clone(), basis, bendings, rest, by_wood, height, reach }
+        let widest = (0..rest.len()).map(|node| modes.displacement(0, node).norm()).fold(0.0, f64::max);
+        Self { omegas: modes.omegas.clone(), basis, bendings, rest, widest, height, reach }
     }
 
     /// Nodes, the root included.
@@ -67,10 +61,24 @@ impl Stirring {
         self.bendings.first().map_or(1, |bending| bending.powers().len())
     }
 
+    /// How every mode bends the plant.
+    #[must_use]
+    pub fn bendings(&self) -> &[Bending] {
+        &self.bendings
+    }
+
     /// Nodes at rest, metres from the root.
     #[must_use]
     pub fn rest(&self) -> &[Vector3<f64>] {
         &self.rest
+    }
+
+    /// Amplitudes with the slowest mode pulled out, so that the node it moves most is so many metres from rest.
+    #[must_use]
+    pub fn pulled(&self, metres: f64) -> Vec<f32> {
+        let mut amplitudes = vec![0.0; self.n_modes()];
+        amplitudes[0] = (metres / self.widest.max(f64::MIN_POSITIVE)) as f32;
+        amplitudes
     }
 
     /// From the root to the highest node, metres.

@@ -1,5 +1,11 @@
 //! Threads that wait for work.
 
+use std::sync::atomic::{AtomicUsize, Ordering::Acquire, Ordering::Release};
+use std::sync::{Mutex, PoisonError};
+
+/// Looks at what others still do before whoever asked goes to sleep: about as long as a piece of work takes.
+const LOOKS: usize = 20_000;
+
 /// Threads for poses and steps: started once, so that a frame of microseconds does not wait for them.
 #[derive(Debug)]
 pub struct Threads(Option<rayon::ThreadPool>);
@@ -13,7 +19,7 @@ pub struct ThreadsError {
 }
 
 impl Threads {
-    /// So many; with one, work is done by whoever asks for it.
+    /// So many, with that of whoever asks for work.
     ///
     /// # Errors
     /// [`ThreadsError`].
@@ -21,7 +27,8 @@ impl Threads {
         if n < 2 {
             return Ok(Self(None));
         }
-        let builder = rayon::ThreadPoolBuilder::new().num_threads(n).thread_name(|k| format!("forest-{k}"));
+        let builder =
+            rayon::ThreadPoolBuilder::new().num_threads(n - 1).thread_name(|k| format!("forest-{k}"));
         builder.build().map(|pool| Self(Some(pool))).map_err(|source| ThreadsError { n, source })
     }
 
@@ -31,10 +38,30 @@ impl Threads {
         pieces: impl Iterator<Item = W> + Send,
         work: impl Fn(W) + Sync + Send,
     ) {
-        let work = &work;
-        match &self.0 {
-            None => pieces.for_each(work),
-            Some(pool) => pool.scope(|scope| pieces.for_each(|piece| scope.spawn(move |_| work(piece)))),
-        }
+        let Some(pool) = &self.0 else { return pieces.for_each(work) };
+        // Whoever is free takes the next: one wake-up a thread, however many pieces there are.
+        let pieces = Mutex::new(pieces);
+        let next = || pieces.lock().unwrap_or_else(PoisonError::into_inner).next();
+        let all = || {
+            while let Some(piece) = next() {
+                work(piece);
+            }
+        };
+        let at_work = AtomicUsize::new(pool.current_num_threads());
+        pool.in_place_scope(|scope| {
+            for _ in 0..pool.current_num_threads() {
+                scope.spawn(|_| {
+                    all();
+                    at_work.fetch_sub(1, Release);
+                });
+            }
+            all();
+            for _ in 0..LOOKS {
+                if at_work.load(Acquire) == 0 {
+                    break;
+                }
+                std::hint::spin_loop();
+            }
+        });
     }
 }

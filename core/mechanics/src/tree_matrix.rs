@@ -2,10 +2,10 @@
 
 use crate::beams::Beams;
 use crate::element::{Ends, Section};
-use nalgebra::{Matrix6, Vector3, Vector6};
-
-/// Degrees of freedom a node.
-pub(crate) const DOF: usize = 6;
+use crate::factor::WIDE;
+use crate::six::{DOF, add, add_transposed, put, rows};
+use nalgebra::{Matrix6, Vector3};
+use pulp::Arch;
 
 /// A symmetric matrix over the nodes of a tree, 6 x 6 numbers a node and a node's link to its parent. Vectors are
 /// 6 numbers a node, node after node.
@@ -61,24 +61,46 @@ impl TreeMatrix {
         self.nodes.is_empty()
     }
 
-    /// The product with a vector.
+    /// Of every node its parent, `None` where that is clamped; its own block, and its rows in its parent's columns, column
+    /// by column.
+    pub fn blocks(&self) -> impl Iterator<Item = (Option<u32>, [[[f64; DOF]; DOF]; 2])> {
+        self.nodes.iter().map(|block| (block.parent, [block.own.data.0, block.link.data.0]))
+    }
+
+    /// The product with as many columns as there are, one after the other.
     ///
     /// # Panics
-    /// When the vector is not 6 numbers a node.
+    /// When a column is not 6 numbers a node.
     pub fn times(&self, x: &[f64], product: &mut [f64]) {
-        assert_eq!((x.len(), product.len()), (DOF * self.len(), DOF * self.len()), "6 numbers a node");
-        let at = |x: &[f64], node: usize| Vector6::from_column_slice(&x[DOF * node..DOF * (node + 1)]);
+        let height = DOF * self.len();
+        assert!(x.len() == product.len() && x.len().is_multiple_of(height), "6 numbers a node");
+        Arch::new().dispatch(
+            #[inline(always)]
+            || {
+                for (x, product) in x.chunks(WIDE * height).zip(product.chunks_mut(WIDE * height)) {
+                    if x.len() == height {
+                        self.times_columns::<1>(x, product);
+                    } else {
+                        self.times_columns::<WIDE>(x, product);
+                    }
+                }
+            },
+        );
+    }
+
+    #[inline(always)]
+    fn times_columns<const N: usize>(&self, x: &[f64], product: &mut [f64]) {
         for (node, block) in self.nodes.iter().enumerate() {
-            let mine = at(x, node);
-            let mut sum = block.own * mine;
+            let (mine, mut sums) = (rows::<N>(x, node), [[0.0; N]; DOF]);
+            add(&block.own.data.0, &mine, &mut sums);
             if let Some(parent) = block.parent {
-                sum += block.link * at(x, parent as usize);
+                add(&block.link.data.0, &rows::<N>(x, parent as usize), &mut sums);
                 // The parent comes first: its own share is there already.
-                let share = block.link.tr_mul(&mine);
-                let place = &mut product[DOF * parent as usize..DOF * (parent as usize + 1)];
-                place.iter_mut().zip(share.iter()).for_each(|(sum, share)| *sum += share);
+                let mut place = rows::<N>(product, parent as usize);
+                add_transposed(&block.link.data.0, &mine, &mut place);
+                put(product, parent as usize, &place);
             }
-            product[DOF * node..DOF * (node + 1)].copy_from_slice(sum.as_slice());
+            put(product, node, &sums);
         }
     }
 }

@@ -16,4 +16,5 @@ pub mod over;
 pub mod picture;
 pub mod plant;
 pub mod provenance;
+pub mod skeleton;
 pub mod track;

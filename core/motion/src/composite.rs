@@ -160,7 +160,7 @@ fn check(positions: &Positions, options: &Options) -> Result<(), MotionError> {
     Ok(())
 }
 
-fn zeros(n_tracks: usize) -> Result<Vec<f64>, MotionError> {
+pub(crate) fn zeros(n_tracks: usize) -> Result<Vec<f64>, MotionError> {
     let len = n_tracks * (n_tracks - 1) / 2;
     let mut condensed = Vec::new();
     if condensed.try_reserve_exact(len).is_err() {

@@ -4,16 +4,21 @@
 //! the same bits for any number of threads and any SIMD level.
 
 pub mod accuracy;
+pub mod bod;
 pub mod composite;
 pub mod disagreement;
+pub mod likeness;
 pub mod linkage;
 pub mod overlay;
+mod pool;
 pub mod positions;
 pub mod score;
 pub mod spectrum;
 pub mod swing;
 
+pub use bod::{Bod, Table, denoised};
 pub use composite::{Composite, composite};
+pub use likeness::{Likeness, Likenesses, likenesses};
 pub use linkage::{Criterion, linkage};
 pub use positions::Positions;
 

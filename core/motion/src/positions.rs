@@ -33,6 +33,23 @@ impl Positions {
         positions
     }
 
+    /// Tracks of their first frame and their samples from there on, one a frame, `None` where it was not seen; also the
+    /// first frame of all, which is frame 0 here.
+    #[must_use]
+    pub fn of_samples(tracks: &[(i64, Vec<Option<[f32; 2]>>)]) -> (i64, Self) {
+        let origin = tracks.iter().map(|(first, _)| *first).min().unwrap_or(0);
+        // Spans of a clip in memory: their lengths fit.
+        let start = |first: i64| (first - origin) as usize;
+        let n_frames = tracks.iter().map(|(first, samples)| start(*first) + samples.len()).max().unwrap_or(0);
+        let mut positions = Self::new(tracks.len(), n_frames);
+        for (track, (first, samples)) in tracks.iter().enumerate() {
+            for (sample, frame) in samples.iter().zip(start(*first)..) {
+                sample.iter().for_each(|at| positions.set(track, frame, *at));
+            }
+        }
+        (origin, positions)
+    }
+
     /// Marks a track as seen at a position, pixels; one that is not finite counts as not seen.
     ///
     /// # Panics

@@ -1,9 +1,9 @@
 //! How fast something swings and how soon it comes to rest, from a series of where it was.
 //!
-//! A mode that is pulled and let go, and one that the wind drives evenly, have the same shape of spectrum about its
-//! frequency: A (1 + C r^2) / ((1 - r^2)^2 + (2 zeta r)^2) + B, r = f / f0; C is how much of it began with a push, and 0
-//! for the wind. It is fitted to the periodogram by Whittle's likelihood, whose errors are those of a spectrum that was
-//! drawn (Whittle, Ark. Mat. 2, 1953).
+//! A mode that is pulled and let go, and one that the wind drives, have nearly the same shape of spectrum about its
+//! frequency: A (1 + C r^2) r^-D / ((1 - r^2)^2 + (2 zeta r)^2) + B, r = f / f0; C is how much of it began with a push, and
+//! 0 for the wind; D how steeply the wind falls with frequency, 5/3 in turbulence, and 0 without. It is fitted to the
+//! periodogram by Whittle's likelihood, whose errors are those of a spectrum that was drawn (Whittle, Ark. Mat. 2, 1953).
 
 #[cfg(test)]
 mod tests;
@@ -18,9 +18,11 @@ const BESIDE: usize = 3;
 /// Damping to begin with.
 const RATIO: f64 = 0.05;
 /// Steps of the search.
-const STEPS: usize = 600;
-/// Numbers that are sought: logarithms of f0, zeta, B / A and C.
-const N: usize = 4;
+const STEPS: usize = 800;
+/// Numbers that are sought: logarithms of f0, zeta, B / A and C; and D.
+const N: usize = 5;
+/// Of fewer frequencies D would be a guess: it is 0.
+const SLOPED: usize = 20;
 
 /// How something swings.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,7 +65,7 @@ pub fn swing(series: &[f64], fps: f64, [lowest, highest]: [f64; 2]) -> Option<Sw
         return None;
     }
     let rows: Vec<(f64, f64)> = (first..end).map(|k| (k as f64 * step, power[k])).collect();
-    let start = [hz.ln(), RATIO.ln(), (1e-3 / (4.0 * RATIO.powi(2))).ln(), 0.0];
+    let start = [hz.ln(), RATIO.ln(), (1e-3 / (4.0 * RATIO.powi(2))).ln(), 0.0, 0.0];
     let [found, ratio, ..] = smallest(start, |at| misfit(&rows, at)).map(f64::exp);
     let is_there = (rows[0].0..=rows[rows.len() - 1].0).contains(&found) && (1e-5..1.0).contains(&ratio);
     is_there.then_some(Swing { hz: found, ratio })
@@ -92,11 +94,14 @@ fn periodogram(series: &[f64]) -> Option<Vec<f64>> {
 
 /// Minus the logarithm of the likelihood, with the best A.
 fn misfit(rows: &[(f64, f64)], at: [f64; N]) -> f64 {
-    let [hz, ratio, floor, push] = at.map(f64::exp);
+    let [.., slope] = at;
+    let [hz, ratio, floor, push, _] = at.map(f64::exp);
+    let slope = if rows.len() < SLOPED { 0.0 } else { slope };
     let (mut scale, mut sum) = (0.0, 0.0);
     for (f, power) in rows {
         let r = f / hz;
-        let shape = (1.0 + push * r * r) / ((1.0 - r * r).powi(2) + (2.0 * ratio * r).powi(2)) + floor;
+        let resonance = ((1.0 - r * r).powi(2) + (2.0 * ratio * r).powi(2)).recip();
+        let shape = (1.0 + push * r * r) * r.powf(-slope) * resonance + floor;
         scale += power / shape;
         sum += shape.ln();
     }
@@ -109,7 +114,7 @@ fn misfit(rows: &[(f64, f64)], at: [f64; N]) -> f64 {
 fn smallest(start: [f64; N], of: impl Fn([f64; N]) -> f64) -> [f64; N] {
     let valued = |at: [f64; N]| (of(at), at);
     let mut corners: Vec<(f64, [f64; N])> = vec![valued(start)];
-    for (axis, away) in [0.02, 0.5, 1.0, 1.0].into_iter().enumerate() {
+    for (axis, away) in [0.02, 0.5, 1.0, 1.0, 1.0].into_iter().enumerate() {
         let mut at = start;
         at[axis] += away;
         corners.push(valued(at));

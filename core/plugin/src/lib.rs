@@ -86,7 +86,7 @@ pub use error::{Error, Result};
 pub use honami_abi as abi;
 pub use info::{Info, Library};
 pub use params::{Entry, Param, ParamType, Params, Value};
-pub use simulator::{Detail, Instance, Mode, Node, Plant, Simulator, Steps, Wind};
+pub use simulator::{Blowing, Detail, Instance, Mode, Node, Plant, Simulator, Steps, Wind};
 pub use state::State;
 pub use tracker::{
     Chroma, Detect, DetectFn, Feature, Field, FieldFn, Frame, Gray, Point, Points, Range, Seed, Status,

@@ -36,7 +36,8 @@ pub trait Simulator: Sized + Send + 'static {
     /// Back to rest at time 0.
     fn reset(&mut self);
 
-    /// Goes so many steps, then writes how far every wanted node is from rest. The same bits in one call as in many.
+    /// Goes so many steps, then writes how far every wanted node is from rest, metres in the axes and the size of the plant,
+    /// whatever its copy's yaw and scale. The same bits in one call as in many.
     ///
     /// # Errors
     /// Whatever keeps it from that, as a `dt` that the method cannot take.
@@ -118,7 +119,7 @@ pub struct Mode {
 pub struct Steps<'a> {
     /// Seconds a step, above 0.
     pub dt: f64,
-    /// At least 1.
+    /// How many; 0: only where everything is now.
     pub n: u32,
     /// The wind on the way.
     pub wind: Wind<'a>,
@@ -154,29 +155,42 @@ impl Wind<'_> {
     /// At a time, at a copy, metres per second.
     #[must_use]
     pub fn at(&self, time_s: f64, copy: usize) -> [f32; 3] {
-        let (after, share) = self.place(time_s);
-        self.between(after, share, copy)
+        self.blowing(time_s).at(copy)
     }
 
-    /// Where a time lies: the row after it, and how far it is from the row before towards that.
+    /// At a time, at all copies.
     #[must_use]
-    pub fn place(&self, time_s: f64) -> (usize, f64) {
-        let after = self.times_s.partition_point(|&t| t <= time_s);
-        let ends = after.checked_sub(1).and_then(|k| self.times_s.get(k)).zip(self.times_s.get(after));
-        (after, ends.map_or(0.0, |(&a, &b)| (time_s - a) / (b - a)))
-    }
-
-    /// At a [`place`](Self::place), at a copy, metres per second.
-    #[must_use]
-    pub fn between(&self, after: usize, share: f64, copy: usize) -> [f32; 3] {
+    pub fn blowing(&self, time_s: f64) -> Blowing<'_> {
         let n = self.velocities.len().checked_div(self.times_s.len()).unwrap_or(0);
-        let row = |k: usize| self.velocities.get(k * n + if n > 1 { copy } else { 0 });
-        let Some(last) = self.times_s.len().checked_sub(1) else { return [0.0; 3] };
-        let from = row(after.saturating_sub(1)).copied().unwrap_or_default();
-        let to = row(after.min(last)).copied().unwrap_or_default();
+        let row = |k: usize| self.velocities.get(k * n..(k + 1) * n).unwrap_or_default();
+        let after = self.times_s.partition_point(|&t| t <= time_s);
+        let before = after.saturating_sub(1);
+        let ends = self.times_s.get(before).zip(self.times_s.get(after));
+        let share = ends.map_or(0.0, |(&a, &b)| ((time_s - a) / (b - a)).max(0.0));
+        Blowing { before: row(before), after: row(after.min(self.times_s.len().saturating_sub(1))), share }
+    }
+}
+
+/// Wind at a time.
+#[derive(Clone, Copy, Debug)]
+pub struct Blowing<'a> {
+    before: &'a [[f32; 3]],
+    after: &'a [[f32; 3]],
+    share: f64,
+}
+
+impl Blowing<'_> {
+    /// At a copy, metres per second.
+    #[must_use]
+    pub fn at(&self, copy: usize) -> [f32; 3] {
+        let of = |row: &[[f32; 3]]| match row {
+            [all] => *all,
+            each => each.get(copy).copied().unwrap_or_default(),
+        };
+        let (from, to) = (of(self.before), of(self.after));
         std::array::from_fn(|axis| {
             let [from, to] = [from, to].map(|wind| f64::from(wind[axis]));
-            (from + share * (to - from)) as f32
+            (from + self.share * (to - from)) as f32
         })
     }
 }

@@ -85,11 +85,12 @@ pub type Sink<'a> = &'a mut dyn FnMut(u32, &Rows) -> Result<(), WorkbenchError>;
 
 /// Who has other trackers for a drive: where one has died, and where its file was rebuilt.
 pub trait Relay {
-    /// Another like the one that has died.
+    /// Another like the one that has died, or of a build that is there by now; and whether that one has died in this
+    /// frame.
     ///
     /// # Errors
     /// When it has died too often, or cannot be made again.
-    fn again(&mut self, seam: &Seam, death: Death) -> Result<Tracker, WorkbenchError>;
+    fn again(&mut self, seam: &Seam, death: Death) -> Result<(Tracker, Death), WorkbenchError>;
 
     /// One of a rebuilt file, where there is a new one. It is on trial for a few frames, which no sink is given
     /// meanwhile. Who has none is told nothing of what follows.

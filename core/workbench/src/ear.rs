@@ -11,12 +11,19 @@ use crate::progress::{Flow, Progress};
 /// More different warnings than a person reads.
 const MAX_WARNINGS: usize = 20;
 
+/// What was warned of, and how much more there was.
+#[derive(Default)]
+struct Warnings {
+    told: Vec<String>,
+    n_more: usize,
+}
+
 /// Listens to the calls of one job.
 pub(crate) struct Ear<'a> {
     /// Short name of the plugin.
     plugin: String,
     progress: &'a dyn Progress,
-    warnings: Mutex<Vec<String>>,
+    warnings: Mutex<Warnings>,
     /// The frame that it is at; below 0 where it is at none.
     frame: AtomicI64,
     /// How long whoever watches took while it was at work.
@@ -93,15 +100,28 @@ impl<'a> Ear<'a> {
     fn hear(&self, level: Level, text: &str) {
         self.progress.hear(&self.plugin, self.frame(), level, text);
         let mut warnings = self.warnings.lock().unwrap_or_else(PoisonError::into_inner);
-        let is_new = !warnings.iter().any(|known| known == text);
-        if level >= Level::Warning && is_new && warnings.len() < MAX_WARNINGS {
-            warnings.push(text.to_owned());
+        if level < Level::Warning || warnings.told.iter().any(|known| known == text) {
+            return;
+        }
+        match warnings.told.len() < MAX_WARNINGS {
+            true => warnings.told.push(text.to_owned()),
+            false => warnings.n_more += 1,
         }
     }
 
-    /// What the plugin warned of, each once, in the order it came.
+    /// Warns of what became of the plugin itself, however much it has warned of.
+    pub(crate) fn warn(&self, text: String) {
+        self.warnings.lock().unwrap_or_else(PoisonError::into_inner).told.push(text);
+    }
+
+    /// What the plugin warned of, each once, in the order it came, and how often it warned beyond what is kept.
     pub(crate) fn warnings(self) -> Vec<String> {
-        self.warnings.into_inner().unwrap_or_else(PoisonError::into_inner)
+        let Warnings { mut told, n_more } =
+            self.warnings.into_inner().unwrap_or_else(PoisonError::into_inner);
+        if n_more > 0 {
+            told.push(format!("and {n_more} warnings more, which are told with -v"));
+        }
+        told
     }
 }
 

@@ -301,6 +301,12 @@ pub enum WorkbenchError {
     /// A file of a plant or of a wind could not be read.
     #[error(transparent)]
     PlantFile(#[from] honami_exchange::plant::PlantFileError),
+    /// A point cache could not be written.
+    #[error(transparent)]
+    PointCache(#[from] honami_exchange::plant::PointCacheError),
+    /// A plant could not be written with its motion.
+    #[error(transparent)]
+    Glb(#[from] honami_exchange::plant::GlbError),
     /// Neither a file of a plant nor the name of one.
     #[error(
         "{source_name:?} is no plant: a file whose name ends in .mtg, .swc, .csv or .mat is wanted, or \
@@ -319,9 +325,29 @@ pub enum WorkbenchError {
     /// A forest cannot be, or does not go on.
     #[error(transparent)]
     Forest(#[from] honami_mechanics::ForestError),
+    /// A forest for which there is no room.
+    #[error("{copies} copies of {nodes} nodes take {} MB, and there are {}", bytes / 1_000_000, there / 1_000_000)]
+    Memory {
+        /// Of the plant.
+        copies: usize,
+        /// Of each.
+        nodes: usize,
+        /// Wanted.
+        bytes: usize,
+        /// Free.
+        there: usize,
+    },
     /// The system gives no threads.
     #[error(transparent)]
     Threads(#[from] honami_mechanics::ThreadsError),
+    /// Or not those for the wind.
+    #[error("the system starts no {n} threads: {source}")]
+    Pool {
+        /// Asked for.
+        n: usize,
+        /// What it said.
+        source: rayon::ThreadPoolBuildError,
+    },
     /// Units that nothing is measured in.
     #[error("units are more than 0: not {unit} m of length, nor {diameters} of diameter to one of length")]
     Units {
@@ -331,13 +357,8 @@ pub enum WorkbenchError {
         diameters: f64,
     },
     /// Leaves that nothing weighs less than.
-    #[error("leaves weigh 0 kg or more and have a drag area of 0 m2 or more, not {mass} kg and {drag} m2")]
-    Leaves {
-        /// Kilograms.
-        mass: f64,
-        /// Square metres.
-        drag: f64,
-    },
+    #[error(transparent)]
+    Leaves(#[from] honami_mechanics::LeavesError),
     /// Frames that do not follow one another.
     #[error(
         "a motion has more than 0 frames per second and one step a frame at least, not {fps} and {n_substeps}"
@@ -347,6 +368,20 @@ pub enum WorkbenchError {
         fps: f64,
         /// Steps a frame.
         n_substeps: u32,
+    },
+    /// Pulled out of all proportion.
+    #[error("a plant is pulled by a number of metres from -1000 to 1000, not by {pull:e}")]
+    Pull {
+        /// Metres.
+        pull: f64,
+    },
+    /// A sensor on no node.
+    #[error("there is no node {node}: the beams have nodes 0 to {}, as --beams lists them", there - 1)]
+    Sensor {
+        /// Asked for.
+        node: u32,
+        /// Nodes.
+        there: usize,
     },
     /// A file is no table of series.
     #[error("{}: {what}", path.display())]
@@ -362,6 +397,9 @@ pub enum WorkbenchError {
         /// What is wrong, and what there is.
         what: String,
     },
+    /// No skeleton grows from these tracks.
+    #[error(transparent)]
+    Structure(#[from] honami_structure::StructureError),
     /// A thread of the program has panicked.
     #[error("a fault of the program's own; the session's log has its report")]
     Fault,

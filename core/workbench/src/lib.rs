@@ -14,6 +14,7 @@ mod error;
 pub mod export;
 pub mod generate;
 mod ground;
+pub mod grow;
 pub mod import;
 pub mod offer;
 pub mod plant;

@@ -2,7 +2,11 @@
 
 pub mod bench;
 pub mod film;
+pub mod glb;
+mod grove;
+pub mod mover;
 pub mod sway;
+mod tubes;
 pub mod weather;
 
 use std::fs;
@@ -11,7 +15,7 @@ use std::time::Instant;
 
 use honami_exchange::Writer;
 use honami_exchange::plant::{BeamRow, Measured, PlantFileError, mtg, qsm, swc};
-use honami_mechanics::{Beams, Drag, Modes, Options, WindBasis};
+use honami_mechanics::{Beams, BeamsError, Leaves, MOST_NODES, Modes, Options, WindBasis};
 use honami_model::plant::RadiusRule;
 
 use crate::error::WorkbenchError;
@@ -32,10 +36,8 @@ pub struct Wish {
     pub classes: Vec<String>,
     /// How it becomes beams.
     pub beams: Options,
-    /// What all its leaves weigh, kilograms, shared by the ends of its branches.
-    pub leaf_mass: f64,
-    /// Their area times their drag coefficient, square metres, shared alike.
-    pub leaf_drag: f64,
+    /// What hangs on the ends of its branches.
+    pub leaves: Leaves,
     /// How many modes.
     pub n_modes: usize,
     /// Of the search for modes; they do not depend on it but for the last digits.
@@ -52,8 +54,7 @@ impl Wish {
             diameters: mtg::Options::default().diameters,
             classes: Vec::new(),
             beams: Options::default(),
-            leaf_mass: 0.0,
-            leaf_drag: 0.0,
+            leaves: Leaves::default(),
             n_modes,
             seed: 1,
         }
@@ -101,7 +102,7 @@ pub fn vibrate(wish: &Wish) -> Result<Vibrating, WorkbenchError> {
         "segment is thicker than long, of which a beam is a rough model",
         "segments are thicker than long, of which beams are a rough model",
     );
-    let drag = leaves(&mut beams, &plant, wish)?;
+    let drag = wish.leaves.hang(&mut beams, &plant)?;
     let begun = Instant::now();
     let modes = Modes::new(&beams, wish.n_modes, wish.seed)?;
     let seconds = begun.elapsed().as_secs_f64();
@@ -143,6 +144,10 @@ pub fn read(wish: &Wish) -> Result<Measured, WorkbenchError> {
     if let Some(numbers) = source.strip_prefix(GENERATED) {
         let (n, seed) = numbers.split_once(',').unwrap_or((numbers, "1"));
         let (Ok(n), Ok(seed)) = (n.trim().parse(), seed.trim().parse()) else { return Err(unknown()) };
+        // Before it grows.
+        if n > MOST_NODES {
+            return Err(BeamsError::TooMany { nodes: n as f64 }.into());
+        }
         let plant = honami_synth::tree(n, seed).map_err(PlantFileError::from)?;
         return Ok(Measured { plant, notes: Vec::new() });
     }
@@ -175,26 +180,4 @@ pub fn read(wish: &Wish) -> Result<Measured, WorkbenchError> {
         Some("mat") => Ok(qsm::parse_mat(&bytes()?)?),
         _ => Err(unknown()),
     }
-}
-
-/// Hangs leaves on the ends of branches; what the wind has of them.
-fn leaves(
-    beams: &mut Beams,
-    plant: &honami_model::plant::Plant,
-    wish: &Wish,
-) -> Result<Drag, WorkbenchError> {
-    let Wish { leaf_mass: mass, leaf_drag: drag, .. } = *wish;
-    if ![mass, drag].iter().all(|v| v.is_finite() && *v >= 0.0) {
-        return Err(WorkbenchError::Leaves { mass, drag });
-    }
-    let mut is_end = vec![true; plant.nodes().len()];
-    for parent in plant.nodes().iter().filter_map(|node| node.parent) {
-        is_end[parent as usize] = false;
-    }
-    let ends: Vec<usize> = (0..is_end.len()).filter(|row| is_end[*row]).collect();
-    let share = 1.0 / ends.len().max(1) as f64;
-    beams.load(ends.iter().map(|row| (*row, mass * share)));
-    let of_end = |row: &usize| (beams.of_plant()[*row] as usize, drag * share);
-    let leaves = if drag > 0.0 { ends.iter().map(of_end).collect() } else { Vec::new() };
-    Ok(Drag { leaves, ..Drag::default() })
 }

@@ -26,6 +26,15 @@ const MOST_SWINGS: usize = 100;
 /// A swing lies within this factor of its peak.
 const ABOUT: f64 = 1.3;
 
+/// Which peaks are wanted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wanted {
+    /// So many at most, the strongest first.
+    pub n_peaks: usize,
+    /// None at or below, hertz: what blows is mostly slower than what swings in it.
+    pub above_hz: f64,
+}
+
 /// What sways.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Subject {
@@ -69,17 +78,17 @@ pub struct Spectra {
 ///
 /// # Errors
 /// [`WorkbenchError::NoTracks`], [`WorkbenchError::TooBrief`], and for a clip too short for a spectrum.
-pub fn of_project(project: &Project, n_peaks: usize) -> Result<Spectra, WorkbenchError> {
+pub fn of_project(project: &Project, wanted: Wanted) -> Result<Spectra, WorkbenchError> {
     let tracks = project.shown_all()?;
     let group_of = project.grouping()?.map(|grouping| grouping.group_of).unwrap_or_default();
-    of(&project.clip().clip.times, &tracks, &group_of, n_peaks)
+    of(&project.clip().clip.times, &tracks, &group_of, wanted)
 }
 
 /// Spectra of a table of tracks; its own times count, so every frame of the table needs one.
 ///
 /// # Errors
 /// What the table says of its lines, [`WorkbenchError::NoTimes`], and for a table too short for a spectrum.
-pub fn of_table(path: &Path, n_peaks: usize) -> Result<Spectra, WorkbenchError> {
+pub fn of_table(path: &Path, wanted: Wanted) -> Result<Spectra, WorkbenchError> {
     let rows = honami_exchange::read::<TrackRow>(path)?.collect::<Result<Vec<_>, _>>()?;
     let mut times = BTreeMap::new();
     for row in &rows {
@@ -99,14 +108,14 @@ pub fn of_table(path: &Path, n_peaks: usize) -> Result<Spectra, WorkbenchError> 
     let rows = rows.into_iter().map(|row| Ok(TrackRow { frame: row.frame - first, ..row }));
     let tracks: Vec<_> =
         honami_exchange::spans(rows, n_frames)?.into_iter().map(|(id, span)| (id, Arc::new(span))).collect();
-    of(&times, &tracks, &BTreeMap::new(), n_peaks)
+    of(&times, &tracks, &BTreeMap::new(), wanted)
 }
 
 fn of(
     times: &FrameTimes,
     tracks: &[(TrackId, Arc<Span>)],
     group_of: &BTreeMap<TrackId, u32>,
-    n_peaks: usize,
+    wanted: Wanted,
 ) -> Result<Spectra, WorkbenchError> {
     if tracks.is_empty() {
         return Err(WorkbenchError::NoTracks);
@@ -121,7 +130,7 @@ fn of(
     let swing = |ids: &[TrackId], peaks: &[Peak]| swing_of(&spans, ids, fps?, peaks.first()?.hz);
     let median = |subject, of: Vec<Spectrum>, ids: &[TrackId]| {
         let median = Spectrum::median(&of)?;
-        let peaks = median.peaks(n_peaks, OVER_FLOOR_OF_MANY);
+        let peaks = wanted.of(&median, OVER_FLOOR_OF_MANY);
         let swing = swing(ids, &peaks);
         Some(Line { subject, n_tracks: median.n_tracks, peaks, swing })
     };
@@ -140,7 +149,7 @@ fn of(
     lines.extend(groups.into_iter().filter_map(|(group, (of, ids))| median(Subject::Group(group), of, &ids)));
     let are_few = ids.len() <= MOST_SWINGS;
     lines.extend(spectra.iter().map(|(id, spectrum)| {
-        let peaks = spectrum.peaks(n_peaks, OVER_FLOOR);
+        let peaks = wanted.of(spectrum, OVER_FLOOR);
         let swing = if are_few { swing(&[*id], &peaks) } else { None };
         Line { subject: Subject::Track(*id), n_tracks: 1, peaks, swing }
     }));
@@ -151,6 +160,15 @@ fn of(
         n_brief: tracks.len() - spectra.len(),
         lines,
     })
+}
+
+impl Wanted {
+    fn of(self, spectrum: &Spectrum, over_floor: f64) -> Vec<Peak> {
+        let mut peaks = spectrum.peaks(usize::MAX, over_floor);
+        peaks.retain(|peak| peak.hz > self.above_hz);
+        peaks.truncate(self.n_peaks);
+        peaks
+    }
 }
 
 /// How tracks swing about a frequency, each in the direction in which it moves most: the median of those that were seen

@@ -35,11 +35,11 @@ pub fn is_sensors(path: &Path) -> bool {
     text.lines().next().is_some_and(|line| line.split(',').any(|name| name.trim() == "sensor"))
 }
 
-/// How sensors swing, each in the direction in which it moves most.
+/// How sensors swing, each in the direction in which it moves most; nothing slower than `above_hz` counts.
 ///
 /// # Errors
 /// What the table says of its lines, and [`WorkbenchError::Series`] for times that are uneven.
-pub fn of_sensors(path: &Path) -> Result<Sways, WorkbenchError> {
+pub fn of_sensors(path: &Path, above_hz: f64) -> Result<Sways, WorkbenchError> {
     let wrong = |what: &str| WorkbenchError::Series { path: path.to_owned(), what: what.to_owned() };
     let mut sensors = BTreeMap::<u32, Vec<(f64, [f64; 3])>>::new();
     for row in honami_exchange::read::<SwayRow>(path)? {
@@ -62,14 +62,14 @@ pub fn of_sensors(path: &Path) -> Result<Sways, WorkbenchError> {
         let most = axes.into_iter().max_by(|a, b| variance(a).total_cmp(&variance(b)));
         (format!("sensor {sensor}"), most.unwrap_or_default())
     });
-    Ok(of(series.collect(), 1.0 / step))
+    Ok(of(series.collect(), 1.0 / step, above_hz))
 }
 
-/// How columns of numbers swing: samples in rows, at a rate that somebody knows.
+/// How columns of numbers swing: samples in rows, at a rate that somebody knows; nothing slower than `above_hz` counts.
 ///
 /// # Errors
 /// [`WorkbenchError::Series`] with the line.
-pub fn of_columns(path: &Path, fps: f64) -> Result<Sways, WorkbenchError> {
+pub fn of_columns(path: &Path, fps: f64, above_hz: f64) -> Result<Sways, WorkbenchError> {
     let wrong = |what: String| WorkbenchError::Series { path: path.to_owned(), what };
     let text = fs::read_to_string(path).map_err(|source| WorkbenchError::Io {
         what: "cannot read the series",
@@ -97,12 +97,12 @@ pub fn of_columns(path: &Path, fps: f64) -> Result<Sways, WorkbenchError> {
         return Err(wrong("it has no rows".to_owned()));
     }
     let named = columns.into_iter().enumerate().map(|(k, column)| (format!("column {}", k + 1), column));
-    Ok(of(named.collect(), fps))
+    Ok(of(named.collect(), fps, above_hz))
 }
 
-fn of(named: Vec<(String, Vec<f64>)>, fps: f64) -> Sways {
+fn of(named: Vec<(String, Vec<f64>)>, fps: f64, above_hz: f64) -> Sways {
     let n_samples = named.first().map_or(0, |(_, series)| series.len());
-    let lowest = LOWEST_CYCLES * fps / n_samples.max(1) as f64;
+    let lowest = above_hz.max(LOWEST_CYCLES * fps / n_samples.max(1) as f64);
     let series: Vec<(String, Option<Swing>)> =
         named.into_iter().map(|(name, series)| (name, swing(&series, fps, [lowest, fps / 2.0]))).collect();
     let median = median(series.iter().filter_map(|(_, swing)| *swing).collect());

@@ -11,7 +11,7 @@ use honami_media::{Media, OpenOptions};
 use honami_model::clip::Clip;
 use honami_model::document::{RunId, ShownRun};
 use honami_model::track::{TrackId, TrackSet};
-use honami_store::{Build, Project, RunHead, RunWriter};
+use honami_store::{Build, Project, RunHead, RunWriter, Seam};
 use serde::{Deserialize, Serialize};
 
 use crate::drive::{self, Detect, Driven, Plan, Seed};
@@ -142,6 +142,8 @@ pub struct TrackOutcome {
     pub error: Option<WorkbenchError>,
     /// What the tracker warned of, and what became of builds that could not take over.
     pub warnings: Vec<String>,
+    /// Where the tracker was started again, and why.
+    pub seams: Vec<Seam>,
     /// What the tracker was rebuilt to last, where it was and had done frames before.
     pub rebuilt: Option<Rebuilt>,
     /// All of that in one line.
@@ -322,6 +324,7 @@ pub fn finish(session: &mut Session, done: TrackDone) -> Result<TrackOutcome, Wo
         tracker_secs,
         error,
         warnings,
+        seams: info.seams,
         rebuilt,
         line,
     })

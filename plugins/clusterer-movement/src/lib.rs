@@ -3,9 +3,9 @@
 #[cfg(test)]
 mod tests;
 
-use honami_motion::{Composite, Criterion, MotionError, Positions, composite, linkage};
+use honami_motion::{Composite, Criterion, MotionError, Positions, composite, denoised, linkage};
 use honami_plugin::{
-    Clusterer, Clustering, Cx, Error, FrameNote, Info, Merge, Result, Tracks, choice, export, params,
+    Clusterer, Clustering, Cx, Error, FrameNote, Info, Merge, Result, Track, Tracks, choice, export, params,
 };
 
 choice! {
@@ -31,6 +31,10 @@ params! {
         position: f64 = 1.0 => { label: "Weight of position", group: "Distance", min: 0, max: 100, soft_max: 4 },
         /// Weight of the angle between velocities.
         movement: f64 = 1.0 => { label: "Weight of movement", group: "Distance", min: 0, max: 100, soft_max: 4 },
+        /// Takes off the tracks what noise alone could be, before they are compared: they are made anew from the components
+        /// of their bi-orthogonal decomposition that stand out of it. Not in the thesis, and worth it unless tracks are very
+        /// good.
+        denoise: bool = false => { label: "Denoise tracks" },
     }
 }
 
@@ -50,6 +54,7 @@ impl Clusterer for Movement {
 
     fn cluster(settings: &Settings, tracks: &Tracks<'_>, cx: &Cx<'_>) -> Result<Clustering> {
         let (first_frame, positions) = positions(tracks);
+        let positions = if settings.denoise { smooth(&positions, tracks, cx)? } else { positions };
         let options = composite::Options {
             position_weight: settings.position,
             movement_weight: settings.movement,
@@ -81,17 +86,24 @@ impl Clusterer for Movement {
 
 /// The seen samples, and the frame of the first.
 fn positions(tracks: &Tracks<'_>) -> (i64, Positions) {
-    let first_frame = tracks.iter().map(|track| track.first_frame).min().unwrap_or(0);
-    // Spans of a clip in memory: their lengths fit.
-    let start = |track: &honami_plugin::Track<'_>| (track.first_frame - first_frame) as usize;
-    let n_frames = tracks.iter().map(|track| start(&track) + track.x.len()).max().unwrap_or(0);
-    let mut positions = Positions::new(tracks.len(), n_frames);
-    for (k, track) in tracks.iter().enumerate() {
-        for sample in (0..track.x.len()).filter(|&sample| track.seen(sample)) {
-            positions.set(k, start(&track) + sample, [track.x[sample], track.y[sample]]);
-        }
-    }
-    (first_frame, positions)
+    let samples = |track: Track<'_>| {
+        let sample = |k: usize| track.seen(k).then(|| [track.x[k], track.y[k]]);
+        (track.first_frame, (0..track.x.len()).map(sample).collect())
+    };
+    Positions::of_samples(&tracks.iter().map(samples).collect::<Vec<_>>())
+}
+
+/// The same without noise.
+fn smooth(positions: &Positions, tracks: &Tracks<'_>, cx: &Cx<'_>) -> Result<Positions> {
+    let mut heard = Ok(());
+    let smooth = denoised(positions, tracks.max_threads as usize, &mut |_| {
+        heard = cx.progress(0.0, "noise");
+        heard.is_ok()
+    });
+    heard?;
+    let (positions, n) = smooth.map_err(error)?;
+    cx.info(&format!("denoised tracks are made of {n} components"));
+    Ok(positions)
 }
 
 fn notes(distances: &Composite, first_frame: i64) -> Vec<FrameNote> {

@@ -119,6 +119,24 @@ fn lost_samples_do_not_count() {
 }
 
 #[test]
+fn denoised_tracks_are_grouped_where_noise_hides_directions() {
+    let mut table = two_branches();
+    let mut state = 1_u64;
+    // Noise of the size of a step, by a generator of Knuth's.
+    for at in table.x.iter_mut().chain(&mut table.y) {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        *at += (state >> 40) as f32 / (1 << 24) as f32 * 4.0 - 2.0;
+    }
+    let spread = |denoise: bool| {
+        let settings = Settings { denoise, position: 0.0, ..Settings::default() };
+        let found = testing::cluster::<Movement>(&settings, &table.tracks()).unwrap();
+        // The last merge beside the one before it: how far apart the branches are, in terms of themselves.
+        found.merges[18].height / found.merges[17].height
+    };
+    assert!(spread(true) > 1.5 * spread(false), "{} {}", spread(true), spread(false));
+}
+
+#[test]
 fn one_track_cannot_be_grouped() {
     let table =
         Table { ids: vec![1], first_frames: vec![FIRST], lens: vec![9], offsets: vec![0], ..two_branches() };

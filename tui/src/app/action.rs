@@ -127,7 +127,7 @@ table! {
     FineUp "fine-up" ["K" "Shift-Up"] [Place ".25" Move ".25" Sketch ""] "a quarter of a pixel up"
     FineRight "fine-right" ["L" "Shift-Right"] [Place ".25" Move ".25" Form "" Slide ".25" Sketch ""] "a quarter of a pixel right, or a tenth of a value's range up"
     Accept "accept" ["Enter"] [Place "place" Move "keep" Form "run" Menu "choose" Prompt "done" Review "accept" Dial "keep" History "go there" Slide "keep" Start "open" Sketch "keep"]
-        "accept: keep, place, run or go; reviewing: the open item, else open the track's, or make a key-frame"
+        "accept: keep, place, run or go; reviewing: the open item, else open the track's, or make a key-frame; in the prints, go to the line's frame"
     Back "back" ["Esc" "Ctrl-c"] [Place "back" Move "back" Form "back" Menu "back" Prompt "back" Label "back" Review "" Dial "back" History "back" Slide "back" Start "" Sketch "back"]
         "back: leave what is open, undone; while reviewing, stop the clip or the job, give up the range, then the picks, then the two runs"
     // Time.

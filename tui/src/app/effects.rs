@@ -108,6 +108,7 @@ impl World {
         state.n_ready = self.session.media.n_ready();
         let mut notes = self.session.notes.clone();
         notes.extend_from_slice(self.session.media.notes());
+        notes.extend(self.session.registry.unusable().map(str::to_owned));
         notes.extend(state.read_only.iter().map(|holder| format!("read only: {holder} holds this project")));
         notes.extend(self.reviewing.is_none().then(|| "no thread: suspicion is not measured".to_owned()));
         if state.read_only.is_none()

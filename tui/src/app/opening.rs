@@ -10,6 +10,7 @@ use std::thread::JoinHandle;
 use anyhow::Context as _;
 use honami_workbench::WorkbenchError;
 use honami_workbench::media::Step;
+use honami_workbench::plugins::quoted;
 use honami_workbench::session::{Session, SessionOptions};
 use honami_workbench::store::StoreError;
 
@@ -139,7 +140,7 @@ pub fn where_is_the_clip(error: WorkbenchError, project: &Path) -> anyhow::Error
     );
     let error = anyhow::Error::from(error);
     if lost {
-        error.context(format!("`honami relink {} CLIP` says where it is", project.display()))
+        error.context(format!("`honami relink {} CLIP` says where it is", quoted(project)))
     } else {
         error
     }

@@ -1,5 +1,6 @@
 //! The command line as typed. Stable: scripts and tests use it.
 
+pub(super) mod grow;
 pub(super) mod plant;
 
 use std::path::PathBuf;
@@ -56,6 +57,8 @@ pub(super) enum Command {
     Track(Track),
     /// Find the groups that move together with a clusterer plugin.
     Cluster(Cluster),
+    /// Grow the branches behind the tracks: a skeleton that moves as filmed.
+    Grow(grow::Grow),
     /// Correct tracks from a script: one edit a line on standard input, one answer a line.
     ///
     /// An edit is answered once it is in the project file, with its number in the undo tree. The first edit that
@@ -67,7 +70,7 @@ pub(super) enum Command {
     /// Frequencies of tracks and groups, in Hz from the frame times.
     Spectrum(Spectrum),
     /// Vibration modes of a plant, and how it, or a forest of it, moves in the wind.
-    Simulate(plant::Simulate),
+    Simulate(Box<plant::Simulate>),
     /// Write what was measured for other programs; docs/formats.md says what each format keeps.
     Export(Export),
     /// Read somebody else's tracks into a project: one run, and key-frames where the file has them.
@@ -256,6 +259,9 @@ pub(super) struct Spectrum {
     /// How many peaks to name for each.
     #[arg(long, value_name = "N", default_value_t = 3)]
     pub(super) peaks: usize,
+    /// Leave out what is slower: gusts move a plant more slowly than it swings.
+    #[arg(long, value_name = "HZ", default_value_t = 0.0, value_parser = hertz)]
+    pub(super) above: f64,
 }
 
 #[derive(Args, Debug)]
@@ -507,6 +513,12 @@ pub(super) enum Kind {
 fn frames_per_second(text: &str) -> Result<f64, String> {
     let fps = text.parse().ok().filter(|fps: &f64| fps.is_finite() && *fps > 0.0);
     fps.ok_or_else(|| format!("wanted frames per second, a number above 0, got {text}"))
+}
+
+/// A frequency, or 0 for none.
+fn hertz(text: &str) -> Result<f64, String> {
+    let hz = text.parse().ok().filter(|hz: &f64| hz.is_finite() && *hz >= 0.0);
+    hz.ok_or_else(|| format!("wanted hertz, a number of 0 or more, got {text}"))
 }
 
 /// `A..B`, the last one excluded; an open end reaches to the clip's.

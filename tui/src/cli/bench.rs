@@ -1,19 +1,24 @@
 //! `bench`: how fast it is here what the thesis has tables of.
 
 use honami_workbench::mechanics::Roof;
-use honami_workbench::plant::bench::{self, Cell, Rate, Runs, Speed, TABLE_6_1, TABLE_6_2};
+use honami_workbench::plant::bench::{self, Boundary, Cell, Rate, Runs, Speed, TABLE_6_1, TABLE_6_2};
+use honami_workbench::plugins::Kind;
 use serde_json::{Value, json};
 
+use super::args::Common;
 use super::args::plant::BenchForest;
-use super::{Answer, report, want};
+use super::{Answer, report, simulate, told_options, want};
+
+/// The cell in which what a plugin costs is measured, unless others are asked for.
+const BOUNDARY: Cell = (1000, 1000, 25, None);
 
 /// Measures both tables, or the cells that were asked for.
-pub(super) fn forest(args: &BenchForest) -> anyhow::Result<Answer> {
+pub(super) fn forest(args: &BenchForest, common: &Common) -> anyhow::Result<Answer> {
     want(args.seconds.is_finite() && args.seconds >= 0.0, || {
         format!("a run lasts 0 s or more, not {} s", args.seconds)
     })?;
     let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-    let n_threads = args.threads.unwrap_or(cores).max(1);
+    let n_threads = args.threads.unwrap_or(cores);
     let runs = Runs { n_runs: args.runs as usize, seconds: args.seconds, n_threads };
     let roof = bench::roof(n_threads)?;
     let given: Vec<Cell> = args.cells.iter().map(|cell| named(cell.0)).collect();
@@ -39,9 +44,37 @@ pub(super) fn forest(args: &BenchForest) -> anyhow::Result<Answer> {
         text += &format!("\n\n{title}\n{}", report::table(&rows(&speeds, &roof)));
         json[key] = speeds.iter().map(|speed| entry(speed, &roof)).collect();
     }
+    let cell = given.first().copied().unwrap_or(BOUNDARY);
+    let options = told_options(common);
+    let registry = options.registry();
+    let plugin = registry.find(Kind::Simulator, simulate::DEFAULT)?;
+    let boundary = bench::boundary(&cell, &runs, &options.host, plugin)?;
+    text += &format!("\n\n{}", across(&cell, &boundary));
+    json["boundary"] = json!({
+        "trees": cell.0,
+        "nodes": cell.1,
+        "modes": cell.2,
+        "direct_ms": boundary.direct_s * 1e3,
+        "plugin_ms": boundary.plugin_s * 1e3,
+        "ratio": boundary.ratio,
+    });
     text += "\n\nfps: frames per second, the median of the runs; lengths kept: by one arc tangent a mode and its powers";
     text += "\nof limit: the greater share of multiplications and of writing; state: share of the frame that modes take";
     Ok(Answer { json, text, done: true })
+}
+
+/// What a plugin costs, in a line.
+fn across(cell: &Cell, Boundary { direct_s, plugin_s, ratio }: &Boundary) -> String {
+    let [least, median, most] = ratio.map(|ratio| 100.0 * (ratio - 1.0));
+    format!(
+        "{} trees of {} nodes with {} modes, s,s2, in turns: a frame takes {:.3} ms, {:.3} ms through the plugin: {median:+.1} % \
+         ({least:+.1} to {most:+.1} %)",
+        cell.0,
+        cell.1,
+        cell.2,
+        direct_s * 1e3,
+        plugin_s * 1e3
+    )
 }
 
 /// A cell with what the thesis has of it.

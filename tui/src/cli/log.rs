@@ -79,7 +79,7 @@ fn entry(line: &LogLine) -> serde_json::Value {
 }
 
 /// A seam; the version and hash of the build that goes on are null where it is the same as before.
-fn started_again(seam: &Seam) -> serde_json::Value {
+pub(super) fn started_again(seam: &Seam) -> serde_json::Value {
     let (version, sha256) = seam.build.as_ref().map(|build| (&build.version, &build.sha256)).unzip();
     json!({ "frame": seam.frame, "why": seam.why, "plugin_version": version, "plugin_sha256": sha256 })
 }

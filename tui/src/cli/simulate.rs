@@ -1,19 +1,27 @@
 //! `simulate`: modes of a plant, and how it moves in the wind.
 
+use std::path::Path;
+
 use honami_model::plant::RadiusRule;
-use honami_workbench::mechanics::{Damping, Form, Integrator, Material, Options};
-use honami_workbench::plant::sway::{self, Motion, Moved};
+use honami_workbench::mechanics::{Damping, Form, Integrator, Leaves, Material, Options};
+use honami_workbench::plant::glb::{self, Made};
+use honami_workbench::plant::mover::{self, Mover};
+use honami_workbench::plant::sway::{self, Motion, Moved, Outs};
 use honami_workbench::plant::{self, Vibrating, Wish, weather};
+use honami_workbench::plugins::Kind;
 use serde_json::json;
 
+use super::args::Common;
 use super::args::plant::{Bend, Method, Plant, Radius, Simulate};
-use super::{Answer, report, want};
+use super::{Answer, report, told_options, want};
 
+/// The simulator that is used unless one is named.
+pub(super) const DEFAULT: &str = "modal";
 /// Modes that are listed for people; all of them are in `--json`.
 const LISTED: usize = 30;
 
 /// Finds the modes; where anything moves, moves the plant.
-pub(super) fn simulate(args: &Simulate) -> anyhow::Result<Answer> {
+pub(super) fn simulate(args: &Simulate, common: &Common) -> anyhow::Result<Answer> {
     let n_frames = (args.seconds * args.fps).round();
     want((1.0..=1e8).contains(&n_frames), || {
         format!(
@@ -21,7 +29,17 @@ pub(super) fn simulate(args: &Simulate) -> anyhow::Result<Answer> {
             args.seconds, args.fps
         )
     })?;
+    let is_plant = args.heavier.is_finite()
+        && args.heavier > 0.0
+        && [args.alpha, args.beta].iter().all(|v| v.is_finite() && *v >= 0.0);
+    want(is_plant, || {
+        format!(
+            "a plant is {} times as heavy, with damping {} and {}: masses are more than 0, damping is not negative",
+            args.heavier, args.alpha, args.beta
+        )
+    })?;
     want(args.sensors > 0, || "one sensor at least is wanted".to_owned())?;
+    are_apart(args)?;
     let wind = weather::blow(&args.wind)?;
     let wish = wish(&args.plant);
     let plant = plant::vibrate(&wish)?;
@@ -30,36 +48,75 @@ pub(super) fn simulate(args: &Simulate) -> anyhow::Result<Answer> {
     }
     let damping = Damping { alpha: args.alpha, beta: args.beta, mass: args.heavier };
     let (mut text, mut json) = describe(&wish, &plant, &damping);
-    let is_moved =
-        args.wind != "still" || args.pull.abs() > 0.0 || args.forest.is_some() || args.out.is_some();
-    if is_moved {
-        let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-        let motion = Motion {
-            n_copies: args.forest.unwrap_or(1) as usize,
-            n_frames: n_frames as u32,
-            fps: args.fps,
-            n_substeps: args.substeps,
-            integrator: match args.method {
-                Method::Exact => Integrator::Exact,
-                Method::Symplectic => Integrator::Symplectic,
-                Method::Newmark => Integrator::Newmark,
-            },
-            damping,
-            form: match args.bend {
-                Bend::Linear => Form::Linear,
-                Bend::S2 => Form::Mode(2),
-                Bend::S3 => Form::Mode(3),
-            },
-            pull: args.pull,
-            n_sensors: args.sensors as usize,
-            seed: args.seed,
-            n_threads: args.threads.unwrap_or(cores).max(1),
-        };
-        let moved = sway::sway(&plant, &*wind, &motion, args.out.as_deref(), &report::Bar::new())?;
-        text += &format!("\n{}", told(args, &motion, &moved));
-        json["motion"] = entry(&motion, &moved, args);
+    let is_written = args.out.is_some() || args.cache.is_some() || args.glb.is_some();
+    if args.wind != "still"
+        || args.pull.abs() > 0.0
+        || args.pull.is_nan()
+        || args.forest.is_some()
+        || is_written
+    {
+        let motion = motion(args, n_frames as u32, damping);
+        let options = told_options(common);
+        let registry = options.registry();
+        let plugin = registry.find(Kind::Simulator, args.plugin.with.as_deref().unwrap_or(DEFAULT))?;
+        let mut values = mover::values(&wish, &motion, plugin)?;
+        for assignment in &args.plugin.set {
+            values.set_text(&plugin.params, assignment)?;
+        }
+        let mover = Mover { host: &options.host, plugin, values: &values };
+        let bar = report::Bar::with(common);
+        // First, because it may be refused.
+        let made = args.glb.as_deref().map(|path| glb::glb(&plant, &*wind, &motion, path, &bar));
+        let made = made.transpose()?;
+        let outs = Outs { table: args.out.as_deref(), cache: args.cache.as_deref() };
+        let moved = sway::sway(&plant, &mover, &*wind, &motion, outs, &bar)?;
+        let told = told(args, &motion, &moved, made.as_ref());
+        text += &format!("\n{}", report::with_warnings(&told, &moved.warnings));
+        json["motion"] = entry(&motion, &moved, args, made.as_ref());
+        json["motion"]["simulator"] = plugin.id.clone().into();
     }
     Ok(Answer { json, text, done: true })
+}
+
+/// Nothing that is written takes the place of what is read, or of what else is written.
+fn are_apart(args: &Simulate) -> anyhow::Result<()> {
+    let place = |path: &Path| path.canonicalize().unwrap_or_else(|_none| path.to_owned());
+    let outs = [&args.out, &args.cache, &args.glb, &args.beams].into_iter().flatten();
+    let mut taken = vec![place(Path::new(&args.plant.source)), place(Path::new(&args.wind))];
+    for out in outs {
+        want(!taken.contains(&place(out)), || {
+            format!("{} is read or written already: choose another name", out.display())
+        })?;
+        taken.push(place(out));
+    }
+    Ok(())
+}
+
+/// What is asked for of a motion.
+fn motion(args: &Simulate, n_frames: u32, damping: Damping) -> Motion {
+    let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    Motion {
+        n_copies: args.forest.unwrap_or(1) as usize,
+        n_frames,
+        fps: args.fps,
+        n_substeps: args.substeps,
+        integrator: match args.method {
+            Method::Exact => Integrator::Exact,
+            Method::Symplectic => Integrator::Symplectic,
+            Method::Newmark => Integrator::Newmark,
+        },
+        damping,
+        form: match args.bend {
+            Bend::Linear => Form::Linear,
+            Bend::S2 => Form::Mode(2),
+            Bend::S3 => Form::Mode(3),
+        },
+        pull: args.pull,
+        n_sensors: args.sensors as usize,
+        sensors: args.nodes.clone(),
+        seed: args.seed,
+        n_threads: args.threads.unwrap_or(cores),
+    }
 }
 
 /// What is asked for of a plant.
@@ -75,8 +132,7 @@ pub(super) fn wish(args: &Plant) -> Wish {
         diameters: args.diameters,
         classes: args.classes.clone(),
         beams: Options { rule, material, longest: args.longest },
-        leaf_mass: args.leaf_mass,
-        leaf_drag: args.leaf_drag,
+        leaves: Leaves { mass: args.leaf_mass, drag: args.leaf_drag },
         ..Wish::of(&args.source, args.modes as usize)
     }
 }
@@ -146,26 +202,46 @@ fn describe(wish: &Wish, plant: &Vibrating, damping: &Damping) -> (String, serde
     (text, json)
 }
 
-fn told(args: &Simulate, motion: &Motion, moved: &Moved) -> String {
+fn told(args: &Simulate, motion: &Motion, moved: &Moved, made: Option<&Made>) -> String {
     let copies =
         if motion.n_copies == 1 { "it".to_owned() } else { format!("each of {} copies", motion.n_copies) };
+    let who = args.nodes.first().map_or("the highest end".to_owned(), |node| format!("node {node}"));
     let mut text = format!(
-        "{} frames of {copies}: the highest end deviates by {:.3} m from its mean place, {:.3} m at most from rest",
+        "{} frames of {copies}: {who} deviates by {:.3} m from its mean place, {:.3} m at most from rest",
         moved.n_frames, moved.deviation, moved.farthest
     );
     text += &format!(
-        "\n{:.2} ms a frame on {} threads, {:.1} MB",
+        "\n{:.2} ms a frame on {}, {:.1} MB",
         moved.frame_s * 1e3,
-        motion.n_threads,
+        if motion.n_threads == 1 { "1 thread".to_owned() } else { format!("{} threads", motion.n_threads) },
         moved.bytes as f64 / 1e6
     );
     if let Some(out) = &args.out {
-        text += &format!("\n{}: where {} ends of branches are", out.display(), moved.sensors.len());
+        let followed = match moved.sensors.len() {
+            1 => "1 node is".to_owned(),
+            n => format!("{n} nodes are"),
+        };
+        text += &format!("\n{}: where {followed}, metres from the foot, z up", out.display());
+    }
+    if let Some(cache) = &args.cache {
+        text += &format!("\n{}: where all nodes of all copies are, metres, z up", cache.display());
+    }
+    if let (Some(path), Some(made)) = (&args.glb, made) {
+        text += &format!(
+            "\n{}: a mesh of {} vertices with {} morph targets, {:.1} MB",
+            path.display(),
+            made.n_vertices,
+            made.n_targets,
+            made.bytes as f64 / 1e6
+        );
     }
     text
 }
 
-fn entry(motion: &Motion, moved: &Moved, args: &Simulate) -> serde_json::Value {
+fn entry(motion: &Motion, moved: &Moved, args: &Simulate, made: Option<&Made>) -> serde_json::Value {
+    let glb = made.map(|made| {
+        json!({ "file": args.glb, "vertices": made.n_vertices, "targets": made.n_targets, "bytes": made.bytes })
+    });
     json!({
         "frames": moved.n_frames,
         "fps": motion.fps,
@@ -177,6 +253,9 @@ fn entry(motion: &Motion, moved: &Moved, args: &Simulate) -> serde_json::Value {
         "frame_ms": moved.frame_s * 1e3,
         "threads": motion.n_threads,
         "bytes": moved.bytes,
+        "warnings": moved.warnings,
         "out": args.out,
+        "cache": args.cache,
+        "glb": glb,
     })
 }

@@ -1,7 +1,7 @@
 //! `spectrum`: frequencies of tracks and groups.
 
 use honami_workbench::review;
-use honami_workbench::spectra::{self, Line, Peak, Spectra, Subject};
+use honami_workbench::spectra::{self, Line, Peak, Spectra, Subject, Wanted};
 use honami_workbench::sways::{self, Sways, Swing};
 use serde_json::json;
 
@@ -14,18 +14,19 @@ const LISTED: usize = 12;
 /// Prints the peaks of everything, of the groups, and of tracks.
 pub(super) fn spectrum(args: &Spectrum) -> anyhow::Result<Answer> {
     if let Some(fps) = args.fps {
-        return Ok(swings(&sways::of_columns(&args.project, fps)?));
+        return Ok(swings(&sways::of_columns(&args.project, fps, args.above)?));
     }
     if sways::is_sensors(&args.project) {
-        return Ok(swings(&sways::of_sensors(&args.project)?));
+        return Ok(swings(&sways::of_sensors(&args.project, args.above)?));
     }
+    let wanted = Wanted { n_peaks: args.peaks, above_hz: args.above };
     let is_table = args.project.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
     let mut spectra = if is_table {
-        spectra::of_table(&args.project, args.peaks)?
+        spectra::of_table(&args.project, wanted)?
     } else {
         let project = look(&args.project)?;
         warn(review::n_doubtful(&project)?);
-        spectra::of_project(&project, args.peaks)?
+        spectra::of_project(&project, wanted)?
     };
     if let Some(track) = args.track {
         spectra.lines.retain(|line| matches!(line.subject, Subject::Track(id) if id.0 == track));

@@ -9,6 +9,7 @@ use honami_workbench::generate::{self, Generated};
 use honami_workbench::media;
 use honami_workbench::plant::sway::Motion;
 use honami_workbench::plant::{self, Wish, weather};
+use honami_workbench::plugins::quoted;
 use honami_workbench::progress::{Flow, Progress};
 use honami_workbench::session::Session;
 use honami_workbench::synth::{Level, Settings};
@@ -116,10 +117,11 @@ pub(super) fn demo(args: &Demo, common: &Common) -> anyhow::Result<Outcome> {
     let (clip, file) = (args.folder.join(CLIP), session.project.path());
     let truth = generate::truth_beside(&clip);
     let text = format!(
-        "{} is ready: open it with `honami {0}`\nhow good was it: honami compare {} --truth {} --with anchored --with klt",
+        "{} is ready: open it with `honami {}`\nhow good was it: honami compare {} --truth {} --with anchored --with klt",
         file.display(),
-        clip.display(),
-        truth.display()
+        quoted(file),
+        quoted(&clip),
+        quoted(&truth)
     );
     if args.headless || common.json || !std::io::stdout().is_terminal() {
         let n_tracks = session.project.document().tracks().count();

@@ -5,7 +5,7 @@ use std::path::Path;
 use honami_model::document::RunId;
 use honami_workbench::WorkbenchError;
 use honami_workbench::compare::read_points;
-use honami_workbench::plugins::{HostError, Kind, Registry, Values};
+use honami_workbench::plugins::{HostError, Kind, Registry, Values, quoted};
 use honami_workbench::progress::Progress;
 use honami_workbench::rebuilt::Difference;
 use honami_workbench::session::Session;
@@ -13,7 +13,7 @@ use honami_workbench::track::{self, Area, PointSource, TrackJob, TrackOutcome, T
 use serde_json::json;
 
 use super::args::{Common, Region, Track};
-use super::{Answer, report, session, want};
+use super::{Answer, log, report, session, want};
 
 /// The tracker that is used unless one is named.
 pub(super) const DEFAULT: &str = "anchored";
@@ -106,13 +106,6 @@ fn line_to_resume(session: &Session, run: RunId, error: &WorkbenchError) -> Stri
     line
 }
 
-/// A path as a shell takes it.
-fn quoted(path: &Path) -> String {
-    let text = path.display().to_string();
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "/._-+,:@%".contains(c);
-    if text.chars().all(is_plain) { text } else { format!("'{}'", text.replace('\'', r"'\''")) }
-}
-
 fn points(args: &Track, session: &Session) -> anyhow::Result<PointSource> {
     if let Some(path) = &args.points {
         return Ok(PointSource::Given(read_points(path)?));
@@ -153,7 +146,7 @@ pub(super) fn describe(outcome: &TrackOutcome, project: &Path) -> Answer {
             "{}\nrun {} is shown now instead of run {before}; back: echo undo | honami edit {}",
             outcome.line,
             outcome.run,
-            project.display()
+            quoted(project)
         ),
         None => outcome.line.clone(),
     };
@@ -171,6 +164,7 @@ pub(super) fn describe(outcome: &TrackOutcome, project: &Path) -> Answer {
         "seconds": outcome.seconds,
         "tracker_seconds": outcome.tracker_secs,
         "warnings": outcome.warnings,
+        "started_again": outcome.seams.iter().map(log::started_again).collect::<Vec<_>>(),
         "rebuilt": outcome.rebuilt.as_ref().map(|rebuilt| json!({
             "frame": rebuilt.seam,
             "plugin_version": rebuilt.build.version,

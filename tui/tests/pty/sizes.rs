@@ -20,8 +20,9 @@ fn cells(screen: &vt100::Screen) -> Vec<(String, vt100::Color, vt100::Color, boo
     all.filter(|&(row, column)| !in_figures(row, column))
         .filter_map(|(row, column)| screen.cell(row, column))
         .map(|cell| {
-            // Blank is blank, whether it was painted or erased, and with whichever pen.
-            let is_blank = cell.contents().trim().is_empty() && !cell.inverse();
+            // Blank is blank, whether it was painted or erased, with whichever pen, and what has the colour of its ground.
+            let is_unseen = cell.fgcolor() != vt100::Color::Default && cell.fgcolor() == cell.bgcolor();
+            let is_blank = (cell.contents().trim().is_empty() || is_unseen) && !cell.inverse();
             let pen = if is_blank { vt100::Color::Default } else { cell.fgcolor() };
             let text = if is_blank { " " } else { cell.contents() };
             (text.to_owned(), pen, cell.bgcolor(), cell.inverse())

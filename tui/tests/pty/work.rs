@@ -14,7 +14,7 @@ pub(super) fn plugins() -> PathBuf {
     let profile = if cfg!(debug_assertions) { "dev" } else { "release" };
     let output = Command::new(env!("CARGO"))
         .args(["build", "--quiet", "--message-format=json", "--profile", profile])
-        .args(["-p", "honami-tracker-anchored", "-p", "honami-clusterer-movement"])
+        .args(["-p", "honami-tracker-anchored", "-p", "honami-clusterer-bod"])
         .current_dir(env!("CARGO_MANIFEST_DIR"))
         .stderr(Stdio::inherit())
         .output()

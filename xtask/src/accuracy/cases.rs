@@ -8,13 +8,14 @@ use anyhow::Context as _;
 use super::lab::{Lab, Pace};
 
 /// Names of the sets, and what is in them.
-pub(super) const SETS: [(&str, &str); 9] = [
+pub(super) const SETS: [(&str, &str); 10] = [
     ("calm", "generated foliage, 1.5 px a frame, three seeds"),
     ("wind", "the same, 3.4 px a frame"),
     ("storm", "the same, 5.8 px a frame"),
     ("middlebury", "three pairs of pictures with their flow"),
     ("dic14", "three pairs of the DIC challenge's sample 14"),
     ("forks", "three tuning forks"),
+    ("walnut", "a digitised walnut that is pulled and let go"),
     ("waving", "the building behind a shaken tree: it stands still"),
     ("malva", "mallow and pinnate leaves in wind"),
     ("reeds", "reeds in strong wind, 150 frames"),
@@ -55,6 +56,8 @@ pub(super) enum What {
     },
     /// `honami track`, `honami spectrum`.
     Fork { clip: PathBuf, points: PathBuf, fps: u32 },
+    /// The same of a clip that says how fast it is, with the swing that was filmed.
+    Walnut { clip: PathBuf, points: PathBuf, hz: f64, damping: f64 },
 }
 
 impl Case {
@@ -81,6 +84,7 @@ pub(super) fn prepare(lab: &Lab, sets: &[String]) -> anyhow::Result<Vec<Case>> {
             ("middlebury", Some(data)) => cases.extend(middlebury(lab, data)?),
             ("dic14", Some(data)) => cases.extend(dic(lab, data)?),
             ("forks", Some(data)) => cases.extend(forks(lab, data)?),
+            ("walnut", Some(data)) => cases.push(walnut(lab, data)?),
             ("waving", Some(data)) => cases.push(waving(lab, data)?),
             ("malva", Some(data)) => {
                 cases.push(real(lab, "malva", &data.join("video/malva.mp4"), None)?);
@@ -240,6 +244,31 @@ fn forks(lab: &Lab, data: &Path) -> anyhow::Result<Vec<Case>> {
         Ok(Case { name, is_generated: false, limits: [60, 40, 20], what })
     };
     FORKS.into_iter().map(case).collect()
+}
+
+/// How the walnut is filmed: `honami synth`.
+pub(super) const WALNUT: &str = "--classes S --pull 0.3 --frames 500 --size 480x360";
+
+/// The wood of a walnut of the OpenAlea project, its slowest mode pulled out by 0.3 m and let go; leaves are the points.
+fn walnut(lab: &Lab, data: &Path) -> anyhow::Result<Case> {
+    let clip = lab.folder.join("walnut.y4m");
+    let (points, said) = (clip.with_extension("points.csv"), clip.with_extension("json"));
+    if !points.is_file() {
+        if clip.exists() {
+            fs::remove_file(&clip).with_context(|| format!("cannot remove {}", clip.display()))?;
+        }
+        let plant = data.join("trees/openalea_mtg/noylum2.mtg");
+        let line = lab.honami()?.arg("synth").arg(&clip).arg("--plant").arg(&plant);
+        write(&said, line.args(WALNUT.split(' ')).arg("--json").output()?.as_bytes())?;
+        let truth = clip.with_extension("truth.csv");
+        let text = fs::read_to_string(&truth).with_context(|| format!("cannot read {}", truth.display()))?;
+        write(&points, visible_at_first(&text).as_bytes())?;
+    }
+    let text = fs::read_to_string(&said).with_context(|| format!("cannot read {}", said.display()))?;
+    let swing = &serde_json::from_str::<serde_json::Value>(&text)?["plant"];
+    let number = |key: &str| swing[key].as_f64().with_context(|| format!("{} has no {key}", said.display()));
+    let what = What::Walnut { clip, points, hz: number("hz")?, damping: number("damping")? };
+    Ok(Case { name: "walnut".to_owned(), is_generated: false, limits: [300, 100, 40], what })
 }
 
 /// The building at the left edge of the picture stands still until a man walks in at frame 242.

@@ -137,7 +137,7 @@ impl Lab {
         }
         let row = match &case.what {
             What::Pictures { .. } => self.compare(case, tracker, n_points)?,
-            What::Fork { .. } => self.listen(case, tracker, n_points)?,
+            What::Fork { .. } | What::Walnut { .. } => self.listen(case, tracker, n_points)?,
         };
         fs::write(&file, row.to_string()).with_context(|| format!("cannot write {}", file.display()))?;
         Ok(Some(row))
@@ -216,20 +216,26 @@ impl Lab {
         json(line)
     }
 
-    /// The strongest sway of points on a fork.
+    /// The strongest sway of points on a fork or a plant.
     fn listen(&self, case: &Case, tracker: &Tracker, n_points: usize) -> anyhow::Result<Value> {
-        let What::Fork { clip, points, fps } = &case.what else { anyhow::bail!("{} is no fork", case.name) };
+        let (clip, points, fps, n_frames) = match &case.what {
+            What::Fork { clip, points, fps } => (clip, points, Some(fps), 880),
+            What::Walnut { clip, points, .. } => (clip, points, None, 500),
+            What::Pictures { .. } => anyhow::bail!("{} is not listened to", case.name),
+        };
         let points = thinned(points, n_points)?;
         let project = self.folder.join(format!("{}-{}.honami", case.name, tracker.name()));
         remove(&project)?;
-        self.honami()?.arg("new").arg(&project).arg(clip).args(["--fps", &fps.to_string()]).output()?;
-        let n_frames = if self.pace(tracker)? == Pace::Slow { 200 } else { 880 };
+        let rate = fps.map(|fps| ["--fps".to_owned(), fps.to_string()]);
+        self.honami()?.arg("new").arg(&project).arg(clip).args(rate.iter().flatten()).output()?;
+        let n_frames = if self.pace(tracker)? == Pace::Slow { 200 } else { n_frames };
         let line = self.honami()?.arg("track").arg(&project).args(["--with", tracker.name(), "--points"]);
         line.arg(&points).args(["--frames", &format!("0..{n_frames}")]).output()?;
         let said = json(self.honami()?.arg("spectrum").arg(&project).arg("--json"))?;
         remove(&project)?;
-        let peak = &said["lines"][0]["peaks"][0];
-        Ok(object!({ "hz": peak["hz"], "points": n_points, "frames": n_frames }))
+        let all = &said["lines"][0];
+        let hz = &all["peaks"][0]["hz"];
+        Ok(object!({ "hz": hz, "swing": all["swing"], "points": all["tracks"], "frames": n_frames }))
     }
 }
 

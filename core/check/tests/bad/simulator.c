@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum fault { NONE, DRIFTS, NEVER_CALMS, ONCE_A_CALL, KEEPS_SPEED, COARSE, FIRST_WIND, UNTURNED, SKIPS_UNWANTED, FORGETS,
-             DIES_OF_ONE };
+enum fault { NONE, DRIFTS, NEVER_CALMS, ONCE_A_CALL, KEEPS_SPEED, COARSE, FIRST_WIND, UNTURNED, IN_THE_WORLD,
+             SKIPS_UNWANTED, FORGETS, DIES_OF_ONE };
 
 #define MANIFEST                                                                                                    \
   "{\"honami\":1,\"abi\":[1,1],"                                                                                    \
@@ -16,8 +16,8 @@ enum fault { NONE, DRIFTS, NEVER_CALMS, ONCE_A_CALL, KEEPS_SPEED, COARSE, FIRST_
   "\"caps\":{\"deterministic\":true,\"parallel_instances\":true}}]}"
 HONAMI_MANIFEST(MANIFEST);
 
-/* What a copy is turned and grown by. */
-typedef struct copy { float yaw, scale, mass; } copy;
+/* How a copy is turned, and how heavy it is. */
+typedef struct copy { float yaw, mass; } copy;
 /* A node of a copy: where it is and how fast. */
 typedef struct node { double at[3], speed[3]; } node;
 
@@ -67,7 +67,6 @@ static honami_code prepare(honami_instance *instance, const honami_call *call, c
   if (!self->copies || !self->nodes) return call->fail(call, HONAMI_E_MEMORY, "no memory for the plant");
   for (uint64_t k = 0; k < self->n_copies; k++) {
     self->copies[k].yaw = input->instances ? ((const float *)column(input->instances, "yaw"))[k] : 0;
-    self->copies[k].scale = input->instances ? ((const float *)column(input->instances, "scale"))[k] : 1;
     self->copies[k].mass = input->instances ? ((const float *)column(input->instances, "mass"))[k] : 1;
   }
   return HONAMI_OK;
@@ -113,13 +112,14 @@ static void move(node *node, uint64_t k, const double wind[3], double mass, doub
   }
 }
 
+/* As the plant is, whatever the copy's yaw and scale: who shows it turns and scales it. */
 static void write_copy(const plant *self, uint64_t k, uint64_t n, float **out) {
-  double yaw = self->copies[k].yaw, scale = self->copies[k].scale;
+  double yaw = FAULT == IN_THE_WORLD ? self->copies[k].yaw : 0;
   for (uint64_t i = 0; i < n; i++, *out += 3) {
     const double *at = self->nodes[k * self->n_nodes + i].at;
-    (*out)[0] = (float)(scale * (cos(yaw) * at[0] - sin(yaw) * at[1]));
-    (*out)[1] = (float)(scale * (sin(yaw) * at[0] + cos(yaw) * at[1]));
-    (*out)[2] = (float)(scale * at[2]);
+    (*out)[0] = (float)(cos(yaw) * at[0] - sin(yaw) * at[1]);
+    (*out)[1] = (float)(sin(yaw) * at[0] + cos(yaw) * at[1]);
+    (*out)[2] = (float)at[2];
   }
 }
 

@@ -331,6 +331,7 @@ const SWAYING: &[Bad] = &[
     swaying("COARSE", "simulator.finer", "of the motion"),
     swaying("FIRST_WIND", "simulator.copies", "copy 1 of 3"),
     swaying("UNTURNED", "simulator.turned", "is off by"),
+    swaying("IN_THE_WORLD", "simulator.turned", "is off by"),
     swaying("SKIPS_UNWANTED", "simulator.detail", "go on otherwise"),
     swaying("FORGETS", "simulator.state", "one that loads what another saved goes on otherwise"),
     swaying("DIES_OF_ONE", "simulator.odd", "SIGSEGV"),

@@ -5,6 +5,7 @@ use honami_host::{Registry, SearchPath};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 /// A folder for this run.
@@ -24,18 +25,22 @@ pub(crate) fn has_cc() -> bool {
     is_there
 }
 
-/// Compiles a C plugin of this package's tests, or of another's.
+/// Compiles a C plugin of this package's tests, or of another's. Its name comes to it when it is whole: tests that share
+/// one compile it at the same time.
 pub(crate) fn compile(source: &str, name: &str, flags: &[&str]) -> PathBuf {
+    static BUILT: AtomicUsize = AtomicUsize::new(0);
     let library = scratch().join(format!("{name}.so"));
+    let fresh = library.with_extension(format!("{}.o", BUILT.fetch_add(1, Ordering::Relaxed)));
     let output = Command::new("cc")
         .args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-O1", "-shared", "-fPIC", "-fvisibility=hidden"])
         .args(["-I", "../abi/include", source, "-o"])
-        .arg(&library)
+        .arg(&fresh)
         .args(flags)
         .current_dir(env!("CARGO_MANIFEST_DIR"))
         .output()
         .unwrap();
     assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+    std::fs::rename(&fresh, &library).unwrap();
     library
 }
 

@@ -53,10 +53,8 @@ pub fn parse_table(text: &str) -> Result<Measured, PlantFileError> {
             name == wanted || name == turned || name == counted
         });
         found.ok_or_else(|| {
-            PlantFileError::Lacks(format!(
-                "a table of cylinders has a column {wanted}, this one has {}",
-                names.join(", ")
-            ))
+            let there = if names.is_empty() { "no line".to_owned() } else { names.join(", ") };
+            PlantFileError::Lacks(format!("a table of cylinders has a column {wanted}, this one has {there}"))
         })
     };
     let places = COLUMNS.map(place).into_iter().collect::<Result<Vec<usize>, _>>()?;
@@ -129,8 +127,8 @@ fn plant(rows: &[(usize, Vec<f64>)]) -> Result<Measured, PlantFileError> {
     }
     if n_moved > 0 {
         notes.push(format!(
-            "{n_moved} cylinders begin more than {APART} radii from both ends of what bears them: each is joined to the \
-             nearer end"
+            "cylinders that begin more than {APART} radii from both ends of what bears them: {n_moved}; each is joined to \
+             the nearer end"
         ));
     }
     if raw.is_empty() {

@@ -36,16 +36,7 @@ pub(super) fn plant(raw: &[Raw], notes: &mut Vec<String>) -> Result<Plant, Plant
             return wrong(node.line, format!("a second node {}", node.id));
         }
     }
-    let mut n_lost = 0;
-    let parents: Vec<Option<usize>> = raw
-        .iter()
-        .map(|node| {
-            let parent = node.parent?;
-            let row = row_of.get(&parent).copied();
-            n_lost += usize::from(row.is_none());
-            row
-        })
-        .collect();
+    let (parents, lost) = parents(raw, &row_of);
     let mut children = vec![Vec::new(); raw.len()];
     for (row, parent) in parents.iter().enumerate() {
         if let Some(parent) = parent {
@@ -71,13 +62,20 @@ pub(super) fn plant(raw: &[Raw], notes: &mut Vec<String>) -> Result<Plant, Plant
         let node = &raw[circle];
         return wrong(node.line, format!("node {} stands on itself, through its parents", node.id));
     }
-    if n_lost > 0 {
-        notes.push(format!("{n_lost} nodes name a parent that there is not: each is a root of its own"));
+    if let Some((node, parent)) = lost.first() {
+        let words = format!("node {} stands on node {parent}, which is not there", node.id);
+        if best.len() < 2 {
+            return wrong(node.line, words);
+        }
+        let (n, line) = (lost.len(), node.line);
+        notes.push(format!(
+            "nodes whose parent is not there: {n}, each is a root of its own; the first, in line {line}: {words}"
+        ));
     }
     if n_roots > 1 {
         let left = raw.len() - best.len();
         notes.push(format!(
-            "{} more roots: of their trees {left} nodes were left out, the largest is kept",
+            "further roots: {}; nodes of their trees that were left out: {left}; the largest tree is kept",
             n_roots - 1
         ));
     }
@@ -93,6 +91,13 @@ pub(super) fn plant(raw: &[Raw], notes: &mut Vec<String>) -> Result<Plant, Plant
     Ok(Plant::new(
         nodes.map(|((raw, parent), radius)| Node { parent, position: raw.position, radius }).collect(),
     )?)
+}
+
+/// The row that every node stands on; and nodes whose parent is not there, with its number.
+fn parents<'a>(raw: &'a [Raw], row_of: &BTreeMap<i64, usize>) -> (Vec<Option<usize>>, Vec<(&'a Raw, i64)>) {
+    let row = |node: &Raw| row_of.get(&node.parent?).copied();
+    let lost = raw.iter().filter(|node| row(node).is_none());
+    (raw.iter().map(row).collect(), lost.filter_map(|node| Some((node, node.parent?))).collect())
 }
 
 /// A node of a circle of parents: any that is met twice on the way up.
@@ -128,7 +133,7 @@ fn radii(kept: &[&Raw], parents: &[Option<u32>], notes: &mut Vec<String>) -> Vec
         radii.push(measured(raw).unwrap_or(guess));
     }
     if n_guessed > 0 {
-        notes.push(format!("{n_guessed} nodes without a radius taken as thick as the node before"));
+        notes.push(format!("nodes without a radius: {n_guessed}; each taken as thick as the node before"));
     }
     radii
 }

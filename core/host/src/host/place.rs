@@ -30,6 +30,15 @@ impl Host {
         self.leaves_trails && is_bare && info.sha256().is_ok_and(out)
     }
 
+    /// Why a plugin is not started, when it has failed too often.
+    pub(crate) fn held(&self, info: &PluginInfo) -> Option<String> {
+        let quarantine = Quarantine::beside(&self.store);
+        if !self.has_quarantine || !quarantine.holds_any() {
+            return None;
+        }
+        quarantine.why(&info.sha256().ok()?)
+    }
+
     /// Whether only its short name lets a plugin work in this process that did not come with honami. Anybody may give that
     /// name to another plugin: full trust wants the whole id, and it works in a process of its own.
     #[must_use]

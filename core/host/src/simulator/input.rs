@@ -37,7 +37,7 @@ pub(super) fn plant_fault(nodes: &[Node], instances: &[PlantInstance]) -> Option
 /// What keeps these from being steps of so large a plant.
 pub(super) fn steps_fault(steps: &Steps<'_>, n_nodes: usize, n_instances: usize) -> Option<String> {
     let Steps { dt, n, wind, detail } = *steps;
-    if !(dt.is_finite() && dt > 0.0) || n == 0 {
+    if !(dt.is_finite() && dt > 0.0) {
         return Some(format!("cannot go {n} steps of {dt} s"));
     }
     wind_fault(wind, n_instances).or_else(|| detail_fault(detail?, n_nodes, n_instances))

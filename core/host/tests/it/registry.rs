@@ -145,6 +145,33 @@ fn what_is_built_in_ones_own_tree_is_found_and_trusted_unless_others_may_write_i
 }
 
 #[test]
+fn nothing_takes_the_place_of_a_file_that_was_named_and_cannot_be_used() {
+    let (broken, installed) = (folder("broken", "f.so"), folder("whole", "f.so"));
+    fs::write(broken.join("f.so"), "int main() {").unwrap();
+    let whole = SearchPath { installed: vec![installed.clone()], ..SearchPath::default() };
+    let found = |path: SearchPath, name: &str| {
+        let registry = Registry::scan_path(&path);
+        let found = registry.find(Kind::Tracker, name).map(|plugin| plugin.library.clone());
+        found.map_err(|error| error.to_string())
+    };
+    let file = installed.join("f.so");
+    let words = |error: &String| error.contains("is no 64-bit ELF library") && error.contains("is not taken");
+    // The file was named, or its folder and in it a file of that name; the file of another name was not meant.
+    for (named, dev, is_whole) in [
+        (vec![broken.join("f.so")], vec![], false),
+        (vec![broken.clone()], vec![], false),
+        (vec![], vec![broken.clone()], false),
+        (vec![folder("other", "g.so"), broken.join("f.so")], vec![], true),
+    ] {
+        let found = found(SearchPath { named: named.clone(), dev, ..whole.clone() }, "drift");
+        assert_eq!(found.is_ok(), is_whole, "{named:?}: {found:?}");
+        assert!(found.is_ok() || found.as_ref().is_err_and(words), "{found:?}");
+    }
+    fs::rename(broken.join("f.so"), broken.join("h.so")).unwrap();
+    assert_eq!(found(SearchPath { named: vec![broken], ..whole }, "drift"), Ok(file));
+}
+
+#[test]
 fn what_others_may_write_cannot_be_allowed() {
     let installed = folder("shared", "e.so");
     let library = installed.join("e.so");

@@ -8,6 +8,7 @@ use honami_model::picture::Gray;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 pub(crate) const WIDTH: u32 = 8;
 pub(crate) const HEIGHT: u32 = 4;
@@ -85,19 +86,23 @@ pub(crate) fn has_cc() -> bool {
     has_compiler("cc")
 }
 
-/// Compiles a C plugin into the scratch folder.
+/// Compiles a C plugin into the scratch folder. Its name comes to it when it is whole: tests that share one compile it
+/// at the same time, and none must find half of it.
 pub(crate) fn compile(source: &str, name: &str, include: &str, flags: &[&str]) -> PathBuf {
+    static BUILT: AtomicUsize = AtomicUsize::new(0);
     std::fs::create_dir_all(scratch()).unwrap();
     let (root, library) = (Path::new(env!("CARGO_MANIFEST_DIR")), scratch().join(format!("{name}.so")));
+    let fresh = library.with_extension(format!("{}.o", BUILT.fetch_add(1, Ordering::Relaxed)));
     let output = Command::new("cc")
         .args(["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-O1", "-shared", "-fPIC"])
         .args(["-fvisibility=hidden", "-I", include])
         .args(flags)
-        .args([Path::new(source), Path::new("-o"), &library])
+        .args([Path::new(source), Path::new("-o"), &fresh])
         .current_dir(root)
         .output()
         .unwrap();
     assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+    std::fs::rename(&fresh, &library).unwrap();
     library
 }
 

@@ -79,6 +79,9 @@ fn what_cannot_be_beams_is_named() {
         let options = Options { longest: Some(longest), ..Options::default() };
         assert!(matches!(Beams::new(&forked(), &options), Err(BeamsError::Longest(_))), "{longest}");
     }
+    let options = Options { longest: Some(1e-9), ..Options::default() };
+    let error = Beams::new(&forked(), &options).unwrap_err();
+    assert!(error.to_string().contains("nodes of beams, and 4000000 are the most"), "{error}");
     let wood = Material::default();
     let cases = [
         (
@@ -93,4 +96,16 @@ fn what_cannot_be_beams_is_named() {
         let error = Beams::new(&forked(), &Options { material, ..Options::default() }).unwrap_err();
         assert_eq!(error.to_string(), wanted);
     }
+}
+
+#[test]
+fn coarse_comes_before_fine_and_parents_before_children() {
+    let beams = Beams::new(&honami_synth::tree(300, 1).unwrap(), &Options::default()).unwrap();
+    let order = beams.coarse_to_fine();
+    let mut place = vec![0; order.len()];
+    order.iter().enumerate().for_each(|(k, node)| place[*node as usize] = k);
+    let is_after = |node: usize| beams.parent(node).is_none_or(|parent| place[parent as usize] < place[node]);
+    assert!((0..beams.len()).all(is_after));
+    let thick = |nodes: &[u32]| nodes.iter().map(|node| beams.radius(*node as usize)).sum::<f64>();
+    assert!(thick(&order[..30]) > 3.0 * thick(&order[270..]));
 }

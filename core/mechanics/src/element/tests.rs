@@ -110,3 +110,20 @@ fn a_frame_is_right_handed_wherever_it_looks() {
         assert!((frame * frame.transpose() - nalgebra::Matrix3::identity()).amax() < 1e-14);
     }
 }
+
+/// The load on the ends of a segment that is pressed on all along: L/2, L^2/12, L/2, -L^2/12 (errata E37, E38).
+#[test]
+fn an_even_load_is_shared_by_the_ends_as_in_textbooks() {
+    let l = SECTION.length;
+    let mut load = SMatrix::<f64, 4, 12>::zeros();
+    for (share, weight) in GAUSS {
+        load += shape(share, l) * (weight * l);
+    }
+    let wanted = [l / 2.0, l * l / 12.0, l / 2.0, -l * l / 12.0];
+    for (row, places, sign) in [(1, [1, 5, 7, 11], 1.0), (2, [2, 4, 8, 10], -1.0)] {
+        for (k, place) in places.into_iter().enumerate() {
+            let wanted = if k % 2 == 0 { wanted[k] } else { sign * wanted[k] };
+            assert!((load[(row, place)] - wanted).abs() < 1e-15, "{row} {place}: {}", load[(row, place)]);
+        }
+    }
+}

@@ -1,9 +1,12 @@
 //! The factors against whole matrices.
 
 use super::{Factor, Flexibility};
-use crate::tree_matrix::{DOF, TreeMatrix};
+use crate::six::DOF;
+use crate::tree_matrix::TreeMatrix;
 use crate::{Beams, Options};
+use honami_model::plant::{Node, Plant};
 use nalgebra::{DMatrix, DVector};
+use std::f64::consts::PI;
 
 fn beams(seed: u64) -> Beams {
     Beams::new(&honami_synth::tree(14, seed).unwrap(), &Options::default()).unwrap()
@@ -71,13 +74,34 @@ fn columns_that_are_solved_together_are_those_solved_alone() {
     let beams = beams(6);
     let factor = Factor::new(&Flexibility::new(&beams), &beams.mass(), 25.0).unwrap();
     let n = DOF * (beams.len() - 1);
-    let both: Vec<f64> = (0..2 * n).map(|k| (k as f64 * 1.3).cos()).collect();
-    let mut together = both.clone();
-    factor.solve_columns::<2>(&mut together);
-    for (column, got) in both.chunks(n).zip(together.chunks(n)) {
+    let three: Vec<f64> = (0..3 * n).map(|k| (k as f64 * 1.3).cos()).collect();
+    let mut together = three.clone();
+    factor.solve(&mut together);
+    for (column, got) in three.chunks(n).zip(together.chunks(n)) {
         let mut alone = column.to_vec();
         factor.solve(&mut alone);
         let size = alone.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
         assert!(alone.iter().zip(got).all(|(a, b)| (a - b).abs() < 1e-12 * size));
     }
+}
+
+/// F L^3 / 3 E I, and the tip turns by F L^2 / 2 E I.
+#[test]
+fn a_load_at_its_tip_bends_a_rod_as_statics_says() {
+    let n = 16_u32;
+    let node = |k: u32| Node {
+        parent: k.checked_sub(1),
+        position: [f64::from(k) / f64::from(n), 0.0, 0.0],
+        radius: 0.02,
+    };
+    let plant = Plant::new((0..=n).map(node).collect()).unwrap();
+    let beams = Beams::new(&plant, &Options::default()).unwrap();
+    let factor = Factor::new(&Flexibility::new(&beams), &beams.mass(), 0.0).unwrap();
+    let mut bent = vec![0.0; DOF * n as usize];
+    let tip = DOF * (n as usize - 1);
+    bent[tip + 2] = 3.0;
+    factor.solve(&mut bent);
+    let stiff = Options::default().material.young * PI * 0.02_f64.powi(4) / 4.0;
+    let (down, turned) = (bent[tip + 2] * stiff, -bent[tip + 4] * stiff);
+    assert!((down - 1.0).abs() < 1e-9 && (turned - 1.5).abs() < 1e-9, "{down} {turned}");
 }

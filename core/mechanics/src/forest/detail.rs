@@ -1,74 +1,66 @@
 //! How much of a plant is worth moving from how far: fewer nodes, fewer modes.
 
 use super::View;
-use crate::rig::Rig;
 use crate::stirring::Stirring;
 use nalgebra::Vector3;
 
-/// What is moved of a copy from a distance on.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// How much of a copy is moved: nothing where it has no nodes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Detail {
-    /// Metres from the eye for a copy of the plant's own size; a larger one keeps its nodes for longer.
-    pub from: f64,
-    /// Nodes: those that bear the most wood.
-    pub n_nodes: usize,
-    /// Modes: the slowest.
-    pub n_modes: usize,
+    /// Its first so many nodes,
+    pub n_nodes: u32,
+    /// by its so many slowest modes.
+    pub n_modes: u32,
 }
 
 /// Details that cannot be.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "detail {detail} begins at {from} m with {n_nodes} nodes and {n_modes} modes: details begin farther and farther away, with one node and one mode at least and no more than the plant has ({nodes} nodes, {modes} modes)"
+    "detail {detail} begins at {from} m with {n_nodes} nodes and {n_modes} modes: details begin farther and farther away, with one node and one mode at least"
 )]
 pub struct DetailError {
     detail: usize,
     from: f64,
-    n_nodes: usize,
-    n_modes: usize,
-    nodes: usize,
-    modes: usize,
+    n_nodes: u32,
+    n_modes: u32,
 }
 
 /// The whole plant, and what is left of it from each distance on.
 #[derive(Clone, Debug)]
-pub(super) struct Details {
-    from: Vec<f64>,
-    pub(super) nodes: Vec<Vec<u32>>,
-    pub(super) rigs: Vec<Rig>,
-}
+pub struct Details(Vec<(f64, Detail)>);
 
 impl Details {
-    pub(super) fn new(plant: &Stirring, details: &[Detail]) -> Result<Self, DetailError> {
-        let (nodes, modes) = (plant.rest.len(), plant.omegas.len());
-        let whole = Detail { from: 0.0, n_nodes: nodes, n_modes: modes };
-        let mut made = Self { from: Vec::new(), nodes: Vec::new(), rigs: Vec::new() };
-        for (detail, &Detail { from, n_nodes, n_modes }) in [whole].iter().chain(details).enumerate() {
-            let farther = made.from.last().is_none_or(|last| from > *last);
-            if !farther || !(1..=nodes).contains(&n_nodes) || !(1..=modes).contains(&n_modes) {
-                return Err(DetailError { detail, from, n_nodes, n_modes, nodes, modes });
+    /// What is moved of a copy of the plant's own size from how many metres on; a larger one keeps its nodes for longer.
+    ///
+    /// # Errors
+    /// [`DetailError`].
+    pub fn new(farther: &[(f64, Detail)]) -> Result<Self, DetailError> {
+        let whole = Detail { n_nodes: u32::MAX, n_modes: u32::MAX };
+        let mut made = vec![(0.0, whole)];
+        for (detail, &(from, Detail { n_nodes, n_modes })) in (1..).zip(farther) {
+            let is_farther = made.last().is_none_or(|(last, _)| from > *last);
+            if !is_farther || n_nodes == 0 || n_modes == 0 {
+                return Err(DetailError { detail, from, n_nodes, n_modes });
             }
-            let mut kept = plant.by_wood[..n_nodes].to_vec();
-            kept.sort_unstable();
-            made.rigs.push(Rig::new(&plant.bendings[..n_modes], &kept));
-            made.nodes.push(kept);
-            made.from.push(from);
+            made.push((from, Detail { n_nodes, n_modes }));
         }
-        Ok(made)
+        Ok(Self(made))
     }
 
-    /// The detail of a copy; `None` where it is out of view.
-    pub(super) fn of(&self, plant: &Stirring, view: &View, place: &Vector3<f64>, scale: f64) -> Option<u32> {
+    /// That of a copy at a place, metres, so many times as large as the plant: nothing of what is out of view.
+    #[must_use]
+    pub fn of(&self, plant: &Stirring, view: &View, place: &Vector3<f64>, scale: f64) -> Detail {
         let centre = place + Vector3::z() * (plant.height / 2.0 * scale);
         if !view.sees(&centre, plant.reach * scale) {
-            return None;
+            return Detail::default();
         }
         let distance = (view.eye - centre).norm() / scale;
-        Some(self.from.iter().rposition(|from| distance >= *from).unwrap_or(0) as u32)
+        self.0.iter().rfind(|(from, _)| distance >= *from).map_or_else(Detail::default, |(_, detail)| *detail)
     }
+}
 
-    pub(super) fn bytes(&self) -> usize {
-        let nodes: usize = self.nodes.iter().map(|nodes| size_of_val(nodes.as_slice())).sum();
-        nodes + self.rigs.iter().map(Rig::bytes).sum::<usize>()
+impl Detail {
+    pub(super) fn at_most(self, whole: Self) -> Self {
+        Self { n_nodes: self.n_nodes.min(whole.n_nodes), n_modes: self.n_modes.min(whole.n_modes) }
     }
 }

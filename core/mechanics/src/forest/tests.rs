@@ -1,57 +1,79 @@
 //! Forests against one plant alone, against statics, and against what they may take.
 
-use super::{Detail, Forest, ForestError, Kind, Pace, Stand, View};
-use crate::wind::{Constant, Noise, Wind};
+use super::{Detail, Details, Forest, ForestError, Pace, Pose, Stand, StateError, View};
+use crate::wind::{Noise, Wind};
 use crate::{Beams, Damping, Drag, Form, Integrator, Modes, Options, Stirring, Threads, WindBasis};
-use nalgebra::Vector3;
+use nalgebra::{Rotation3, Vector3};
 use std::f64::consts::PI;
+use std::sync::Arc;
 
-const ROOMY: usize = 1 << 30;
-const PACE: Pace = Pace { step: 0.02, integrator: Integrator::Exact };
+const PACE: Pace = Pace {
+    step: 0.02,
+    integrator: Integrator::Exact,
+    damping: Damping { alpha: 0.3, beta: 0.008, mass: 1.0 },
+};
 
-fn plant(n_nodes: usize, n_modes: usize, form: Form) -> Stirring {
-    let beams = Beams::new(&honami_synth::tree(n_nodes, 1).unwrap(), &Options::default()).unwrap();
+fn stirring(plant: &honami_model::plant::Plant, n_modes: usize, form: Form) -> Arc<Stirring> {
+    let beams = Beams::new(plant, &Options::default()).unwrap();
     let modes = Modes::new(&beams, n_modes, 1).unwrap();
     let basis = WindBasis::new(&beams, &modes, &Drag::default());
-    Stirring::new(&beams, &modes, basis, form)
+    Arc::new(Stirring::new(&beams, &modes, basis, form))
+}
+
+fn plant(n_nodes: usize, n_modes: usize, form: Form) -> Arc<Stirring> {
+    stirring(&honami_synth::tree(n_nodes, 1).unwrap(), n_modes, form)
 }
 
 fn threads(n: usize) -> Threads {
     Threads::new(n).unwrap()
 }
 
-fn grid(n: usize) -> Vec<Stand> {
-    let side = (n as f64).sqrt().ceil() as usize;
-    let at = |k: usize| Stand {
-        place: [(k % side) as f32 * 10.0, (k / side) as f32 * 10.0, 0.0],
-        turn: k as f32 * 0.7,
-        kind: (k % 2) as u32,
-    };
-    (0..n).map(at).collect()
+/// Some copies as the plant is, some larger and heavier, each turned.
+fn stands(n: usize) -> Vec<Stand> {
+    let sizes = [(1.0, 1.0), (1.3, 1.5)];
+    let of = |k: usize| Stand { turn: k as f32 * 0.7, scale: sizes[k % 2].0, mass: sizes[k % 2].1 };
+    (0..n).map(of).collect()
 }
 
-fn kinds() -> [Kind; 2] {
-    [Kind::default(), Kind { scale: 1.3, damping: Damping { mass: 1.5, ..Damping::default() } }]
+/// Where copies stand, metres.
+fn place(copy: usize) -> Vector3<f64> {
+    Vector3::new((copy % 20) as f64 * 10.0, (copy / 20) as f64 * 10.0, 0.0)
 }
 
-fn forest<'a>(plant: &'a Stirring, stands: Vec<Stand>, details: &[Detail]) -> Forest<'a> {
-    Forest::new(plant, stands, &kinds(), &PACE, details, ROOMY).unwrap()
+fn forest(plant: &Arc<Stirring>, stands: &[Stand], pace: &Pace) -> Forest {
+    let nodes: Vec<u32> = (0..plant.n_nodes() as u32).collect();
+    Forest::new(Arc::clone(plant), &nodes, stands, pace).unwrap()
+}
+
+/// So many steps in a wind that blows at every place as it does.
+fn go(forest: &mut Forest, n: usize, wind: &dyn Wind, threads: &Threads) {
+    for _ in 0..n {
+        let time = forest.time();
+        forest.step(&|copy| wind.sample(&place(copy), time), None, threads).unwrap();
+    }
+}
+
+fn posed(forest: &mut Forest, details: Option<&[Detail]>, threads: &Threads) -> Vec<[f32; 3]> {
+    let all = forest.rig.n_nodes() * forest.len();
+    let n = details.map_or(all, |details| details.iter().map(|detail| detail.n_nodes as usize).sum());
+    let mut motion = vec![[f32::NAN; 3]; n];
+    forest.pose(Pose { details, motion: &mut motion }, threads);
+    motion
+}
+
+fn blowing(v: Vector3<f64>) -> impl Wind {
+    crate::wind::Constant(v)
 }
 
 /// Damped to rest in a steady wind, modes are where statics puts them: f / omega^2, whatever the size and the mass.
 #[test]
 fn in_a_steady_wind_every_copy_comes_to_rest_bent_alike() {
     let plant = plant(60, 6, Form::Linear);
-    let damping = Damping { alpha: 0.5, ..Damping::default() };
-    let kinds =
-        [0.5, 1.0, 2.0].map(|scale| Kind { scale, damping: Damping { mass: 1.0 + scale, ..damping } });
-    let stands = (0..3).map(|kind| Stand { kind, ..Stand::default() }).collect();
-    let pace = Pace { step: 1.0, ..PACE };
-    let mut forest = Forest::new(&plant, stands, &kinds, &pace, &[], ROOMY).unwrap();
+    let stands = [0.5, 1.0, 2.0].map(|scale| Stand { scale, mass: 1.0 + scale, ..Stand::default() });
+    let pace = Pace { step: 1.0, damping: Damping { alpha: 0.5, ..PACE.damping }, ..PACE };
+    let mut forest = forest(&plant, &stands, &pace);
     let wind = Vector3::new(4.0, -3.0, 0.5);
-    for _ in 0..500 {
-        forest.step(&Constant(wind), &threads(1)).unwrap();
-    }
+    go(&mut forest, 500, &blowing(wind), &threads(1));
     for copy in 0..3 {
         for (mode, q) in forest.amplitudes(copy).iter().enumerate() {
             let wanted = plant.basis.force(mode, &wind) / plant.omegas[mode].powi(2);
@@ -73,68 +95,88 @@ fn a_larger_copy_is_the_larger_plant() {
         ..*node
     });
     let grown = honami_model::plant::Plant::new(grown.collect()).unwrap();
-    let stirring = |plant| {
-        let beams = Beams::new(plant, &Options::default()).unwrap();
-        let modes = Modes::new(&beams, 4, 1).unwrap();
-        let basis = WindBasis::new(&beams, &modes, &Drag::default());
-        Stirring::new(&beams, &modes, basis, Form::Linear)
+    let motion = |plant: &honami_model::plant::Plant, scale: f32| {
+        let mut forest =
+            forest(&stirring(plant, 4, Form::Linear), &[Stand { scale, ..Stand::default() }], &PACE);
+        go(&mut forest, 200, &Noise { speed: 9.0, cell: 1e9, second: 0.7, seed: 3 }, &threads(1));
+        posed(&mut forest, None, &threads(1))
     };
-    let (small, grown) = (stirring(&small), stirring(&grown));
-    let (stand, noise) = (vec![Stand::default()], Noise { speed: 9.0, cell: 1e9, second: 0.7, seed: 3 });
-    let mut scaled =
-        Forest::new(&small, stand.clone(), &[Kind { scale: 2.0, ..Kind::default() }], &PACE, &[], ROOMY)
-            .unwrap();
-    let mut real = Forest::new(&grown, stand, &[Kind::default()], &PACE, &[], ROOMY).unwrap();
-    for _ in 0..200 {
-        scaled.step(&noise, &threads(1)).unwrap();
-        real.step(&noise, &threads(1)).unwrap();
-    }
-    let moved = (real.position(0, 49) - grown.rest[49]).norm();
-    assert!(moved > 1e-4, "{moved}");
-    for node in [10, 30, 49] {
-        let off = (scaled.position(0, node) - real.position(0, node)).norm();
-        assert!(off < 1e-4 * moved, "{node}: {off} of {moved}");
-    }
+    let (scaled, real) = (motion(&small, 2.0), motion(&grown, 1.0));
+    let (scaled, real) = (scaled.as_flattened(), real.as_flattened());
+    let most = real.iter().fold(0.0_f32, |most, v| v.abs().max(most));
+    assert!(most > 1e-4 && scaled.iter().zip(real).all(|(a, b)| (2.0 * a - b).abs() < 1e-4 * most));
 }
 
+/// In its own axes nothing has changed.
 #[test]
-fn a_turned_copy_in_a_turned_wind_is_a_turned_pose() {
+fn a_turned_copy_in_a_turned_wind_moves_as_before() {
     let plant = plant(40, 5, Form::Mode(2));
-    let stands = vec![Stand::default(), Stand { turn: 0.9, ..Stand::default() }];
-    let run = |wind: Vector3<f64>, copy: usize| {
-        let mut forest = Forest::new(&plant, stands.clone(), &[Kind::default()], &PACE, &[], ROOMY).unwrap();
-        for _ in 0..40 {
-            forest.step(&Constant(wind), &threads(1)).unwrap();
-        }
-        forest.position(copy, 39)
+    let run = |turn: f32| {
+        let mut forest = forest(&plant, &[Stand { turn, ..Stand::default() }], &PACE);
+        let turned = Rotation3::from_axis_angle(&Vector3::z_axis(), f64::from(turn));
+        go(&mut forest, 40, &blowing(turned * Vector3::new(6.0, 2.0, 0.0)), &threads(1));
+        posed(&mut forest, None, &threads(1))
     };
-    let turn = nalgebra::Rotation3::from_axis_angle(&Vector3::z_axis(), 0.9);
-    let wind = Vector3::new(6.0, 2.0, 0.0);
-    let wanted = turn * run(wind, 0);
-    assert!((run(turn * wind, 1) - wanted).norm() < 1e-5);
+    let (plain, turned) = (run(0.0), run(0.9));
+    assert!(plain[39][0].abs() > 1e-3);
+    let pairs = plain.as_flattened().iter().zip(turned.as_flattened());
+    assert!(pairs.clone().all(|(a, b)| (a - b).abs() < 1e-5));
 }
 
+/// In one call or in many, on any number of threads, posed or not on the way.
 #[test]
 fn a_forest_moves_to_the_same_bits_on_any_number_of_threads() {
     let plant = plant(70, 8, Form::Mode(3));
     let wind = Noise { speed: 8.0, cell: 20.0, second: 2.0, seed: 5 };
-    let bits = |n_threads: usize, details: &[Detail], view: Option<&View>| {
-        let mut forest = forest(&plant, grid(700), details);
-        for _ in 0..5 {
-            forest.step(&wind, &threads(n_threads)).unwrap();
+    let details: Vec<Detail> =
+        (0..700).map(|k| Detail { n_nodes: [70, 20, 0][k / 5 % 3], n_modes: [8, 3][k / 7 % 2] }).collect();
+    for details in [None, Some(details.as_slice())] {
+        let bits = |n_threads: usize| {
+            let mut forest = forest(&plant, &stands(700), &PACE);
+            go(&mut forest, 5, &wind, &threads(n_threads));
+            let motion = posed(&mut forest, details, &threads(n_threads));
+            let bits: Vec<u32> = motion.as_flattened().iter().map(|v| v.to_bits()).collect();
+            (bits, forest.save())
+        };
+        let one = bits(1);
+        assert!(one.0.iter().any(|v| *v != 0));
+        assert!(one == bits(2) && one == bits(3));
+        let mut forest = forest(&plant, &stands(700), &PACE);
+        go(&mut forest, 4, &wind, &threads(2));
+        let (time, mut motion) = (forest.time(), vec![[f32::NAN; 3]; one.0.len() / 3]);
+        let pose = Pose { details, motion: &mut motion };
+        forest.step(&|copy| wind.sample(&place(copy), time), Some(pose), &threads(2)).unwrap();
+        assert!(motion.as_flattened().iter().map(|v| v.to_bits()).eq(one.0), "a step and its pose at once");
+    }
+}
+
+#[test]
+fn what_is_left_out_changes_nothing_of_what_is_wanted() {
+    let plant = plant(60, 8, Form::Mode(3));
+    let mut forest = forest(&plant, &stands(100), &PACE);
+    go(&mut forest, 9, &Noise { speed: 12.0, cell: 30.0, second: 2.0, seed: 5 }, &threads(1));
+    let all = posed(&mut forest, None, &threads(1));
+    let details: Vec<Detail> =
+        (0..100).map(|k| Detail { n_nodes: [60, 22, 0, 1][k / 3 % 4], n_modes: [8, 8, 2][k % 3] }).collect();
+    let some = posed(&mut forest, Some(&details), &threads(1));
+    let mut some = some.as_slice();
+    for (k, Detail { n_nodes, n_modes }) in details.into_iter().enumerate() {
+        let n_nodes = n_nodes as usize;
+        let (own, others) = some.split_at(n_nodes);
+        some = others;
+        if n_modes == 8 {
+            assert!(own == &all[60 * k..][..n_nodes], "{k}");
+        } else {
+            // As if only the first modes were out.
+            let mut few = [0.0; 8];
+            few[..2].copy_from_slice(&forest.amplitudes(k)[..2]);
+            let mut alone = self::forest(&plant, &[Stand::default()], &PACE);
+            alone.pull(0, &few);
+            let wanted = posed(&mut alone, None, &threads(1));
+            let off =
+                own.iter().zip(&wanted).all(|(a, b)| (0..3).all(|axis| (a[axis] - b[axis]).abs() < 1e-6));
+            assert!(off, "{k}");
         }
-        forest.pose(view, &threads(n_threads)).unwrap();
-        let seen = forest.seen().to_vec();
-        let numbers: Vec<u32> =
-            (0..seen.len()).flat_map(|k| forest.displacements(k)).map(|v| v.to_bits()).collect();
-        (seen, numbers)
-    };
-    let details = [Detail { from: 60.0, n_nodes: 20, n_modes: 3 }];
-    let eye = view();
-    for view in [None, Some(&eye)] {
-        let one = bits(1, &details, view);
-        assert!(one.1.iter().any(|v| *v != 0));
-        assert!(one == bits(2, &details, view) && one == bits(3, &details, view));
     }
 }
 
@@ -149,39 +191,28 @@ fn view() -> View {
 }
 
 #[test]
-fn what_is_posed_is_where_every_node_is_and_far_copies_have_less_of_it() {
-    let plant = plant(60, 8, Form::Mode(2));
-    let details =
-        [Detail { from: 60.0, n_nodes: 20, n_modes: 8 }, Detail { from: 120.0, n_nodes: 5, n_modes: 2 }];
-    let mut forest = forest(&plant, grid(400), &details);
-    let wind = Noise { speed: 12.0, cell: 30.0, second: 2.0, seed: 5 };
-    for _ in 0..9 {
-        forest.step(&wind, &threads(1)).unwrap();
-    }
+fn far_copies_have_less_of_it_and_those_out_of_view_nothing() {
+    let plant = plant(60, 8, Form::Linear);
+    let [near, far] = [(20, 8), (5, 2)].map(|(n_nodes, n_modes)| Detail { n_nodes, n_modes });
+    let details = Details::new(&[(60.0, near), (120.0, far)]).unwrap();
     let eye = view();
-    forest.pose(Some(&eye), &threads(1)).unwrap();
-    let mut n_of = [0; 3];
-    for (k, seen) in forest.seen().iter().enumerate() {
-        n_of[seen.detail as usize] += 1;
-        let stand = forest.stands[seen.copy as usize];
-        let scale = forest.kinds[stand.kind as usize].scale;
-        let nodes = forest.nodes(seen.detail);
-        assert_eq!(nodes[0], 0, "the root is kept");
-        let moved = forest.displacements(k);
-        assert_eq!(moved.len(), 3 * nodes.len());
-        for (node, moved) in nodes.iter().zip(moved.as_chunks::<3>().0) {
-            let own = plant.rest[*node as usize] + Vector3::from(*moved).cast();
-            let turned =
-                nalgebra::Rotation3::from_axis_angle(&Vector3::z_axis(), f64::from(stand.turn)) * own;
-            let at = Vector3::from(stand.place).cast() + turned * scale;
-            // The coarsest detail has fewer modes.
-            let near = if seen.detail < 2 { 1e-5 } else { 0.2 };
-            assert!((at - forest.position(seen.copy as usize, *node as usize)).norm() < near);
-        }
+    let mut n_of = [0; 4];
+    for copy in 0..400 {
+        let detail = details.of(&plant, &eye, &place(copy), 1.0);
+        let distance = (place(copy) + Vector3::z() * plant.height / 2.0 - eye.eye).norm();
+        let wanted = [u32::MAX, 20, 5][usize::from(distance >= 60.0) + usize::from(distance >= 120.0)];
+        assert!(detail.n_nodes == wanted || detail.n_nodes == 0, "{distance}: {detail:?}");
+        n_of[[u32::MAX, 20, 5, 0].iter().position(|n| *n == detail.n_nodes).unwrap()] += 1;
     }
-    assert!(n_of.iter().all(|n| *n > 5) && n_of.iter().sum::<usize>() < 300, "{n_of:?}");
+    assert!(n_of.iter().all(|n| *n > 5) && n_of[3] > 100, "{n_of:?}");
+    let large = details.of(&plant, &eye, &(eye.eye + Vector3::x() * 100.0), 3.0);
+    assert_eq!(large.n_nodes, u32::MAX, "a large one keeps its nodes for longer");
+    let none = Detail { n_nodes: 0, ..near };
+    for wrong in [vec![(0.0, near)], vec![(9.0, near), (9.0, far)], vec![(9.0, none)]] {
+        let error = Details::new(&wrong).unwrap_err().to_string();
+        assert!(error.starts_with("detail ") && error.contains("farther and farther"), "{error}");
+    }
 }
-
 /// Copies out of the picture have no corner that an eye would see.
 #[test]
 fn nothing_that_is_in_the_picture_is_left_out() {
@@ -221,52 +252,33 @@ fn a_forest_takes_little_more_memory_than_its_positions() {
         (300, 800, 25, Form::Mode(2)),
         (1000, 100, 25, Form::Linear),
     ] {
-        let plant = plant(n, m, form);
-        let mut forest = forest(&plant, grid(k), &[]);
-        forest.step(&Constant(Vector3::x()), &threads(2)).unwrap();
-        forest.pose(None, &threads(2)).unwrap();
+        let bytes = forest(&plant(n, m, form), &stands(k), &PACE).bytes() + 12 * k * n;
         let bound = 1.1 * ((k * n * 3 + n * m * 9 + k * m * 2) * 4) as f64;
-        assert!((forest.bytes() as f64) < bound, "{k} x {n} x {m}: {} of {bound}", forest.bytes());
+        assert!((bytes as f64) < bound, "{k} x {n} x {m}: {bytes} of {bound}");
     }
-}
-
-#[test]
-fn what_does_not_fit_is_refused_with_its_size() {
-    let plant = plant(100, 5, Form::Linear);
-    let state = Forest::new(&plant, grid(100_000), &kinds(), &PACE, &[], 1_000_000).unwrap_err();
-    assert_eq!(state.to_string(), "100000 copies of 100 nodes take 4 MB, and there are 1");
-    let mut forest = Forest::new(&plant, grid(100_000), &kinds(), &PACE, &[], 50_000_000).unwrap();
-    let error = forest.pose(None, &threads(1)).unwrap_err();
-    assert!(matches!(error, ForestError::Memory { bytes, there: 50_000_000, .. } if bytes > 120_000_000));
 }
 
 #[test]
 fn what_is_no_forest_is_named() {
     let plant = plant(20, 3, Form::Linear);
-    let stand = |kind, x| vec![Stand { place: [x, 0.0, 0.0], turn: 0.0, kind }];
-    let of = |stands: Vec<Stand>, kinds: &[Kind], pace: &Pace, details: &[Detail]| {
-        Forest::new(&plant, stands, kinds, pace, details, ROOMY).err().map(|error| error.to_string())
+    let of = |stands: &[Stand], pace: &Pace| {
+        Forest::new(Arc::clone(&plant), &[0, 5], stands, pace).err().map(|error| error.to_string())
     };
-    let good = [Kind::default()];
-    let heavy = |mass| [Kind { damping: Damping { mass, ..Damping::default() }, ..Kind::default() }];
-    assert_eq!(of(stand(0, 1.0), &good, &PACE, &[]), None);
-    assert_eq!(of(vec![], &good, &PACE, &[]).unwrap(), "a forest has one copy and one kind at least");
-    assert!(of(stand(1, 1.0), &good, &PACE, &[]).unwrap().ends_with("is of kind 1 of 1"));
-    assert!(of(stand(0, f32::NAN), &good, &PACE, &[]).unwrap().starts_with("copy 0 stands at [NaN"));
-    for mass in [0.0, -2.0, f64::NAN] {
-        assert!(of(stand(0, 0.0), &heavy(mass), &PACE, &[]).unwrap().contains("masses are more than 0"));
+    let one = [Stand::default()];
+    assert_eq!(of(&one, &PACE), None);
+    assert_eq!(of(&[], &PACE).unwrap(), "a forest has one copy at least");
+    for size in [0.0, -2.0, f32::NAN] {
+        for stand in [Stand { scale: size, ..one[0] }, Stand { mass: size, ..one[0] }] {
+            assert!(of(&[one[0], stand], &PACE).unwrap().starts_with("copy 1 is turned by 0"));
+        }
+    }
+    assert!(of(&[Stand { turn: f32::NAN, ..one[0] }], &PACE).unwrap().contains("turned by NaN"));
+    for damping in [Damping { mass: 0.0, ..PACE.damping }, Damping { alpha: -1.0, ..PACE.damping }] {
+        assert!(of(&one, &Pace { damping, ..PACE }).unwrap().contains("damping is not negative"));
     }
     for step in [0.0, -0.1, f64::NAN] {
-        let error = of(stand(0, 0.0), &good, &Pace { step, ..PACE }, &[]).unwrap();
+        let error = of(&one, &Pace { step, ..PACE }).unwrap();
         assert_eq!(error, format!("a step takes more than 0 s, not {step} s"));
-    }
-    for detail in [
-        Detail { from: 0.0, n_nodes: 3, n_modes: 1 },
-        Detail { from: 9.0, n_nodes: 0, n_modes: 1 },
-        Detail { from: 9.0, n_nodes: 21, n_modes: 1 },
-        Detail { from: 9.0, n_nodes: 3, n_modes: 4 },
-    ] {
-        assert!(of(stand(0, 0.0), &good, &PACE, &[detail]).unwrap().starts_with("detail 1 begins at"));
     }
 }
 
@@ -274,9 +286,10 @@ fn what_is_no_forest_is_named() {
 fn steps_beyond_the_limit_of_a_method_are_refused_with_it() {
     let plant = plant(20, 3, Form::Linear);
     let fastest = plant.omegas[2];
+    let damping = Damping { alpha: 0.0, beta: 0.0, mass: 1.0 };
     let of = |step: f64, integrator: Integrator| {
-        let kinds = [Kind { damping: Damping { alpha: 0.0, beta: 0.0, mass: 1.0 }, scale: 1.0 }];
-        Forest::new(&plant, grid(1), &kinds, &Pace { step, integrator }, &[], ROOMY).map(|_| ())
+        Forest::new(Arc::clone(&plant), &[0], &[Stand::default()], &Pace { step, integrator, damping })
+            .map(|_| ())
     };
     let limit = 2.0 / fastest;
     assert!(of(limit * 0.99, Integrator::Symplectic).is_ok());
@@ -293,17 +306,11 @@ fn steps_beyond_the_limit_of_a_method_are_refused_with_it() {
 
 #[test]
 fn a_wind_that_is_no_number_is_named_with_the_first_copy_that_feels_it() {
-    struct Hole;
-    impl Wind for Hole {
-        fn sample(&self, place: &Vector3<f64>, time: f64) -> Vector3<f64> {
-            if place.x > 25.0 && time > 0.01 { Vector3::repeat(f64::NAN) } else { Vector3::x() }
-        }
-    }
-    let plant = plant(20, 3, Form::Linear);
-    let mut forest = forest(&plant, grid(600), &[]);
-    forest.step(&Hole, &threads(3)).unwrap();
-    let error = forest.step(&Hole, &threads(3)).unwrap_err();
-    assert_eq!(error.to_string(), "the wind at copy 3 at 0.02 s is no number");
+    let mut forest = forest(&plant(20, 3, Form::Linear), &stands(600), &PACE);
+    go(&mut forest, 1, &blowing(Vector3::x()), &threads(3));
+    let hole = |copy: usize| Vector3::repeat(if copy > 2 { f64::NAN } else { 1.0 });
+    let error = forest.step(&hole, None, &threads(3)).unwrap_err();
+    assert_eq!(error, ForestError::Wind { copy: 3, time: 0.02 });
 }
 
 /// All methods agree where steps are short.
@@ -311,16 +318,51 @@ fn a_wind_that_is_no_number_is_named_with_the_first_copy_that_feels_it() {
 fn methods_agree_in_short_steps() {
     let plant = plant(30, 4, Form::Linear);
     let end = |integrator: Integrator| {
-        let pace = Pace { step: 1e-4, integrator };
-        let mut forest = Forest::new(&plant, grid(1), &[Kind::default()], &pace, &[], ROOMY).unwrap();
-        for _ in 0..4000 {
-            forest.step(&Constant(Vector3::new(8.0, 1.0, 0.0)), &threads(1)).unwrap();
-        }
-        forest.position(0, 29)
+        let mut forest = forest(&plant, &stands(1), &Pace { step: 1e-4, integrator, ..PACE });
+        go(&mut forest, 4000, &blowing(Vector3::new(8.0, 1.0, 0.0)), &threads(1));
+        Vector3::from(posed(&mut forest, None, &threads(1))[29])
     };
     let exact = end(Integrator::Exact);
-    let moved = (exact - plant.rest[29]).norm();
     for integrator in [Integrator::Symplectic, Integrator::Newmark] {
-        assert!((end(integrator) - exact).norm() < 3e-3 * moved, "{integrator:?}");
+        assert!((end(integrator) - exact).norm() < 3e-3 * exact.norm(), "{integrator:?}");
     }
+}
+
+/// Twice as heavy from a time on: it goes on from where it is as one that is so from there.
+#[test]
+fn a_forest_goes_on_at_another_pace_from_where_it_is() {
+    let plant = plant(30, 4, Form::Linear);
+    let wind = blowing(Vector3::new(8.0, 1.0, 0.0));
+    let heavy = Pace { damping: Damping { mass: 2.0, ..PACE.damping }, step: 0.01, ..PACE };
+    let mut tuned = forest(&plant, &stands(3), &PACE);
+    go(&mut tuned, 20, &wind, &threads(1));
+    let mut other = forest(&plant, &stands(3), &heavy);
+    other.load(&tuned.save()).unwrap();
+    tuned.retune(&heavy).unwrap();
+    let wrong = Pace { step: f64::NAN, ..PACE };
+    assert!(tuned.retune(&wrong).is_err() && *tuned.pace() == heavy, "what is refused changes nothing");
+    go(&mut tuned, 20, &wind, &threads(1));
+    go(&mut other, 20, &wind, &threads(1));
+    assert_eq!(tuned.save(), other.save());
+    tuned.reset();
+    assert_eq!(tuned.save(), forest(&plant, &stands(3), &PACE).save());
+}
+
+#[test]
+fn a_saved_state_is_that_of_its_own_forest_alone() {
+    let plant = plant(30, 4, Form::Linear);
+    let mut forest = forest(&plant, &stands(3), &PACE);
+    go(&mut forest, 7, &blowing(Vector3::x()), &threads(1));
+    let saved = forest.save();
+    let size = |bytes: &[u8], forest: &mut Forest| forest.load(bytes).unwrap_err();
+    for bytes in [&[][..], &saved[..9], &saved[..saved.len() - 1]] {
+        assert!(matches!(size(bytes, &mut forest), StateError::Size { wanted: 120, .. }), "{}", bytes.len());
+    }
+    let mut other = self::forest(&plant, &stands(4), &PACE);
+    let error = size(&saved, &mut other).to_string();
+    assert!(error.contains("of 4 copies") && error.ends_with("of 3 copies with 4 modes"), "{error}");
+    let mut broken = saved.clone();
+    broken[24..28].copy_from_slice(&f32::NAN.to_le_bytes());
+    assert_eq!(forest.load(&broken), Err(StateError::Numbers));
+    assert_eq!(forest.save(), saved, "what is refused changes nothing");
 }

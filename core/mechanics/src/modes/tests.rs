@@ -61,6 +61,9 @@ fn a_clamped_rod_bends_twists_and_stretches_at_its_frequencies() {
     let twist = (MATERIAL.shear() / MATERIAL.density).sqrt() / (4.0 * LENGTH);
     assert_near(twist, 490.290_34, 1e-8, "the rod of the oracle");
     assert_near(modes.hz(6), twist * 1.000_100_4, 1e-7, "twisting");
+    let stretch = (MATERIAL.young / MATERIAL.density).sqrt() / (4.0 * LENGTH);
+    assert_near(stretch, 790.569_42, 1e-8, "the rod of the oracle");
+    assert_near(modes.hz(9), stretch * 1.000_100_4, 1e-7, "stretching");
 }
 
 #[test]
@@ -70,6 +73,71 @@ fn the_error_falls_with_the_fourth_power_of_the_length_of_segments() {
     for (n, ratio) in cases {
         let modes = modes_of(&rod(n, Vector3::z()), 2);
         assert_near(modes.hz(0) / bending_hz(BENDING[0]), ratio, 5e-8, &format!("{n} segments"));
+    }
+    let second = modes_of(&rod(8, Vector3::z()), 4).hz(2);
+    assert_near(second / bending_hz(BENDING[1]), 1.000_080_0, 5e-8, "the second bending");
+    let order = |mode: usize, beta: f64| {
+        let error = |n: u32| modes_of(&rod(n, Vector3::z()), mode + 1).hz(mode) / bending_hz(beta) - 1.0;
+        (error(8) / error(16)).log2()
+    };
+    for (mode, beta) in [(0, BENDING[0]), (2, BENDING[1])] {
+        let order = order(mode, beta);
+        assert!((order - 4.0).abs() < 0.1, "mode {mode}: {order}");
+    }
+}
+
+/// Twisting and stretching are linear between nodes.
+#[test]
+fn the_error_of_twisting_falls_with_the_square() {
+    let twist = (MATERIAL.shear() / MATERIAL.density).sqrt() / (4.0 * LENGTH);
+    let error = |n: u32| {
+        let modes = modes_of(&rod(n, Vector3::z()), 9);
+        let nearest = (0..9).map(|mode| modes.hz(mode) / twist - 1.0);
+        nearest.min_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap()
+    };
+    for n in [8, 16] {
+        let order = (error(n) / error(2 * n)).log2();
+        assert!((order - 2.0).abs() < 0.01, "{n} segments: {order}");
+    }
+}
+
+/// How much of the rod's mass takes part when its foot is shaken, mode by mode: 4 s^2 / (beta L)^2 in closed form.
+#[test]
+fn effective_masses_are_those_of_a_clamped_rod() {
+    let n = 64;
+    let beams = Beams::new(&rod(n, Vector3::z()), &options(RadiusRule::Mean)).unwrap();
+    let modes = Modes::new(&beams, 6, 1).unwrap();
+    let per_metre = MATERIAL.density * PI * RADIUS.powi(2);
+    for (k, known) in [0.613_06, 0.188_26, 0.064_67].into_iter().enumerate() {
+        let beta = BENDING[k];
+        let wanted = ((beta.sinh() - beta.sin()) / (beta.cosh() + beta.cos()) * 2.0 / beta).powi(2);
+        assert!((wanted - known).abs() < 1e-4, "the rod of the oracle: {wanted}");
+        // An even load on a segment: shares of the ends, and of how they turn.
+        let part = |mode: usize| {
+            let of_segment = |tip: usize| {
+                let l = LENGTH / f64::from(n);
+                let (u, psi) = (|node| modes.displacement(mode, node), |node| modes.rotation(mode, node));
+                (u(tip - 1) + u(tip)) * (l / 2.0)
+                    + (psi(tip - 1) - psi(tip)).cross(&Vector3::z()) * (l * l / 12.0)
+            };
+            (1..=n as usize).map(of_segment).sum::<Vector3<f64>>() * per_metre
+        };
+        // The two planes together, shaken along x.
+        let mass = part(2 * k).x.powi(2) + part(2 * k + 1).x.powi(2);
+        assert!((mass / (per_metre * LENGTH) - wanted).abs() < 1e-5, "{k}: {}", mass / (per_metre * LENGTH));
+    }
+}
+
+/// Between any two modes the pivots count those below, also of a tree too large to be worked out as a whole.
+#[test]
+fn the_count_of_pivots_is_the_number_of_the_mode() {
+    let beams = Beams::new(&honami_synth::tree(300, 3).unwrap(), &options(RadiusRule::Mean)).unwrap();
+    let modes = Modes::new(&beams, 40, 1).unwrap();
+    let (flexibility, mass) = (crate::factor::Flexibility::new(&beams), beams.mass());
+    for below in [1, 5, 10, 25, 39] {
+        let between = f64::midpoint(modes.omegas[below - 1].powi(2), modes.omegas[below].powi(2));
+        let factor = crate::factor::Factor::new(&flexibility, &mass, between).unwrap();
+        assert_eq!(factor.n_negative(), below);
     }
 }
 

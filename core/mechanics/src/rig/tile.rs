@@ -3,45 +3,58 @@
 use pulp::{Arch, Simd, WithSimd};
 
 /// Columns of a tile: four vectors of sixteen numbers, or eight of eight.
-pub(super) const COLUMNS: usize = 64;
+const COLUMNS: usize = 64;
+/// Rows of the product whose sums are in registers together.
+pub(super) const PANEL: usize = 6;
 
 /// A matrix by tiles of 64 columns: all rows of the first tile, then all of the next. The last is filled with zeros.
 #[derive(Clone, Debug)]
 pub(super) struct Tiles {
     n_rows: usize,
-    n_columns: usize,
-    numbers: Vec<f32>,
+    rows: Vec<Row>,
 }
+
+/// A row of a tile, in lines of memory of its own.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+struct Row([f32; COLUMNS]);
 
 impl Tiles {
     pub(super) fn new(rows: &[Vec<f32>], n_columns: usize) -> Self {
-        let mut numbers = vec![0.0; rows.len() * n_columns.next_multiple_of(COLUMNS)];
+        let mut made = vec![Row([0.0; COLUMNS]); rows.len() * n_columns.div_ceil(COLUMNS)];
         for (row, from) in rows.iter().enumerate() {
             for (tile, part) in from.chunks(COLUMNS).enumerate() {
-                let place = (tile * rows.len() + row) * COLUMNS;
-                numbers[place..place + part.len()].copy_from_slice(part);
+                made[tile * rows.len() + row].0[..part.len()].copy_from_slice(part);
             }
         }
-        Self { n_rows: rows.len(), n_columns, numbers }
+        Self { n_rows: rows.len(), rows: made }
     }
 
     pub(super) fn bytes(&self) -> usize {
-        size_of_val(self.numbers.as_slice())
+        size_of_val(self.rows.as_slice())
     }
 
-    pub(super) fn at(&self, row: usize, column: usize) -> f32 {
-        self.numbers[(column / COLUMNS * self.n_rows + row) * COLUMNS + column % COLUMNS]
-    }
-
-    /// `left` times this: `(n, n_rows)` to `(n, n_columns)`.
-    pub(super) fn multiply(&self, left: &[f32], product: &mut [f32]) {
-        Arch::new().dispatch(Multiply { tiles: self, left, product });
+    /// Panels times the first so many rows and columns of this, to `(n, n_columns)`: a panel has six numbers for each of
+    /// these rows, one for each of six rows of the product.
+    pub(super) fn multiply(
+        &self,
+        panels: &[[f32; PANEL]],
+        n_rows: usize,
+        n_columns: usize,
+        product: &mut [f32],
+    ) {
+        if n_rows == 0 {
+            return product.fill(0.0);
+        }
+        Arch::new().dispatch(Multiply { tiles: self, panels, n_rows, n_columns, product });
     }
 }
 
 struct Multiply<'a> {
     tiles: &'a Tiles,
-    left: &'a [f32],
+    panels: &'a [[f32; PANEL]],
+    n_rows: usize,
+    n_columns: usize,
     product: &'a mut [f32],
 }
 
@@ -52,66 +65,63 @@ impl WithSimd for Multiply<'_> {
     fn with_simd<S: Simd>(self, simd: S) {
         // As many sums as there are registers for: of 32, or of 16.
         match S::F32_LANES {
-            16 => by_tiles::<S, 6, 4>(simd, self),
-            _ => by_tiles::<S, 6, 2>(simd, self),
+            16 => by_tiles::<S, 4>(simd, self),
+            _ => by_tiles::<S, 2>(simd, self),
         }
     }
 }
 
-/// `R` rows of the product at a time, `C` vectors of columns.
+/// `C` vectors of columns at a time.
 #[inline(always)]
-fn by_tiles<S: Simd, const R: usize, const C: usize>(
+fn by_tiles<S: Simd, const C: usize>(
     simd: S,
-    Multiply { tiles, left, product }: Multiply<'_>,
+    Multiply { tiles: Tiles { n_rows: height, rows }, panels, n_rows, n_columns, product }: Multiply<'_>,
 ) {
-    let (n_rows, n_columns) = (tiles.n_rows, tiles.n_columns);
-    for (tile, numbers) in tiles.numbers.chunks_exact(n_rows * COLUMNS).enumerate() {
-        let first = tile * COLUMNS;
-        for (left, product) in left.chunks(R * n_rows).zip(product.chunks_mut(R * n_columns)) {
-            let n = left.len() / n_rows;
+    let mut stage = [[0.0; COLUMNS]; PANEL];
+    for (tile, first) in rows.chunks_exact(*height).zip((0..n_columns).step_by(COLUMNS)) {
+        let n = COLUMNS.min(n_columns - first);
+        for (panel, product) in panels.chunks_exact(n_rows).zip(product.chunks_mut(PANEL * n_columns)) {
             for part in (0..COLUMNS).step_by(C * S::F32_LANES) {
-                let sums = sums::<S, R, C>(simd, n_rows, numbers, part, left, n);
-                for (k, sums) in sums.iter().enumerate().take(n) {
-                    let from = first + part;
-                    let to = n_columns.min(from + C * S::F32_LANES).max(from);
-                    let row = &mut product[k * n_columns..(k + 1) * n_columns];
-                    let Some(row) = row.get_mut(from..to) else { continue };
-                    let (vectors, rest) = S::as_mut_simd_f32s(row);
-                    let n_vectors = vectors.len();
-                    for (vector, sum) in vectors.iter_mut().zip(sums) {
-                        *vector = *sum;
-                    }
-                    if let Some(sum) = sums.get(n_vectors) {
-                        simd.partial_store_f32s(rest, *sum);
-                    }
+                let sums = sums::<S, C>(simd, tile, part, panel);
+                // The last tile is broader than what is left of a row.
+                if n < COLUMNS {
+                    put::<S, C>(stage.iter_mut().map(|row| &mut row[part..]), &sums);
+                } else {
+                    put::<S, C>(product.chunks_mut(n_columns).map(|row| &mut row[first + part..]), &sums);
+                }
+            }
+            if n < COLUMNS {
+                for (row, from) in product.chunks_mut(n_columns).zip(&stage) {
+                    row[first..].copy_from_slice(&from[..n]);
                 }
             }
         }
     }
 }
 
+/// Puts sums where their rows begin.
 #[inline(always)]
-fn sums<S: Simd, const R: usize, const C: usize>(
+fn put<'a, S: Simd, const C: usize>(rows: impl Iterator<Item = &'a mut [f32]>, sums: &[[S::f32s; C]; PANEL]) {
+    for (row, sums) in rows.zip(sums) {
+        let vectors = S::as_mut_simd_f32s(&mut row[..C * S::F32_LANES]).0;
+        for (vector, sum) in vectors.iter_mut().zip(sums) {
+            *vector = *sum;
+        }
+    }
+}
+
+#[inline(always)]
+fn sums<S: Simd, const C: usize>(
     simd: S,
-    n_rows: usize,
-    numbers: &[f32],
+    rows: &[Row],
     part: usize,
-    left: &[f32],
-    n: usize,
-) -> [[S::f32s; C]; R] {
-    let mut sums = [[simd.splat_f32s(0.0); C]; R];
-    // Rows that are not there count as the first, and are not read.
-    let rows: [&[f32]; R] = std::array::from_fn(
-        #[inline(always)]
-        |k| {
-            let row = if k < n { k } else { 0 };
-            &left[row * n_rows..(row + 1) * n_rows]
-        },
-    );
-    for (m, columns) in numbers.chunks_exact(COLUMNS).enumerate() {
-        let vectors = S::as_simd_f32s(&columns[part..part + C * S::F32_LANES]).0;
-        for (sums, row) in sums.iter_mut().zip(&rows) {
-            let share = simd.splat_f32s(row[m]);
+    panel: &[[f32; PANEL]],
+) -> [[S::f32s; C]; PANEL] {
+    let mut sums = [[simd.splat_f32s(0.0); C]; PANEL];
+    for (row, shares) in rows.iter().zip(panel) {
+        let vectors = S::as_simd_f32s(&row.0[part..part + C * S::F32_LANES]).0;
+        for (sums, share) in sums.iter_mut().zip(shares) {
+            let share = simd.splat_f32s(*share);
             for (sum, vector) in sums.iter_mut().zip(vectors) {
                 *sum = simd.mul_add_f32s(share, *vector, *sum);
             }

@@ -52,6 +52,32 @@ fn what_the_wind_drives_has_its_frequency_and_damping_back_within_chance() {
     }
 }
 
+/// A force whose power falls with the square of frequency pulls a peak down where nobody asks how steep it is.
+#[test]
+fn gusts_that_are_stronger_the_slower_they_are_do_not_pull_the_frequency_down() {
+    let (hz, ratio, fps, n_steps) = (0.8, 0.06, 10.0, 20);
+    let (omega, dt) = (TAU * hz, 1.0 / fps / f64::from(n_steps));
+    let found: Vec<_> = (1..6)
+        .map(|seed| {
+            let mut chance = Pcg64Mcg::seed_from_u64(seed);
+            let (mut force, mut q, mut speed) = (0.0, 0.0, 0.0);
+            let mut sample = || {
+                for _ in 0..n_steps {
+                    force += dt * (chance.random_range(-1.0..1.0) - TAU * 0.02 * force);
+                    speed += dt * (force - 2.0 * ratio * omega * speed - omega * omega * q);
+                    q += dt * speed;
+                }
+                q
+            };
+            let series: Vec<f64> = (0..12_000).map(|_| sample()).collect();
+            swing(&series, fps, [0.4, 5.0]).unwrap()
+        })
+        .collect();
+    let mean = |of: fn(&super::Swing) -> f64| found.iter().map(of).sum::<f64>() / found.len() as f64;
+    assert!((mean(|swing| swing.hz) / hz - 1.0).abs() < 0.01, "{found:?}");
+    assert!((mean(|swing| swing.ratio) / ratio - 1.0).abs() < 0.15, "{found:?}");
+}
+
 #[test]
 fn what_does_not_swing_has_none() {
     assert_eq!(swing(&[], 25.0, [0.1, 10.0]), None);

@@ -52,8 +52,8 @@ impl Spare {
 }
 
 impl Relay for Spare {
-    fn again(&mut self, _: &Seam, _: Death) -> Result<Tracker, WorkbenchError> {
+    fn again(&mut self, _: &Seam, death: Death) -> Result<(Tracker, Death), WorkbenchError> {
         self.n_deaths += 1;
-        self.another()
+        Ok((self.another()?, death))
     }
 }

@@ -138,16 +138,22 @@ impl Ride<'_> {
                 _ => frame,
             };
             let another = relay.again(&seam, death);
-            let then = if death == Death::Again && frame > start {
+            let is_left_out = frame > start && matches!(another, Ok((_, Death::Again)));
+            let then = if is_left_out {
                 format!("started again, and frame {frame} is left out")
             } else {
                 format!("started again at frame {}", seam.frame)
             };
             ear.died(died_in, &seam.why, another.is_ok().then_some(&then));
-            *self.tracker = another?;
+            (*self.tracker, death) = another?;
             self.tracker.pardon(true);
             outcome = ear.call(done, total, |call| self.resume(frame, death, numbers, call));
             self.tracker.pardon(false);
+            if is_left_out && outcome.is_ok() {
+                ear.warn(format!(
+                    "frame {frame} is left out: it died there twice, and every point is lost in it"
+                ));
+            }
             death = Death::Again;
             if outcome.is_err() && ear.is_told_to_stop(done, total) {
                 return Err(WorkbenchError::Stopped);

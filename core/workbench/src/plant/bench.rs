@@ -1,10 +1,15 @@
 //! The tables 6.1 and 6.2 of the thesis, cell by cell, on this machine.
 
+use std::sync::Arc;
 use std::time::Instant;
 
-use honami_mechanics::wind::Wind;
-use honami_mechanics::{Direction, Forest, Form, Integrator, Kind, Pace, Roof, Stand, Stirring, Threads};
+use honami_host::{CallContext, Host, PluginInfo, Steps, WindRows};
+use honami_mechanics::{
+    Damping, Direction, Forest, Form, Integrator, Pace, Pose, Roof, Stand, Stirring, Threads,
+};
 
+use super::mover::{Mover, start, values};
+use super::sway::Motion;
 use super::{Wish, sway, vibrate};
 use crate::error::WorkbenchError;
 use crate::progress::{Flow, Progress};
@@ -111,7 +116,7 @@ pub fn speeds(cells: &[Cell], runs: &Runs, progress: &dyn Progress) -> Result<Ve
         let plant = vibrate(&Wish::of(&format!("synth::tree:{n_nodes},1"), n_modes))?;
         let rate = |form: Form| {
             let stirring = Stirring::new(&plant.beams, &plant.modes, plant.basis.clone(), form);
-            rate(&stirring, n_copies, runs, &threads)
+            rate(&Arc::new(stirring), n_copies, runs, &threads)
         };
         let (linear, squared, cubed) = (rate(Form::Linear)?, rate(Form::Mode(2))?, rate(Form::Mode(3))?);
         speeds.push(Speed { n_copies, n_nodes, n_modes, thesis_fps, linear, squared, cubed });
@@ -119,48 +124,112 @@ pub fn speeds(cells: &[Cell], runs: &Runs, progress: &dyn Progress) -> Result<Ve
     Ok(speeds)
 }
 
-fn rate(plant: &Stirring, n_copies: usize, runs: &Runs, threads: &Threads) -> Result<Rate, WorkbenchError> {
-    let stand = |k: usize| Stand { place: [k as f32, 0.0, 0.0], turn: k as f32, kind: 0 };
-    let stands = (0..n_copies).map(stand).collect();
-    let pace = Pace { step: 1.0 / 30.0, integrator: Integrator::Exact };
-    let mut forest = Forest::new(plant, stands, &[Kind::default()], &pace, &[], sway::free())?;
-    let wind = Ramp(Direction::new(5.0, 2.0, 0.3));
+fn rate(
+    plant: &Arc<Stirring>,
+    n_copies: usize,
+    runs: &Runs,
+    threads: &Threads,
+) -> Result<Rate, WorkbenchError> {
+    let n_nodes = plant.n_nodes();
+    sway::room(n_copies, n_nodes, plant.n_modes())?;
+    let stands: Vec<Stand> = (0..n_copies).map(|k| Stand { turn: k as f32, ..Stand::default() }).collect();
+    let damping = Damping::default();
+    let pace = Pace { step: 1.0 / 30.0, integrator: Integrator::Exact, damping };
+    let nodes: Vec<u32> = (0..n_nodes as u32).collect();
+    let mut forest = Forest::new(Arc::clone(plant), &nodes, &stands, &pace)?;
+    let mut motion = vec![[0.0; 3]; n_copies * n_nodes];
     // The memory is touched, and threads are awake.
-    frame(&mut forest, &wind, threads)?;
-    let mut fps = Vec::new();
-    let mut share = Vec::new();
+    step(&mut forest, Some(&mut motion), threads)?;
+    let (mut fps, mut share) = (Vec::new(), Vec::new());
     for _ in 0..runs.n_runs {
-        let (begun, mut n, mut state_s) = (Instant::now(), 0, 0.0);
-        while n < 2 || begun.elapsed().as_secs_f64() < runs.seconds {
-            state_s += frame(&mut forest, &wind, threads)?;
+        let (mut n, mut whole_s, mut state_s) = (0, 0.0, 0.0);
+        while n < 2 || whole_s < runs.seconds {
+            whole_s += step(&mut forest, Some(&mut motion), threads)?;
+            // Beside a frame, what takes no part in it: the same step without positions.
+            state_s += step(&mut forest, None, threads)?;
             n += 1;
         }
-        let seconds = begun.elapsed().as_secs_f64();
-        fps.push(f64::from(n) / seconds);
-        share.push(state_s / seconds);
+        fps.push(f64::from(n) / whole_s);
+        share.push(state_s / whole_s);
     }
     let [fps, state_share] = [fps, share].map(median);
-    let numbers = (3 * n_copies * plant.n_nodes()) as f64;
+    let numbers = (3 * n_copies * n_nodes) as f64;
     let rows = (plant.n_modes() * plant.n_powers()) as f64;
     Ok(Rate { fps, state_share, written: 4.0 * numbers * fps, flops: 2.0 * rows * numbers * fps })
 }
 
-/// A wind that is another at every place and time and costs next to nothing: what a wind costs is no part of a cell.
-struct Ramp(Direction);
-
-impl Wind for Ramp {
-    fn sample(&self, place: &Direction, time: f64) -> Direction {
-        self.0 * (1.0 + 0.3 * (time * 7.0 + place.x).fract())
-    }
+/// A frame, or what goes on of it where no node is wanted, in a wind that is another at every copy and time and costs next
+/// to nothing: what a wind costs is no part of a cell. Seconds.
+fn step(
+    forest: &mut Forest,
+    motion: Option<&mut [[f32; 3]]>,
+    threads: &Threads,
+) -> Result<f64, WorkbenchError> {
+    let begun = Instant::now();
+    let phase = forest.time() * 7.0;
+    let wind =
+        |copy: usize| Direction::new(5.0, 2.0, 0.3) * (1.0 + 0.3 * (phase + copy as f64 * 0.37).fract());
+    forest.step(&wind, motion.map(|motion| Pose { details: None, motion }), threads)?;
+    Ok(begun.elapsed().as_secs_f64())
 }
 
-/// A frame; the seconds of winds and modes.
-fn frame(forest: &mut Forest<'_>, wind: &dyn Wind, threads: &Threads) -> Result<f64, WorkbenchError> {
-    let begun = Instant::now();
-    forest.step(wind, threads)?;
-    let state_s = begun.elapsed().as_secs_f64();
-    forest.pose(None, threads)?;
-    Ok(state_s)
+/// A frame of a forest through a simulator plugin beside the same frame without one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Boundary {
+    /// Seconds without, the median of the runs.
+    pub direct_s: f64,
+    /// And through the plugin.
+    pub plugin_s: f64,
+    /// How many times as long through the plugin: the least of the runs, their median, the most.
+    pub ratio: [f64; 3],
+}
+
+/// Measures what a plugin costs: two forests of a cell, frames in turns, branches as long as they are by two powers.
+///
+/// # Errors
+/// What the simulator or the system refuses.
+pub fn boundary(
+    &(n_copies, n_nodes, n_modes, _): &Cell,
+    runs: &Runs,
+    host: &Host,
+    plugin: &PluginInfo,
+) -> Result<Boundary, WorkbenchError> {
+    let wish = Wish::of(&format!("synth::tree:{n_nodes},1"), n_modes);
+    let plant = vibrate(&wish)?;
+    sway::room(n_copies, 2 * n_nodes, 2 * n_modes)?;
+    let stands: Vec<Stand> = (0..n_copies).map(|k| Stand { turn: k as f32, ..Stand::default() }).collect();
+    let stirring = Stirring::new(&plant.beams, &plant.modes, plant.basis.clone(), Form::Mode(2));
+    let pace = Pace { step: 1.0 / 30.0, integrator: Integrator::Exact, damping: Damping::default() };
+    let mut forest = Forest::new(Arc::new(stirring), &plant.beams.coarse_to_fine(), &stands, &pace)?;
+    let (mut motion, threads) = (vec![[0.0; 3]; n_copies * n_nodes], Threads::new(runs.n_threads)?);
+    let (cx, values) = (CallContext::silent(), values(&wish, &Motion::default(), plugin)?);
+    let mover = Mover { host, plugin, values: &values };
+    let (mut simulator, _) = start(&plant, &mover, &stands, runs.n_threads, 1, &cx)?;
+    let winds: Vec<[f32; 3]> = (0..n_copies).map(|k| [5.0 + (k % 7) as f32, 2.0, 0.3]).collect();
+    let steps =
+        Steps { dt: pace.step, n: 1, wind: WindRows { times_s: &[0.0], velocities: &winds }, detail: None };
+    let mut frames = |n: usize| -> Result<[f64; 2], WorkbenchError> {
+        let mut took = [0.0; 2];
+        for _ in 0..n {
+            let begun = Instant::now();
+            let pose = Some(Pose { details: None, motion: &mut motion });
+            forest.step(&|copy| Direction::from(winds[copy].map(f64::from)), pose, &threads)?;
+            took[0] += begun.elapsed().as_secs_f64();
+            let begun = Instant::now();
+            simulator.step(&steps, &cx)?;
+            took[1] += begun.elapsed().as_secs_f64();
+        }
+        Ok(took.map(|seconds| seconds / n as f64))
+    };
+    // The memory is touched, and threads are awake.
+    let [once, _] = frames(2)?;
+    let n = ((runs.seconds / once) as usize).max(2);
+    let found = (0..runs.n_runs).map(|_| frames(n)).collect::<Result<Vec<_>, _>>()?;
+    let mut ratios: Vec<f64> = found.iter().map(|[direct, plugin]| plugin / direct).collect();
+    ratios.sort_by(f64::total_cmp);
+    let ratio = [0, ratios.len() / 2, ratios.len() - 1].map(|k| ratios[k]);
+    let [direct_s, plugin_s] = [0, 1].map(|k| median(found.iter().map(|took| took[k]).collect()));
+    Ok(Boundary { direct_s, plugin_s, ratio })
 }
 
 fn median(mut values: Vec<f64>) -> f64 {

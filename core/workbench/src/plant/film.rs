@@ -1,11 +1,14 @@
 //! A plant that is filmed while it moves, from the side on which it moves most.
 
+use std::sync::Arc;
+
 use honami_mechanics::wind::Wind;
-use honami_mechanics::{Direction, Forest, Kind, Pace, Stand, Stirring, Threads};
+use honami_mechanics::{Direction, Forest, Pose, Stand, Stirring, Threads};
 use honami_synth::Moving;
 
 use super::Vibrating;
-use super::sway::{Motion, free, pulled};
+use super::grove::Grove;
+use super::sway::Motion;
 use crate::error::WorkbenchError;
 use crate::progress::{Flow, Progress};
 
@@ -19,16 +22,18 @@ pub fn film(
     motion: &Motion,
     progress: &dyn Progress,
 ) -> Result<Moving, WorkbenchError> {
+    motion.check()?;
     let n_nodes = plant.beams.len();
-    let stirring = Stirring::new(&plant.beams, &plant.modes, plant.basis.clone(), motion.form);
-    let pace =
-        Pace { step: 1.0 / (motion.fps * f64::from(motion.n_substeps)), integrator: motion.integrator };
-    let kinds = [Kind { scale: 1.0, damping: motion.damping }];
-    let mut forest = Forest::new(&stirring, vec![Stand::default()], &kinds, &pace, &[], free())?;
+    let stirring = Arc::new(Stirring::new(&plant.beams, &plant.modes, plant.basis.clone(), motion.form));
+    let grove =
+        Grove { places: vec![Direction::zeros()], stands: vec![Stand::default()], height: plant.height };
+    let nodes: Vec<u32> = (0..n_nodes as u32).collect();
+    let mut forest = Forest::new(Arc::clone(&stirring), &nodes, &grove.stands, &motion.pace())?;
     let threads = Threads::new(motion.n_threads)?;
     if motion.pull.abs() > 0.0 {
-        forest.pull(0, &pulled(plant, motion.pull));
+        forest.pull(0, &stirring.pulled(motion.pull));
     }
+    let mut moved = vec![[0.0; 3]; n_nodes];
     let mut frames: Vec<Vec<Direction>> = Vec::new();
     // Sums over all nodes and frames: of x x, y y and x y of displacements.
     let mut spread = [0.0; 3];
@@ -36,8 +41,7 @@ pub fn film(
         if progress.report(u64::from(frame), u64::from(motion.n_frames), "motion") == Flow::Stop {
             return Err(WorkbenchError::Stopped);
         }
-        forest.pose(None, &threads)?;
-        let moved = forest.displacements(0).as_chunks::<3>().0;
+        forest.pose(Pose { details: None, motion: &mut moved }, &threads);
         let places = moved.iter().zip(stirring.rest()).map(|(moved, rest)| {
             let [x, y, z] = moved.map(f64::from);
             spread = [spread[0] + x * x, spread[1] + y * y, spread[2] + x * y];
@@ -45,7 +49,8 @@ pub fn film(
         });
         frames.push(places.collect());
         for _ in 0..motion.n_substeps {
-            forest.step(wind, &threads)?;
+            let time = forest.time();
+            forest.step(&|copy| grove.blowing(wind, copy, time), None, &threads)?;
         }
     }
     // The longer axis of the ellipse of displacements.

@@ -4,16 +4,19 @@ use std::path::Path;
 use std::time::Instant;
 
 use honami_exchange::Writer;
-use honami_exchange::plant::SwayRow;
+use honami_exchange::plant::{PointCache, SwayRow};
 use honami_mechanics::wind::Wind;
-use honami_mechanics::{Damping, Forest, Form, Integrator, Kind, Pace, Stand, Stirring, Threads};
+use honami_mechanics::{Damping, Form, Integrator, Pace};
 
 use super::Vibrating;
+use super::grove::Grove;
+use super::mover::{Mover, Moving};
+use crate::ear::Ear;
 use crate::error::WorkbenchError;
-use crate::progress::{Flow, Progress};
+use crate::progress::Progress;
 
-/// Metres between copies of a plant of height 1, and how far each stands from there by chance.
-const APART: f64 = 0.8;
+/// Metres by which a plant may be pulled.
+const FARTHEST_PULL: f64 = 1000.0;
 /// Memory is left to others: so much of what is free.
 const SHARE_OF_FREE: f64 = 0.8;
 /// Where the system does not say what is free, bytes.
@@ -38,8 +41,10 @@ pub struct Motion {
     pub form: Form,
     /// Metres by which the slowest mode is pulled out at the beginning, at the node that it moves most.
     pub pull: f64,
-    /// Nodes that are followed on the first copy.
+    /// Ends of branches that are followed on the first copy, where no nodes are named.
     pub n_sensors: usize,
+    /// Nodes of the beams that are followed on the first copy.
+    pub sensors: Vec<u32>,
     /// Of where copies stand and how they are turned.
     pub seed: u64,
     /// Threads.
@@ -59,9 +64,28 @@ impl Default for Motion {
             form: Form::Mode(2),
             pull: 0.0,
             n_sensors: 1,
+            sensors: Vec::new(),
             seed: 1,
             n_threads: 1,
         }
+    }
+}
+
+impl Motion {
+    /// Whether it can be.
+    pub(super) fn check(&self) -> Result<(), WorkbenchError> {
+        let Self { fps, n_substeps, n_frames, pull, .. } = *self;
+        if !(fps.is_finite() && fps > 0.0 && n_substeps > 0 && n_frames > 0) {
+            return Err(WorkbenchError::Pace { fps, n_substeps });
+        }
+        // Further than any plant bends, and nothing overflows.
+        if pull.abs() <= FARTHEST_PULL { Ok(()) } else { Err(WorkbenchError::Pull { pull }) }
+    }
+
+    /// How a forest goes on by it.
+    pub(super) fn pace(&self) -> Pace {
+        let step = 1.0 / (self.fps * f64::from(self.n_substeps));
+        Pace { step, integrator: self.integrator, damping: self.damping }
     }
 }
 
@@ -80,44 +104,55 @@ pub struct Moved {
     pub frame_s: f64,
     /// Memory, bytes.
     pub bytes: usize,
+    /// What the simulator warned of.
+    pub warnings: Vec<String>,
 }
 
-/// Moves a plant and writes where its sensors are, a row a sensor and frame.
+/// What is written of a motion.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Outs<'a> {
+    /// A table: where its sensors are, a row a sensor and frame.
+    pub table: Option<&'a Path>,
+    /// A point cache: where all nodes of all copies are.
+    pub cache: Option<&'a Path>,
+}
+
+/// Moves a plant by a simulator and writes what is wanted of it.
 ///
 /// # Errors
-/// What [`Forest`] refuses, and what the disk says; nothing is left behind then.
+/// What the simulator refuses, [`WorkbenchError::Memory`], and what the disk says; nothing is left behind then.
 pub fn sway(
     plant: &Vibrating,
+    mover: &Mover<'_>,
     wind: &dyn Wind,
     motion: &Motion,
-    out: Option<&Path>,
+    outs: Outs<'_>,
     progress: &dyn Progress,
 ) -> Result<Moved, WorkbenchError> {
-    if !(motion.fps.is_finite() && motion.fps > 0.0 && motion.n_substeps > 0 && motion.n_frames > 0) {
-        return Err(WorkbenchError::Pace { fps: motion.fps, n_substeps: motion.n_substeps });
-    }
-    let stirring = Stirring::new(&plant.beams, &plant.modes, plant.basis.clone(), motion.form);
-    let pace =
-        Pace { step: 1.0 / (motion.fps * f64::from(motion.n_substeps)), integrator: motion.integrator };
-    let kinds = [Kind { scale: 1.0, damping: motion.damping }];
-    let mut forest = Forest::new(&stirring, stands(plant, motion), &kinds, &pace, &[], free())?;
-    let threads = Threads::new(motion.n_threads)?;
-    if motion.pull.abs() > 0.0 {
-        forest.pull(0, &pulled(plant, motion.pull));
-    }
-    let sensors = ends(plant, motion.n_sensors);
-    let mut table = out.map(Writer::create).transpose()?;
+    motion.check()?;
+    let (n_copies, n_nodes) = (motion.n_copies, plant.beams.len());
+    let bytes = room(n_copies, n_nodes, plant.modes.len())?;
+    let grove = Grove::new(plant.height, motion);
+    let ear = Ear::new(&mover.plugin.short_name, progress);
+    let mut moving = Moving::new(plant, mover, &grove, motion, &ear)?;
+    let root = plant.beams.position(0);
+    let rest = |node: usize| plant.beams.position(node) - root;
+    let sensors = sensors(plant, motion)?;
+    let mut table = outs.table.map(Writer::create).transpose()?;
+    let create = |path: &Path| PointCache::create(path, n_copies * n_nodes, motion.n_frames);
+    let mut cache = outs.cache.map(create).transpose()?;
     let mut first: Vec<[f64; 3]> = Vec::new();
     let mut times = Vec::new();
     for frame in 0..motion.n_frames {
-        if progress.report(u64::from(frame), u64::from(motion.n_frames), "frame") == Flow::Stop {
+        if ear.is_told_to_stop(u64::from(frame), u64::from(motion.n_frames)) {
             return Err(WorkbenchError::Stopped);
         }
         let begun = Instant::now();
-        forest.pose(None, &threads)?;
-        let mut took = begun.elapsed();
+        let moved = moving.frame(frame, wind, &ear)?;
+        times.push(begun.elapsed().as_secs_f64());
+        let place = |copy: usize, node: usize| grove.shown(copy, &(rest(node) + moved.of(copy, node)));
         for (sensor, &node) in (0..).zip(&sensors) {
-            let at = forest.position(0, node as usize);
+            let at = place(0, node as usize);
             if sensor == 0 {
                 first.push(at.into());
             }
@@ -126,19 +161,20 @@ pub fn sway(
                 table.write(&SwayRow { sensor, node, frame, time_s, x: at.x, y: at.y, z: at.z })?;
             }
         }
-        let begun = Instant::now();
-        for _ in 0..motion.n_substeps {
-            forest.step(wind, &threads)?;
+        if let Some(cache) = &mut cache {
+            for (copy, node) in (0..n_copies).flat_map(|copy| (0..n_nodes).map(move |node| (copy, node))) {
+                cache.push(place(copy, node).cast::<f32>().into())?;
+            }
         }
-        took += begun.elapsed();
-        times.push(took.as_secs_f64());
     }
     table.map(Writer::finish).transpose()?;
+    cache.map(PointCache::finish).transpose()?;
     times.sort_by(f64::total_cmp);
-    let rest = sensors.first().map_or([0.0; 3], |node| forest.at_rest(0, *node as usize).into());
+    let rest = sensors.first().map_or([0.0; 3], |node| rest(*node as usize).into());
     let (deviation, farthest) = spread(&first, rest);
-    let (n_frames, frame_s, bytes) = (motion.n_frames, times[times.len() / 2], forest.bytes());
-    Ok(Moved { sensors, deviation, farthest, n_frames, frame_s, bytes })
+    let (n_frames, frame_s) = (motion.n_frames, times[times.len() / 2]);
+    let warnings = ear.warnings();
+    Ok(Moved { sensors, deviation, farthest, n_frames, frame_s, bytes, warnings })
 }
 
 /// Root of the mean square about the mean, and the farthest from rest.
@@ -150,13 +186,16 @@ fn spread(path: &[[f64; 3]], rest: [f64; 3]) -> (f64, f64) {
     (deviation, path.iter().map(|at| square(at, &rest)).fold(0.0, f64::max).sqrt())
 }
 
-/// Amplitudes with the slowest mode pulled out.
-pub(super) fn pulled(plant: &Vibrating, metres: f64) -> Vec<f32> {
-    let most =
-        (0..plant.beams.len()).map(|node| plant.modes.displacement(0, node).norm()).fold(0.0, f64::max);
-    let mut amplitudes = vec![0.0; plant.modes.len()];
-    amplitudes[0] = (metres / most.max(f64::MIN_POSITIVE)) as f32;
-    amplitudes
+/// Nodes that are followed: those that are named, or ends of branches.
+fn sensors(plant: &Vibrating, motion: &Motion) -> Result<Vec<u32>, WorkbenchError> {
+    if motion.sensors.is_empty() {
+        return Ok(ends(plant, motion.n_sensors));
+    }
+    let there = plant.beams.len();
+    match motion.sensors.iter().find(|node| **node as usize >= there) {
+        Some(&node) => Err(WorkbenchError::Sensor { node, there }),
+        None => Ok(motion.sensors.clone()),
+    }
 }
 
 /// Ends of branches all over the plant, the highest first.
@@ -168,23 +207,18 @@ fn ends(plant: &Vibrating, n: usize) -> Vec<u32> {
     (0..n).map(|k| ends[k * ends.len() / n]).collect()
 }
 
-/// Where copies stand: in rows, each a little off and turned by chance; the first as it was measured.
-fn stands(plant: &Vibrating, motion: &Motion) -> Vec<Stand> {
-    use rand::{RngExt as _, SeedableRng as _};
-    let mut chance = rand_pcg::Pcg64Mcg::seed_from_u64(motion.seed);
-    let (side, apart) = ((motion.n_copies as f64).sqrt().ceil() as usize, APART * plant.height);
-    let mut stand = |k: usize| {
-        let mut off = || chance.random_range(-0.25..0.25);
-        let (row, column) = (k / side, k % side);
-        let place = [(column as f64 + off()) * apart, (row as f64 + off()) * apart, 0.0].map(|v| v as f32);
-        let turn = chance.random_range(0.0..std::f32::consts::TAU);
-        if k == 0 { Stand::default() } else { Stand { place, turn, kind: 0 } }
-    };
-    (0..motion.n_copies).map(&mut stand).collect()
+/// What a forest takes, bytes: two numbers a mode, three a node of every copy.
+///
+/// # Errors
+/// [`WorkbenchError::Memory`] where there is less.
+pub(crate) fn room(copies: usize, nodes: usize, modes: usize) -> Result<usize, WorkbenchError> {
+    let bytes = copies * (3 * nodes + 2 * modes) * size_of::<f32>();
+    let there = free();
+    if bytes > there { Err(WorkbenchError::Memory { copies, nodes, bytes, there }) } else { Ok(bytes) }
 }
 
 /// Memory that may be taken, bytes.
-pub(crate) fn free() -> usize {
+pub(super) fn free() -> usize {
     let text = std::fs::read_to_string("/proc/meminfo").unwrap_or_default();
     let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"));
     let kilobytes = line.and_then(|line| line.trim().trim_end_matches(" kB").parse::<f64>().ok());

@@ -126,6 +126,8 @@ pub const WEATHERS: &[Weather] = &[
 
 const ABOUT: &[(&str, f64)] = &[("strength", 200.0), ("x", 0.0), ("y", -15.0), ("core", 1.0)];
 
+/// No value is larger: what is made of them stays a number.
+const MOST: f64 = 1e6;
 /// Values that no wind of that name can have at 0 or below.
 const POSITIVE: &[&str] = &["scale", "cell", "second", "length", "radius", "core", "decay"];
 
@@ -213,10 +215,13 @@ pub fn blow(typed: &str) -> Result<Box<dyn Wind>, WorkbenchError> {
             let known = if known.is_empty() { "nothing".to_owned() } else { known.join(", ") };
             return Err(wrong(format!("{name} has no {key:?}: it takes {known}")));
         };
-        let is_fine = |v: &f64| v.is_finite() && (*v > 0.0 || !POSITIVE.contains(&key.trim()));
+        let is_positive = POSITIVE.contains(&key.trim());
+        // Any seed is as good as another.
+        let most = if key.trim() == "seed" { f64::MAX } else { MOST };
+        let is_fine = |v: &f64| v.abs() <= most && (*v >= 1.0 / MOST || !is_positive);
         let Some(value) = value.trim().parse().ok().filter(is_fine) else {
-            let more = if POSITIVE.contains(&key.trim()) { " above 0" } else { "" };
-            return Err(wrong(format!("{key} of {name} is a number{more}, not {value:?}")));
+            let least = if is_positive { "0.000001" } else { "-1000000" };
+            return Err(wrong(format!("{key} of {name} is a number from {least} to 1000000, not {value:?}")));
         };
         values[place] = value;
     }
@@ -236,7 +241,13 @@ fn recorded(path: &Path) -> Result<Box<dyn Wind>, WorkbenchError> {
     let text =
         fs::read_to_string(path).map_err(|source| PlantFileError::Io { path: path.to_owned(), source })?;
     let recording = anemometer::parse(&text)?;
-    let samples = recording.samples.into_iter().map(Direction::from).collect();
+    let samples: Vec<Direction> = recording.samples.into_iter().map(Direction::from).collect();
+    if let Some(wild) = samples.iter().find(|v| v.amax() > MOST) {
+        let (file, speed) = (path.display(), wild.amax());
+        return Err(WorkbenchError::Weather {
+            what: format!("{file}: a wind of {speed:e} m/s, more than 1000000"),
+        });
+    }
     Ok(Box::new(Series { step: recording.step, samples }))
 }
 

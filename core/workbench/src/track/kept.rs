@@ -129,17 +129,18 @@ impl Shift<'_> {
 }
 
 impl Relay for Shift<'_> {
-    fn again(&mut self, seam: &Seam, death: Death) -> Result<Tracker, WorkbenchError> {
+    fn again(&mut self, seam: &Seam, death: Death) -> Result<(Tracker, Death), WorkbenchError> {
         let (tracker, made) = self.another()?;
         let build = (!made.is(&self.made)).then(|| made.build());
         if build.is_some() {
             self.since = seam.frame;
         }
         if death == Death::First || build.is_some() {
-            self.write(&Seam { build, ..seam.clone() })?;
+            self.write(&Seam { build: build.clone(), ..seam.clone() })?;
         }
         self.made = made;
-        Ok(tracker)
+        // Another build may well do the frame.
+        Ok((tracker, if build.is_some() { Death::First } else { death }))
     }
 
     fn rebuilt(&mut self) -> Option<Tracker> {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Duration;
 
-use honami_workbench::plugins::{Host, Hosting, Limits, Registry};
+use honami_workbench::plugins::{Host, Hosting, Limits, Registry, quoted};
 use toml::{Table, Value};
 
 /// What can be settled.
@@ -99,7 +99,7 @@ impl Plugins {
 
 /// What is said of a plugin that was in honami when that ended.
 pub(super) fn kept_out(plugin: &str, library: &Path) -> String {
-    let file = library.display();
+    let file = quoted(library);
     format!(
         "{plugin} works in a process of its own: honami ended while it was inside; `honami plugin retry --in-process {file}` \
          lets it in again"

@@ -4,6 +4,7 @@ use honami_workbench::plugins::{Host, Kind, PluginInfo};
 
 use super::{Facts, World};
 use crate::app::form::{Plugin, Task, Used};
+use crate::app::state::Notice;
 use crate::app::update::Fact;
 
 impl World {
@@ -30,12 +31,15 @@ impl World {
     }
 
     /// The plugins there are now, when the file of one is another than it was. While a job runs it looks after its own.
-    pub(super) fn rebuilt(&mut self) -> Option<[Fact; 2]> {
+    pub(super) fn rebuilt(&mut self) -> Option<Vec<Fact>> {
         let rebuilding = self.rebuilding.as_ref().filter(|_| self.running.is_none())?;
         rebuilding.is_news().then(|| {
             self.session.look_for_plugins();
             // What a form begins with that is filled in anew.
-            [self.used(), Fact::Plugins(self.plugins())]
+            let mut facts = vec![self.used(), Fact::Plugins(self.plugins())];
+            let unusable = self.session.registry.unusable().next();
+            facts.extend(unusable.map(|why| Fact::Said(Notice { text: why.to_owned(), is_error: true })));
+            facts
         })
     }
 }

@@ -241,6 +241,7 @@ fn steer(state: &mut State, dx: f32, dy: f32, px: f32) -> Vec<Effect> {
 
 fn accept(state: &mut State) -> Vec<Effect> {
     match &mut state.mode {
+        Mode::Review if state.panel == Some(Panel::Prints) => go_to_print(state),
         Mode::Review => match state.opened() {
             Some(_) => queue::judge(state, None),
             None => edit::confirm(state),
@@ -272,6 +273,16 @@ fn accept(state: &mut State) -> Vec<Effect> {
         }
         Mode::Form(_) => run(state),
     }
+}
+
+/// Goes to the frame that the line looked at was printed in.
+fn go_to_print(state: &mut State) -> Vec<Effect> {
+    let line = state.prints.current().and_then(|i| state.prints.lines().get(i));
+    match line.and_then(|line| line.frame) {
+        Some(frame) => time::go(state, frame),
+        None => complain(state, "this line was printed in no frame: Enter goes to a line's frame".to_owned()),
+    }
+    Vec::new()
 }
 
 fn run(state: &mut State) -> Vec<Effect> {
@@ -397,7 +408,7 @@ fn turn_mouse(state: &mut State) -> Vec<Effect> {
 pub(super) fn open_form(state: &mut State, task: Task) {
     let plugin = match task {
         Task::Track => "tracker-anchored",
-        Task::Cluster => "clusterer-movement",
+        Task::Cluster => "clusterer-bod",
     };
     if !edit::is_writable(state) {
         return;

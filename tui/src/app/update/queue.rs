@@ -9,6 +9,7 @@ use honami_workbench::review::{Item, Rank};
 use serde::{Deserialize, Serialize};
 
 use super::{Action, Effect, Mode, State, complain, edit, say, time};
+use crate::app::panel::Panel;
 use crate::app::queue::{Opened, overlap};
 
 /// A verdict to be kept: the world adds who and when.
@@ -69,9 +70,11 @@ pub(super) fn open_rank(state: &mut State, rank: Rank) {
     }
 }
 
-/// What an action means: to accept on a doubtful track whose item is not open is to open that.
+/// What an action means: to accept on a doubtful track whose item is not open is to open that, but for the lines of the
+/// prints, to which it goes.
 pub(super) fn meant(state: &State, action: Action) -> Action {
-    let opens = action == Action::Accept && matches!(state.mode, Mode::Review);
+    let is_over_prints = state.panel == Some(Panel::Prints);
+    let opens = action == Action::Accept && matches!(state.mode, Mode::Review) && !is_over_prints;
     let is_closed = opens && state.opened().is_none() && state.current_item().is_some();
     if is_closed && state.read_only.is_none() { Action::WorstFrame } else { action }
 }

@@ -19,6 +19,7 @@ use ratatui::text::{Line, Span};
 use honami_model::track::TrackId;
 use honami_workbench::review::Rank;
 
+use super::lines::wrapped;
 use super::{fill, put, style};
 use crate::app::panel::Panel;
 use crate::app::state::State;
@@ -48,6 +49,10 @@ trait List {
     /// What stands above it: as much as leaves half of the panel to its rows.
     fn above(&self) -> Vec<Line<'static>> {
         Vec::new()
+    }
+    /// The text of the current row, where it is worth to be read to its end.
+    fn text(&self) -> Option<String> {
+        None
     }
     /// What its columns mean.
     fn heading(&self) -> String;
@@ -89,6 +94,20 @@ fn above(list: &dyn List, area: Rect) -> Vec<Line<'static>> {
     lines
 }
 
+/// The current row's text in rows, where the row has no room for it: at most as many as leave half of the panel to the list.
+fn below(list: &dyn List, area: Rect) -> Vec<String> {
+    let is_cut = |i: &usize| list.row(*i).width() + 1 > usize::from(area.width);
+    let text = list.current().filter(is_cut).and_then(|_| list.text());
+    let mut rows = text.map_or_else(Vec::new, |text| wrapped(&text, usize::from(area.width)));
+    rows.truncate(usize::from(area.height / 2));
+    rows
+}
+
+/// The part of the panel's area that has its words.
+fn inside(area: Rect) -> Rect {
+    if area.x > 0 { Rect { x: area.x + 1, width: area.width.saturating_sub(1), ..area } } else { area }
+}
+
 /// Rows of a list that begins under so many, and the first of them that is seen.
 fn window(list: &dyn List, area: Rect, top: usize) -> (usize, usize) {
     let n_rows = usize::from(area.height).saturating_sub(top);
@@ -99,14 +118,10 @@ fn window(list: &dyn List, area: Rect, top: usize) -> (usize, usize) {
 pub(super) fn draw(state: &State, area: Rect, frame: &mut Frame) {
     let Some(panel) = state.panel.filter(|_| !area.is_empty()) else { return };
     fill(frame, area, ratatui::style::Style::new());
-    let inside = if area.x > 0 {
-        for y in area.top()..area.bottom() {
-            frame.cells.set_string(area.x, y, "│", style::DIM);
-        }
-        Rect { x: area.x + 1, width: area.width - 1, ..area }
-    } else {
-        area
-    };
+    let inside = inside(area);
+    for y in (area.top()..area.bottom()).filter(|_| inside != area) {
+        frame.cells.set_string(area.x, y, "│", style::DIM);
+    }
     put(frame, inside, 0, &title(panel, inside.width));
     let Some(list) = list(state, panel) else {
         let below = Rect { y: inside.y + 1, height: inside.height.saturating_sub(1), ..inside };
@@ -122,7 +137,12 @@ pub(super) fn draw(state: &State, area: Rect, frame: &mut Frame) {
         return;
     }
     put(frame, inside, y, &Line::styled(list.heading(), style::DIM));
-    let (n_rows, first) = window(&*list, inside, usize::from(y) + 1);
+    let whole = below(&*list, inside);
+    let foot = inside.height - whole.len() as u16;
+    for (y, row) in (foot..).zip(whole) {
+        put(frame, inside, y, &Line::raw(row));
+    }
+    let (n_rows, first) = window(&*list, Rect { height: foot, ..inside }, usize::from(y) + 1);
     for (y, i) in (y + 1..).zip(first..list.len().min(first + n_rows)) {
         let is_current = list.current() == Some(i);
         let mark = Span::raw(if is_current { "▸" } else { " " });
@@ -158,6 +178,8 @@ pub fn pick_at(state: &State, area: Rect, row: u16) -> Option<Pick> {
     let list = list?;
     let top = above(&*list, area).len() + 2;
     let at = usize::from(row.checked_sub(area.y)?).checked_sub(top)?;
+    let below = below(&*list, inside(area)).len() as u16;
+    let area = Rect { height: area.height.saturating_sub(below), ..area };
     let (n_rows, first) = window(&*list, area, top);
     let i = first + at;
     (at < n_rows && i < list.len()).then(|| list.pick(i)).flatten()

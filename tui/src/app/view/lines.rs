@@ -17,6 +17,7 @@ use crate::app::clock::rate_words;
 use crate::app::correcting::{Moving, Tool, nudge_px};
 use crate::app::keymap::shown;
 use crate::app::layout::{Lens, bar, column_of, frame_at};
+use crate::app::panel::Panel;
 use crate::app::recovery::Recovery;
 use crate::app::sketching::Sketching;
 use crate::app::state::{Job, Mode, Quiet, State};
@@ -481,6 +482,8 @@ fn is_useful(state: &State, action: Action) -> bool {
         return true;
     }
     match action {
+        // In the prints it goes to the line's frame.
+        Action::Accept if state.panel == Some(Panel::Prints) => false,
         Action::Accept => state.opened().is_some() && state.read_only.is_none(),
         Action::NextItem => state.versus.is_some() || !state.review.queue.is_empty(),
         Action::VersusFlick => state.versus.is_some(),

@@ -4,12 +4,16 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum};
 
+use super::WithPlugin;
+
 /// Modes of a plant, and how it moves in the wind.
 #[derive(Args, Debug)]
 #[command(after_help = honami_workbench::plant::weather::help())]
 pub(in crate::cli) struct Simulate {
     #[command(flatten)]
     pub(in crate::cli) plant: Plant,
+    #[command(flatten)]
+    pub(in crate::cli) plugin: WithPlugin,
     /// What blows: a name with values, such as steady:speed=5,towards=90, or a table that an anemometer has recorded.
     #[arg(long, value_name = "WIND", default_value = "still")]
     pub(in crate::cli) wind: String,
@@ -43,17 +47,27 @@ pub(in crate::cli) struct Simulate {
     /// A forest of so many copies, each at its place in the wind.
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     pub(in crate::cli) forest: Option<u32>,
-    /// Ends of branches of the first copy that are followed.
+    /// Ends of branches of the first copy that are followed, all over it, the highest first.
     #[arg(long, value_name = "N", default_value_t = 12)]
     pub(in crate::cli) sensors: u32,
-    /// Write where they are, metres: sensor,node,frame,time_s,x,y,z.
+    /// Follow this node instead, by its number in what --beams writes; give it once for each.
+    #[arg(long = "sensor", value_name = "NODE", conflicts_with = "sensors")]
+    pub(in crate::cli) nodes: Vec<u32>,
+    /// Write where they are, metres from the foot of the plant, z up: sensor,node,frame,time_s,x,y,z.
     #[arg(long, value_name = "FILE.csv")]
     pub(in crate::cli) out: Option<PathBuf>,
+    /// Write where all nodes of all copies are in every frame, as a point cache (PC2).
+    #[arg(long, value_name = "FILE.pc2")]
+    pub(in crate::cli) cache: Option<PathBuf>,
+    /// Write the plant with its motion, and all copies, for viewers, engines and modellers (glTF 2.0): by their
+    /// modes, which no other simulator need have.
+    #[arg(long, value_name = "FILE.glb", conflicts_with_all = ["with", "set"])]
+    pub(in crate::cli) glb: Option<PathBuf>,
     /// Write the beams that the plant was made into, metres: node,parent,x,y,z,radius.
     #[arg(long, value_name = "FILE.csv")]
     pub(in crate::cli) beams: Option<PathBuf>,
     /// Threads (default: as many as there are cores).
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = threads)]
     pub(in crate::cli) threads: Option<usize>,
     /// Of where copies stand.
     #[arg(long, value_name = "S", default_value_t = 1)]
@@ -147,7 +161,7 @@ pub(in crate::cli) struct BenchForest {
     #[arg(long, value_name = "S", default_value_t = 0.3)]
     pub(in crate::cli) seconds: f64,
     /// Threads (default: as many as there are cores).
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = threads)]
     pub(in crate::cli) threads: Option<usize>,
     /// Only cells of so many copies, nodes and modes, such as 1000x1000x25; give it once for each.
     #[arg(long = "cell", value_name = "KxNxM")]
@@ -169,4 +183,10 @@ impl std::str::FromStr for Cell {
             }
         }
     }
+}
+
+/// Threads of work that all of them share.
+fn threads(text: &str) -> Result<usize, String> {
+    let threads = text.parse().ok().filter(|n| (1..=1024).contains(n));
+    threads.ok_or_else(|| format!("wanted 1 to 1024 threads, got {text}"))
 }

@@ -48,6 +48,21 @@ fn wrong(line: usize, what: impl Into<String>) -> PlantFileError {
     PlantFileError::Line { line, what: what.into() }
 }
 
+/// A part in a column of numbers would be lost without a word.
+fn not_beyond(line: usize, cells: &[&str], n_axes: usize) -> Result<(), PlantFileError> {
+    let is_part = |cell: &&&str| {
+        let class = cell.trim_start_matches(['/', '<', '+', '^']);
+        class.len() < cell.len() && class.starts_with(|c: char| c.is_ascii_alphabetic())
+    };
+    match cells.iter().find(is_part) {
+        Some(part) => Err(wrong(
+            line,
+            format!("{part:?} stands beyond the {n_axes} columns that the header has for parts"),
+        )),
+        None => Ok(()),
+    }
+}
+
 impl Graph {
     pub(super) fn parse(text: &str) -> Result<Self, PlantFileError> {
         let mut lines = text.lines().enumerate().map(|(k, line)| (k + 1, line));
@@ -62,6 +77,7 @@ impl Graph {
             let line = line.split('#').next().unwrap_or_default();
             let cells: Vec<&str> = line.split('\t').map(str::trim).collect();
             let Some(axis) = cells.iter().take(columns.n_axes).position(|cell| !cell.is_empty()) else {
+                not_beyond(number, &cells, columns.n_axes)?;
                 continue;
             };
             let (word, from) = match cells[axis].strip_prefix('^') {

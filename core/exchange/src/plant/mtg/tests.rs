@@ -67,8 +67,12 @@ fn what_is_no_plant_is_named_with_its_line() {
     let (nodes, notes) = tree(&orphan, &Options::default()).unwrap();
     assert_eq!(nodes, [(None, 10.0), (Some(0), 20.0)]);
     assert_eq!(notes, ["1 more tree of 1 node left out: on nothing that the largest stands on"]);
-    let cases: [(&[&str], &str); 8] = [
+    let cases: [(&[&str], &str); 9] = [
         (&["/P1", "\t\t+S1\t0\t0\t1\t1"], "line 20: \"+S1\" stands under nothing"),
+        (
+            &["/P1", "\t/S1\t\t0\t0\t1\t1", "\t\t\t\t+S9\t0"],
+            "line 21: \"+S9\" stands beyond the 3 columns that the header has for parts",
+        ),
         (&["/P1", "\tS1"], "line 20: \"S1\" is no word such as /S1, <S2 or +A1"),
         (&["/P1", "\t/X1"], "line 20: class \"X\" is not declared"),
         (&["/P1", "\t/S5<<S2"], "line 20: <<S2 is no series from S6 on"),

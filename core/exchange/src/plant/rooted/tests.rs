@@ -30,8 +30,8 @@ fn orphans_and_further_roots_are_left_out_and_told() {
     assert_eq!(
         notes,
         [
-            "1 nodes name a parent that there is not: each is a root of its own",
-            "2 more roots: of their trees 2 nodes were left out, the largest is kept"
+            "nodes whose parent is not there: 1, each is a root of its own; the first, in line 5: node 5 stands on node 99, which is not there",
+            "further roots: 2; nodes of their trees that were left out: 2; the largest tree is kept"
         ]
     );
 }
@@ -61,10 +61,14 @@ fn radii_that_were_not_measured_are_guessed_and_told() {
 
 #[test]
 fn circles_and_second_numbers_are_errors_with_their_line() {
-    let cases: [(&[Raw], &str); 3] = [
+    let cases: [(&[Raw], &str); 4] = [
         (
             &[raw(1, None, 0.0, 0.1), raw(2, Some(4), 1.0, 0.1), raw(4, Some(2), 2.0, 0.1)],
             "line 2: node 2 stands on itself, through its parents",
+        ),
+        (
+            &[raw(1, None, 0.0, 0.1), raw(2, Some(7), 1.0, 0.1)],
+            "line 2: node 2 stands on node 7, which is not there",
         ),
         (&[raw(1, Some(1), 0.0, 0.1)], "line 1: node 1 stands on itself, through its parents"),
         (&[raw(1, None, 0.0, 0.1), raw(1, Some(1), 1.0, 0.1)], "line 1: a second node 1"),

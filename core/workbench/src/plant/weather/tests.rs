@@ -30,9 +30,9 @@ fn what_is_no_wind_is_told_what_there_is() {
         ("breeze", "\"breeze\" is no wind and no file: there are still, steady, calm,"),
         ("steady:sped=3", "steady has no \"sped\": it takes speed, towards"),
         ("still:speed=3", "still has no \"speed\": it takes nothing"),
-        ("steady:speed=NaN", "speed of steady is a number, not \"NaN\""),
-        ("steady:speed", "speed of steady is a number, not \"\""),
-        ("noise:cell=0", "cell of noise is a number above 0, not \"0\""),
+        ("steady:speed=NaN", "speed of steady is a number from -1000000 to 1000000, not \"NaN\""),
+        ("steady:speed", "speed of steady is a number from -1000000 to 1000000, not \"\""),
+        ("noise:cell=0", "cell of noise is a number from 0.000001 to 1000000, not \"0\""),
         ("gusts:speed=0", "gusts is carried by its mean: speed is a number above 0, not 0"),
     ];
     for (typed, wanted) in cases {

@@ -30,6 +30,10 @@ impl List for PrintList<'_> {
         self.0.prints.current()
     }
 
+    fn text(&self) -> Option<String> {
+        Some(self.0.prints.lines().get(self.current()?)?.text.clone())
+    }
+
     fn row(&self, i: usize) -> Line<'static> {
         let Some(line) = self.0.prints.lines().get(i) else { return Line::default() };
         let (word, of_level) = match line.level {

@@ -18,6 +18,9 @@ fn what_plugins_print() {
     // A line is looked at while many others come.
     let many = |state: &mut State| (0..9).for_each(|_| fixture::prints(state));
     check("prints_before_80x24", (80, 24), "P o 2 0 k", many);
+    // Nothing becomes a key-frame by this.
+    check("prints_gone_to_80x24", (80, 24), "P o 2 k Enter", fixture::prints);
+    check("prints_gone_nowhere_80x24", (80, 24), "P o 5 k Enter", fixture::prints);
 }
 
 /// A run in frame 40 whose plugin has been silent for so long.

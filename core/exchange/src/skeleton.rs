@@ -1,0 +1,80 @@
+//! Skeletons for other programs, out: their motion as BVH and as a table of angles, their shape at rest as SWC, their
+//! leaves as a table.
+
+mod angles;
+mod bvh;
+mod leaf_table;
+mod swc;
+#[cfg(test)]
+mod tests;
+
+pub use angles::AngleRow;
+pub use leaf_table::LeafRow;
+
+use std::io::Write;
+use std::path::Path;
+
+use honami_model::skeleton::Skeleton;
+
+use crate::atomic::AtomicFile;
+use crate::table::{TableError, Writer};
+
+/// Kinds of files that a skeleton can be written as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SkeletonFormat {
+    /// Motion capture (`.bvh`): a joint a bone that turns and keeps its length, degrees, pixels, y up.
+    Bvh,
+    /// A table of joints (`.csv`), a row a joint and frame: [`AngleRow`].
+    Angles,
+    /// The shape at rest (`.swc`), pixels, z up, the root in the origin; radii are 0: not measured.
+    Swc,
+}
+
+impl SkeletonFormat {
+    /// The format whose files end so.
+    #[must_use]
+    pub fn of(path: &Path) -> Option<Self> {
+        let ending = path.extension()?.to_str()?.to_ascii_lowercase();
+        [("bvh", Self::Bvh), ("csv", Self::Angles), ("swc", Self::Swc)]
+            .into_iter()
+            .find(|(known, _)| *known == ending)
+            .map(|(_, format)| format)
+    }
+}
+
+/// Writes a skeleton, whole or not at all.
+///
+/// # Errors
+/// [`TableError::File`] when the disk refuses, [`TableError::Precious`] when something stands there.
+pub fn write(path: &Path, format: SkeletonFormat, skeleton: &Skeleton) -> Result<(), TableError> {
+    let text = match format {
+        SkeletonFormat::Bvh => bvh::text(skeleton),
+        SkeletonFormat::Swc => swc::text(skeleton),
+        SkeletonFormat::Angles => {
+            let mut table = Writer::create(path)?;
+            for row in angles::rows(skeleton) {
+                table.write(&row)?;
+            }
+            return table.finish();
+        }
+    };
+    let mut file = AtomicFile::create(path)?;
+    let full = |source| TableError::File { path: path.into(), source };
+    file.write_all(text.as_bytes()).map_err(full)?;
+    file.finish()
+}
+
+/// Writes where leaves are in every frame; returns how many rows.
+///
+/// # Errors
+/// As [`write()`].
+pub fn write_leaves(path: &Path, skeleton: &Skeleton) -> Result<usize, TableError> {
+    let mut table = Writer::create(path)?;
+    let mut n = 0;
+    for row in leaf_table::rows(skeleton) {
+        table.write(&row)?;
+        n += 1;
+    }
+    table.finish()?;
+    Ok(n)
+}

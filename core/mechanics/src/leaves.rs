@@ -1,0 +1,48 @@
+//! What hangs on the ends of branches.
+
+#[cfg(test)]
+mod tests;
+
+use crate::beams::Beams;
+use crate::wind_basis::Drag;
+use honami_model::plant::Plant;
+
+/// All leaves of a plant, shared alike by the ends of its branches.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Leaves {
+    /// What they weigh, kilograms.
+    pub mass: f64,
+    /// Their area times their drag coefficient, square metres.
+    pub drag: f64,
+}
+
+/// Leaves that nothing weighs less than.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("leaves weigh 0 kg or more and have a drag area of 0 m2 or more, not {mass} kg and {drag} m2")]
+pub struct LeavesError {
+    mass: f64,
+    drag: f64,
+}
+
+impl Leaves {
+    /// Hangs them on the beams that a plant was made into; how hard air presses on both.
+    ///
+    /// # Errors
+    /// [`LeavesError`].
+    pub fn hang(&self, beams: &mut Beams, plant: &Plant) -> Result<Drag, LeavesError> {
+        let Self { mass, drag } = *self;
+        if ![mass, drag].iter().all(|v| v.is_finite() && *v >= 0.0) {
+            return Err(LeavesError { mass, drag });
+        }
+        let mut is_end = vec![true; plant.nodes().len()];
+        for parent in plant.nodes().iter().filter_map(|node| node.parent) {
+            is_end[parent as usize] = false;
+        }
+        let ends: Vec<usize> = (0..is_end.len()).filter(|row| is_end[*row]).collect();
+        let share = 1.0 / ends.len().max(1) as f64;
+        beams.load(ends.iter().map(|row| (*row, mass * share)));
+        let of_end = |row: &usize| (beams.of_plant()[*row] as usize, drag * share);
+        let leaves = if drag > 0.0 { ends.iter().map(of_end).collect() } else { Vec::new() };
+        Ok(Drag { leaves, ..Drag::default() })
+    }
+}

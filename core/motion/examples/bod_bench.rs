@@ -1,0 +1,63 @@
+//! Times what groups 2,000 tracks by their components, over 300 and 500 frames; prints a JSON line each.
+
+use std::time::Instant;
+
+use honami_motion::{Bod, Criterion, Positions, Table, likeness, likenesses, linkage};
+use rand::{RngExt, SeedableRng};
+
+const N_TRACKS: usize = 2000;
+
+/// Tracks of 40 branches that sway each at its own frequency, with a little noise; one in ten starts late if there are gaps.
+fn branches(n_frames: usize, has_gaps: bool) -> Positions {
+    let mut rng = rand_pcg::Pcg64Mcg::seed_from_u64(1);
+    let mut positions = Positions::new(N_TRACKS, n_frames);
+    for track in 0..N_TRACKS {
+        let branch = (track % 40) as f32;
+        let rest = [rng.random_range(0.0..80.0) + 110.0 * (branch % 8.0), rng.random_range(0.0..700.0)];
+        let swing = rng.random_range(4.0..12.0_f32);
+        for frame in 0..n_frames {
+            let phase = frame as f32 / 25.0 * (0.5 + 0.05 * branch) * std::f32::consts::TAU + branch;
+            let shake: [f32; 2] = [rng.random_range(-0.2..0.2), rng.random_range(-0.2..0.2)];
+            if !(has_gaps && track % 10 == 0 && frame < 100) {
+                let at = [
+                    rest[0] + swing * phase.sin() + shake[0],
+                    rest[1] + swing * 0.3 * phase.cos() + shake[1],
+                ];
+                positions.set(track, frame, at);
+            }
+        }
+    }
+    positions
+}
+
+#[expect(clippy::print_stdout, reason = "the result of a benchmark")]
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    for (n_frames, has_gaps) in [(300, false), (500, false), (300, true)] {
+        let positions = branches(n_frames, has_gaps);
+        let [mut table_ms, mut bod_ms, mut all_ms, mut ward_ms] = [f64::INFINITY; 4];
+        let mut n_above = 0;
+        for _ in 0..3 {
+            let start = Instant::now();
+            let lap =
+                |least: &mut f64, start: Instant| *least = least.min(1e3 * start.elapsed().as_secs_f64());
+            let table = Table::new(&positions, &mut |_| true)?;
+            lap(&mut table_ms, start);
+            let start = Instant::now();
+            n_above = Bod::new(&table).n_above();
+            lap(&mut bod_ms, start);
+            let start = Instant::now();
+            let found = likenesses(&positions, &likeness::Options::default(), &mut |_| true)?;
+            lap(&mut all_ms, start);
+            let start = Instant::now();
+            linkage(found.condensed, N_TRACKS, Criterion::Ward)?;
+            lap(&mut ward_ms, start);
+        }
+        let line = serde_json::json!({
+            "n_tracks": N_TRACKS, "n_frames": n_frames, "gaps": has_gaps, "threads": rayon::current_num_threads(),
+            "components": n_above, "table_ms": table_ms, "decomposition_ms": bod_ms,
+            "distances_ms": all_ms, "ward_ms": ward_ms,
+        });
+        println!("{line}");
+    }
+    Ok(())
+}

@@ -1,0 +1,278 @@
+//! Decompositions known by hand, noise whose law is known, and tables that are no tables.
+
+use rand::{RngExt, SeedableRng};
+
+use super::*;
+
+type At = [f64; 2];
+
+/// Tracks from what places them: `None` where they are not seen.
+fn tracks(n_tracks: usize, n_frames: usize, at: impl Fn(usize, usize) -> Option<At>) -> Positions {
+    let mut positions = Positions::new(n_tracks, n_frames);
+    for track in 0..n_tracks {
+        for frame in 0..n_frames {
+            if let Some(at) = at(track, frame) {
+                positions.set(track, frame, at.map(|v| v as f32));
+            }
+        }
+    }
+    positions
+}
+
+fn table(positions: &Positions) -> Table {
+    Table::new(positions, &mut |_| true).unwrap()
+}
+
+fn numbers(n: usize, seed: u64) -> Vec<f64> {
+    let mut rng = rand_pcg::Pcg64Mcg::seed_from_u64(seed);
+    // Twelve of these have the variance of a normal number.
+    (0..n).map(|_| (0..12).map(|_| rng.random_range(-0.5..0.5)).sum()).collect()
+}
+
+/// Two swings that every track joins with amounts of its own, and noise, pixels.
+fn two_swings(n_tracks: usize, n_frames: usize, noise_px: f64, seed: u64) -> impl Fn(usize, usize) -> At {
+    let amounts = numbers(4 * n_tracks, seed);
+    let noise = numbers(2 * n_tracks * n_frames, seed + 1);
+    move |track, frame| {
+        let swing = [(0.31 * frame as f64).sin(), (0.83 * frame as f64 + 1.0).sin()];
+        [0, 1].map(|axis| {
+            let moved: f64 = (0..2).map(|k| 3.0 * amounts[4 * track + 2 * axis + k] * swing[k]).sum();
+            let place = 100.0 + 7.0 * ((track * (axis + 3)) % 41) as f64;
+            place + moved + noise_px * noise[2 * (track * n_frames + frame) + axis]
+        })
+    }
+}
+
+fn rms(a: &Positions, of: impl Fn(usize, usize) -> At) -> f64 {
+    let (mut sum, mut n) = (0.0, 0);
+    for track in 0..a.n_tracks() {
+        for frame in 0..a.n_frames() {
+            if let Some(at) = a.get(track, frame) {
+                let wanted = of(track, frame);
+                sum += (0..2).map(|k| (f64::from(at[k]) - wanted[k]).powi(2)).sum::<f64>();
+                n += 2;
+            }
+        }
+    }
+    (sum / f64::from(n)).sqrt()
+}
+
+/// Y = 12 u1 v1^T + 4 u2 v2^T with u1 = (1, 1, -1, -1) / 2, u2 = (1, -1, -1, 1) / 2, v1 = (1, 0, 1, 0) / sqrt 2 … worked
+/// out by hand: track 0 goes right and down with the first, track 1 right with the second.
+#[test]
+fn a_table_known_by_hand() {
+    let (slow, quick) = ([3.0, 3.0, -3.0, -3.0], [2.0, -2.0, -2.0, 2.0]);
+    let positions = tracks(2, 4, |track, frame| {
+        Some(if track == 0 { [10.0 + slow[frame], 20.0 + slow[frame]] } else { [30.0 + quick[frame], 40.0] })
+    });
+    let table = table(&positions);
+    let places = [table.place(0), table.place(1)];
+    assert_eq!(places, [Some([10.0, 20.0]), Some([30.0, 40.0])]);
+    let bod = Bod::new(&table);
+    let wanted = [72.0_f64.sqrt(), 4.0, 0.0, 0.0];
+    for (got, wanted) in bod.singular.iter().zip(wanted) {
+        assert!((got - wanted).abs() < 1e-12, "{:?}", bod.singular);
+    }
+    assert_eq!(bod.len(), 2);
+    let root = 0.5_f64.sqrt();
+    let close = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-12);
+    assert!(close(bod.chronos(0), &[0.5, 0.5, -0.5, -0.5]), "{:?}", bod.chronos(0));
+    assert!(close(bod.chronos(1), &[0.5, -0.5, -0.5, 0.5]), "{:?}", bod.chronos(1));
+    assert!(close(bod.topos(0)[0], &[root, 0.0]) && close(bod.topos(0)[1], &[root, 0.0]));
+    assert!(close(bod.topos(1)[0], &[0.0, 1.0]) && close(bod.topos(1)[1], &[0.0, 0.0]));
+}
+
+/// Against nalgebra's own decomposition of the table, more frames than coordinates and fewer.
+#[test]
+fn the_gram_matrix_gives_what_a_decomposition_of_the_table_gives() {
+    for (n_tracks, n_frames) in [(9, 50), (40, 31), (8, 16), (3, 2)] {
+        let at = two_swings(n_tracks, n_frames, 0.7, 5);
+        let table = table(&tracks(n_tracks, n_frames, |track, frame| Some(at(track, frame))));
+        let bod = Bod::new(&table);
+        let whole = DMatrix::from_column_slice(n_frames, 2 * n_tracks, table.series());
+        let svd = whole.svd(true, true);
+        let (u, v) = (svd.u.unwrap(), svd.v_t.unwrap());
+        for (k, s) in bod.singular.iter().enumerate() {
+            assert!((s - svd.singular_values[k]).abs() < 1e-6 * bod.singular[0], "{k}: {s}");
+        }
+        for k in 0..bod.len() {
+            let time: f64 = bod.chronos(k).iter().zip(u.column(k).iter()).map(|(a, b)| a * b).sum();
+            let place: f64 = bod.topos(k).concat().iter().zip(v.row(k).iter()).map(|(a, b)| a * b).sum();
+            assert!((time * place - 1.0).abs() < 1e-6, "component {k}: {time} {place}");
+        }
+    }
+}
+
+/// At beta = 1 the median angle solves a - sin a = pi / 2 and x = 2 + 2 cos a; the others follow from the thresholds
+/// omega that Gavish and Donoho print (2014, table IV), omega = lambda / sqrt(mu).
+#[test]
+fn the_median_of_marchenko_and_pastur_is_that_of_the_literature() {
+    let mut angle = 2.0_f64;
+    for _ in 0..50 {
+        angle -= (angle - angle.sin() - std::f64::consts::FRAC_PI_2) / (1.0 - angle.cos());
+    }
+    assert!((noise::median_square(1.0) - (2.0 + 2.0 * angle.cos())).abs() < 1e-6);
+    for (beta, omega) in [(0.05, 1.5194), (0.1, 1.6089), (0.25, 1.8371), (0.5, 2.1711), (1.0, 2.8582)] {
+        let lambda = (2.0 * (beta + 1.0)
+            + 8.0 * beta / (beta + 1.0 + f64::sqrt(beta * beta + 14.0 * beta + 1.0)))
+        .sqrt();
+        let got = lambda / noise::median_square(beta).sqrt();
+        assert!((got - omega).abs() < 4e-4, "{beta}: {got}, printed {omega}");
+    }
+    // Of a table that is all length, every value is the same.
+    assert!((noise::median_square(1e-9) - 1.0).abs() < 1e-4);
+}
+
+#[test]
+fn noise_alone_stays_below_its_edge() {
+    for (n_tracks, n_frames) in [(150, 100), (40, 200)] {
+        let noise = numbers(2 * n_tracks * n_frames, 3);
+        let at = |track: usize, frame: usize| {
+            let k = 2 * (track * n_frames + frame);
+            Some([2.0 * noise[k], 2.0 * noise[k + 1]])
+        };
+        let bod = Bod::new(&table(&tracks(n_tracks, n_frames, at)));
+        let wanted = 2.0 * ((n_frames as f64).sqrt() + (2.0 * n_tracks as f64).sqrt());
+        assert!((bod.edge / wanted - 1.0).abs() < 0.02, "{} of {wanted}", bod.edge);
+        // The largest of finitely many scatters about the edge.
+        assert!(bod.singular[0] < 1.02 * bod.edge, "{} {}", bod.singular[0], bod.edge);
+    }
+}
+
+#[test]
+fn motion_of_two_components_is_found_exactly_and_through_noise() {
+    let clean = two_swings(60, 120, 0.0, 9);
+    for (noise_px, within) in [(0.0, 2e-5), (0.5, 0.2)] {
+        let noisy = two_swings(60, 120, noise_px, 9);
+        let positions = tracks(60, 120, |track, frame| Some(noisy(track, frame)));
+        let bod = Bod::new(&table(&positions));
+        let (smooth, n) = denoised(&positions, 0, &mut |_| true).unwrap();
+        let off = rms(&smooth, &clean);
+        assert!(off < within, "{noise_px} px of noise: {off} px");
+        assert!(noise_px == 0.0 || (bod.n_above() == 2 && n == 4), "{} {n}", bod.n_above());
+    }
+}
+
+/// Whether a track is seen: some start late, some end early, some have holes.
+fn is_seen(track: usize, frame: usize) -> bool {
+    match track % 4 {
+        0 => true,
+        1 => frame >= 40,
+        2 => frame < 90,
+        _ => !(20..50).contains(&frame) && frame % 7 != 3,
+    }
+}
+
+#[test]
+fn tracks_that_start_late_end_early_or_have_holes_are_filled_from_the_others() {
+    let clean = two_swings(60, 120, 0.0, 9);
+    for (noise_px, within) in [(0.0, 0.01), (0.3, 0.2)] {
+        let noisy = two_swings(60, 120, noise_px, 9);
+        let seen = tracks(60, 120, |track, frame| is_seen(track, frame).then(|| noisy(track, frame)));
+        let table = table(&seen);
+        assert!(table.n_filled() > 1000);
+        let mut filled = Positions::new(60, 120);
+        for track in 0..60 {
+            for frame in 0..120 {
+                let [x, y] = [track, 60 + track].map(|row| table.series()[row * 120 + frame]);
+                let [mx, my] = table.place(track).unwrap();
+                if !is_seen(track, frame) {
+                    filled.set(track, frame, [(mx + x) as f32, (my + y) as f32]);
+                }
+            }
+        }
+        let off = rms(&filled, &clean);
+        assert!(off < within, "{noise_px} px of noise: gaps are {off} px off");
+        let (smooth, _) = denoised(&seen, 0, &mut |_| true).unwrap();
+        assert!((0..60).all(|track| (0..120).all(|t| smooth.get(track, t).is_some() == is_seen(track, t))));
+    }
+}
+
+#[test]
+fn frames_in_which_one_track_is_alone_are_left_out() {
+    let at = two_swings(4, 30, 0.0, 2);
+    let alone = |track: usize, frame: usize| frame < 20 || (track == 2 && frame != 25);
+    let positions = tracks(4, 30, |track, frame| alone(track, frame).then(|| at(track, frame)));
+    assert_eq!(table(&positions).frames(), (0..20).collect::<Vec<_>>());
+    let (smooth, _) = denoised(&positions, 0, &mut |_| true).unwrap();
+    assert_eq!(smooth.get(2, 22), positions.get(2, 22), "it stays as it is");
+    assert_eq!(smooth.get(2, 25), None);
+}
+
+#[test]
+fn what_cannot_be_decomposed_is_refused_by_name_and_what_stands_still_has_no_components() {
+    let still = |track: usize, _| Some([track as f64 + 0.1, 0.3]);
+    let refusals = [
+        (tracks(0, 9, still), "grouping needs at least 2 tracks, came 0"),
+        (tracks(1, 9, still), "grouping needs at least 2 tracks, came 1"),
+        (tracks(3, 1, still), "movement needs at least 2 frames, came 1"),
+        (tracks(3, 9, |track, frame| (frame / 3 == track).then_some([1.0, 2.0])), "no two tracks are seen"),
+        (tracks(3, 9, |_, _| Some([f64::NAN, 2.0])), "no two tracks are seen"),
+    ];
+    for (positions, wanted) in refusals {
+        let error = Table::new(&positions, &mut |_| true).unwrap_err().to_string();
+        assert!(error.starts_with(wanted), "{error}");
+    }
+    let stopped = Table::new(&tracks(3, 9, still), &mut |_| false);
+    assert_eq!(stopped, Err(MotionError::Stopped));
+    let bod = Bod::new(&table(&tracks(5, 40, still)));
+    assert!(bod.is_empty() && bod.n_above() == 0 && bod.singular.iter().all(|s| *s == 0.0));
+    let positions = tracks(5, 40, still);
+    assert_eq!(denoised(&positions, 0, &mut |_| true).unwrap(), (positions, 0));
+    // The same for all: one component. Two frames: one at most.
+    let swing = |_, frame: usize| Some([(0.3 * frame as f64).sin(), 0.0]);
+    assert_eq!(Bod::new(&table(&tracks(6, 50, swing))).len(), 1);
+    let at = two_swings(5, 2, 0.0, 3);
+    assert_eq!(Bod::new(&table(&tracks(5, 2, |track, frame| Some(at(track, frame))))).len(), 1);
+}
+
+#[test]
+fn flutter_is_what_is_left_and_whitening_makes_it_flat() {
+    let (n_tracks, n_frames) = (80, 256);
+    let noise = numbers(4 * n_tracks, 8);
+    // Every leaf at frequencies of its own, 30 to 60 cycles of the clip.
+    let flutter = |track: usize, frame: usize, axis: usize| {
+        let wave = |k: usize| {
+            let phase = 7.0 * noise[4 * track + k];
+            let cycles = 30.0 + ((track * 7 + k * 11) % 31) as f64;
+            (std::f64::consts::TAU * cycles * frame as f64 / n_frames as f64 + phase + axis as f64).sin()
+        };
+        wave(0) + wave(1)
+    };
+    let at = two_swings(n_tracks, n_frames, 0.1, 4);
+    let positions = tracks(n_tracks, n_frames, |track, frame| {
+        let [x, y] = at(track, frame);
+        Some([x + flutter(track, frame, 0), y + flutter(track, frame, 1)])
+    });
+    let table = table(&positions);
+    let bod = Bod::new(&table);
+    let left = residual(&table, &bod).unwrap();
+    let mean =
+        |range: std::ops::Range<usize>| left.power[range.clone()].iter().sum::<f64>() / range.len() as f64;
+    assert!(mean(30..60) > 20.0 * mean(80..120), "{} {}", mean(30..60), mean(80..120));
+    let white = whitened(&table, &left);
+    let after = residual(&white, &Bod::new(&white)).unwrap();
+    assert!(left.flatness() < 0.5 && after.flatness() > 0.8, "{} {}", left.flatness(), after.flatness());
+    // White noise is white already, and few tracks tell nothing.
+    let noise = numbers(2 * n_tracks * n_frames, 6);
+    let at = |track: usize, frame: usize| {
+        let k = 2 * (track * n_frames + frame);
+        Some([noise[k], noise[k + 1]])
+    };
+    let table = self::table(&tracks(n_tracks, n_frames, at));
+    assert!(residual(&table, &Bod::new(&table)).unwrap().flatness() > 0.98);
+    let few = self::table(&tracks(15, n_frames, at));
+    assert_eq!(residual(&few, &Bod::new(&few)), None);
+}
+
+#[test]
+fn the_same_bits_for_any_number_of_threads() {
+    let at = two_swings(70, 90, 0.3, 1);
+    let positions = tracks(70, 90, |track, frame| is_seen(track, frame).then(|| at(track, frame)));
+    let of = |n: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap();
+        pool.install(|| (Bod::new(&table(&positions)), denoised(&positions, 0, &mut |_| true).unwrap()))
+    };
+    let one = of(1);
+    assert!([2, 3, 5].iter().all(|&n| of(n) == one));
+}

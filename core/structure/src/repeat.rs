@@ -1,0 +1,84 @@
+//! Loops: the part of a motion that comes back nearest to how it began, with what is left of the jump spread over it.
+
+#[cfg(test)]
+mod tests;
+
+use std::ops::Range;
+
+use honami_model::clip::FrameTimes;
+use honami_model::skeleton::{Leaf, Skeleton};
+
+use crate::StructureError;
+
+/// Frames that a clip has at least.
+const MIN_FRAMES: u32 = 4;
+/// A loop is at least this share of the clip.
+const MIN_SHARE: f64 = 0.5;
+
+/// The skeleton over the frames of its best loop, and which those are: after the last comes the first, without a jump.
+///
+/// Best is where directions of bones, weighted by length, and their changes from frame to frame are most alike at both
+/// ends; no shorter than half the clip.
+///
+/// # Errors
+/// [`StructureError::TooBrief`] for less than 4 frames.
+pub fn repeat(skeleton: &Skeleton) -> Result<(Skeleton, Range<u32>), StructureError> {
+    let n_frames = skeleton.times().len();
+    if n_frames < MIN_FRAMES {
+        return Err(StructureError::TooBrief { came: n_frames, wanted: MIN_FRAMES });
+    }
+    let least = ((f64::from(n_frames) * MIN_SHARE).ceil() as u32).max(2);
+    let ends = (0..n_frames).flat_map(|first| (first + least..n_frames).map(move |end| first..end));
+    let jumps = ends.map(|frames| (jump(skeleton, &frames), frames));
+    let (_, frames) = jumps.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, 0..n_frames - 1));
+    let (first, last) = (skeleton.directions(frames.start), skeleton.directions(frames.end));
+    let directions = frames.clone().flat_map(|frame| {
+        let share = share(&frames, frame);
+        let corrected = move |((now, first), last): ((&[f64; 3], &[f64; 3]), &[f64; 3])| {
+            let moved: [f64; 3] = std::array::from_fn(|axis| now[axis] - share * (last[axis] - first[axis]));
+            let length = moved.iter().map(|v| v * v).sum::<f64>().sqrt();
+            // Only a bone that turns round within the loop has no direction on its way.
+            if length > 1e-6 { moved.map(|v| v / length) } else { *now }
+        };
+        skeleton.directions(frame).iter().zip(first).zip(last).map(corrected)
+    });
+    let times = skeleton.times().as_slice();
+    let times = frames.clone().map(|frame| times[frame as usize] - times[frames.start as usize]).collect();
+    let leaves = skeleton.leaves().iter().map(|leaf| carried(leaf, &frames)).collect();
+    let joints = skeleton.joints().to_vec();
+    let repeated = Skeleton::new(skeleton.root(), joints, directions.collect(), FrameTimes::new(times)?)?
+        .with_leaves(leaves)?;
+    Ok((repeated, frames))
+}
+
+/// How much of the way from the first to the last pose is taken back in a frame.
+fn share(frames: &Range<u32>, frame: u32) -> f64 {
+    f64::from(frame - frames.start) / f64::from(frames.end - frames.start)
+}
+
+/// How far the pose at the end of a range of frames is from that at its beginning, and how differently both go on.
+fn jump(skeleton: &Skeleton, frames: &Range<u32>) -> f64 {
+    let at = |frame: u32| skeleton.directions(frame);
+    let (first, second) = (at(frames.start), at(frames.start + 1));
+    let (before, last) = (at(frames.end - 1), at(frames.end));
+    let far = |row: usize| {
+        (0..3)
+            .map(|axis| {
+                let apart = last[row][axis] - first[row][axis];
+                let bend = (last[row][axis] - before[row][axis]) - (second[row][axis] - first[row][axis]);
+                apart * apart + bend * bend
+            })
+            .sum::<f64>()
+    };
+    skeleton.joints().iter().enumerate().skip(1).map(|(row, joint)| joint.length * far(row)).sum()
+}
+
+/// A leaf over the loop, corrected as the bones are.
+fn carried(leaf: &Leaf, frames: &Range<u32>) -> Leaf {
+    let (first, last) = (leaf.offsets[frames.start as usize], leaf.offsets[frames.end as usize]);
+    let corrected = |frame: u32| {
+        let (now, share) = (leaf.offsets[frame as usize], share(frames, frame));
+        std::array::from_fn(|axis| now[axis] - share * (last[axis] - first[axis]))
+    };
+    Leaf { track: leaf.track, joint: leaf.joint, offsets: frames.clone().map(corrected).collect() }
+}

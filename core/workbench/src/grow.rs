@@ -1,0 +1,123 @@
+//! Growing: the branches behind the shown tracks, from the groups that the shown clustering is cut into.
+
+mod judge;
+
+use std::ops::Range;
+use std::path::Path as File;
+
+use honami_exchange::skeleton;
+pub use honami_exchange::skeleton::SkeletonFormat;
+use honami_model::skeleton::Skeleton;
+use honami_model::track::{Span, TrackId};
+use honami_store::Project;
+use honami_structure::diener::{self, Settings};
+use honami_structure::follow::Path;
+use honami_structure::repeat::repeat;
+use honami_structure::tree::tree;
+
+pub use self::judge::{Judged, judge};
+use crate::error::WorkbenchError;
+
+/// How to grow.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct GrowRequest {
+    /// Where the plant leaves the ground, pixels (right, down); else under the mean of all features, as low as the lowest.
+    pub root: Option<[f64; 2]>,
+    /// Groups to cut the hierarchy into; `None`: as it is cut.
+    pub groups: Option<u32>,
+    /// Stay in the plane of the picture.
+    pub is_flat: bool,
+    /// Only the frames of the best loop, without a jump.
+    pub is_loop: bool,
+}
+
+/// What has grown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Growth {
+    /// The skeleton, with a leaf for every track.
+    pub skeleton: Skeleton,
+    /// From the centre of its group to where each track usually is, pixels (right, down).
+    pub places: Vec<(TrackId, [f64; 2])>,
+    /// Of every fork, how much was left of the way from what bears it to the mean of what it bears.
+    pub alphas: Vec<f64>,
+    /// Forks that were one with what bears them.
+    pub n_collapsed: usize,
+    /// Groups.
+    pub n_groups: usize,
+    /// Frames of the clip that it moves through.
+    pub frames: Range<u32>,
+    /// What whoever uses it should know, a sentence each.
+    pub notes: Vec<String>,
+    /// Time it took.
+    pub seconds: f64,
+}
+
+/// Grows a skeleton; the project stays as it is.
+///
+/// # Errors
+/// [`WorkbenchError::NoGroups`], [`WorkbenchError::Groups`], [`WorkbenchError::Structure`], and what the project met.
+pub fn grow(project: &Project, request: &GrowRequest) -> Result<Growth, WorkbenchError> {
+    let shown = project.document().clustering().ok_or(WorkbenchError::NoGroups)?;
+    let clustering = project.clustering(shown.id)?;
+    let (dendrogram, n_tracks) = (&clustering.dendrogram, clustering.tracks.len());
+    let k = request.groups.unwrap_or(shown.k);
+    if k == 0 || k as usize > n_tracks.max(1) {
+        return Err(WorkbenchError::Groups { groups: k, n_tracks });
+    }
+    let times = &project.clip().clip.times;
+    let mut paths = Vec::with_capacity(n_tracks);
+    for &track in &clustering.tracks {
+        paths.push(path(track, project.shown(track)?.as_deref(), times.len()));
+    }
+    let mut notes = Vec::new();
+    if let Some(stale) = project.is_stale(shown.id)? {
+        notes.push(format!("the groups are {stale}"));
+    }
+    let begun = std::time::Instant::now();
+    let is_seen: Vec<bool> = paths.iter().map(Path::is_seen).collect();
+    let n_lost = is_seen.iter().filter(|is_seen| !**is_seen).count();
+    if n_lost > 0 {
+        notes.push(format!("{n_lost} of {n_tracks} tracks are seen in no frame now and are left out"));
+    }
+    let groups = tree(dendrogram, k, &is_seen);
+    let settings = Settings { root: request.root, is_flat: request.is_flat };
+    let grown = diener::grow(&paths, &groups, times, settings)?;
+    let (skeleton, frames) =
+        if request.is_loop { repeat(&grown.skeleton)? } else { (grown.skeleton, 0..times.len()) };
+    let places = paths.iter().zip(grown.places).filter_map(|(path, place)| Some((path.track, place?)));
+    Ok(Growth {
+        skeleton,
+        places: places.collect(),
+        alphas: grown.alphas,
+        n_collapsed: grown.n_collapsed,
+        n_groups: groups.iter().filter(|group| group.children.is_empty()).count(),
+        frames,
+        notes,
+        seconds: begun.elapsed().as_secs_f64(),
+    })
+}
+
+/// Where a track is seen.
+fn path(track: TrackId, span: Option<&Span>, n_frames: u32) -> Path {
+    let at = |frame: u32| {
+        let sample = span?.get(frame).filter(|sample| sample.status.is_seen())?;
+        Some([f64::from(sample.x), f64::from(sample.y)])
+    };
+    Path { track, at: (0..n_frames).map(at).collect() }
+}
+
+/// Writes a skeleton.
+///
+/// # Errors
+/// What the disk met.
+pub fn write(growth: &Growth, format: SkeletonFormat, out: &File) -> Result<(), WorkbenchError> {
+    Ok(skeleton::write(out, format, &growth.skeleton)?)
+}
+
+/// Writes where its leaves are; returns the number of rows.
+///
+/// # Errors
+/// What the disk met.
+pub fn write_leaves(growth: &Growth, out: &File) -> Result<usize, WorkbenchError> {
+    Ok(skeleton::write_leaves(out, &growth.skeleton)?)
+}

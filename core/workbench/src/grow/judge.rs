@@ -1,0 +1,116 @@
+//! A skeleton beside the truth of a generated clip: how far its tips are from where their groups truly are.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use honami_model::skeleton::seen;
+use honami_model::track::TrackId;
+use honami_store::Project;
+
+use super::Growth;
+use crate::compare::{Truth, check_truth, read_truth};
+use crate::error::WorkbenchError;
+
+/// A track follows the true point that is this near when it begins, pixels.
+const NEAR: f64 = 8.0;
+
+/// How far a skeleton is from the truth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Judged {
+    /// Groups with a track that follows a true point.
+    pub n_groups: usize,
+    /// Such tracks.
+    pub n_tracks: usize,
+    /// Median over groups and frames of the distance in the picture from the joint of a group to where its true points say
+    /// that it is, pixels.
+    pub median_px: f64,
+    /// The same of a skeleton that stands still, each joint where it is in the mean: how much there was to find.
+    pub still_px: f64,
+}
+
+/// Where the true point of a track is, less what lies between it and the centre of the track's group: the frame it begins
+/// with, and the places from there on.
+type Told = (u32, Vec<[f64; 2]>);
+
+/// Holds a skeleton against a table of true positions, as `synth` writes it.
+///
+/// # Errors
+/// [`WorkbenchError::NoTruth`] where no track begins near a true point, and what is wrong with the table.
+pub fn judge(growth: &Growth, project: &Project, truth: &Path) -> Result<Judged, WorkbenchError> {
+    let clip = &project.clip().clip;
+    let truth = read_truth(truth, clip.n_frames())?;
+    check_truth(&truth, clip, &growth.frames)?;
+    let mut told = BTreeMap::new();
+    for &(track, place) in &growth.places {
+        if let Some(of_track) = told_of(project, &truth, track, place)? {
+            told.insert(track, of_track);
+        }
+    }
+    let frames = (0..).zip(growth.frames.clone());
+    let poses: Vec<(u32, Vec<[f64; 2]>)> = frames
+        .map(|(row, frame)| {
+            let places = growth.skeleton.places(growth.skeleton.directions(row));
+            (frame, places.into_iter().map(seen).collect())
+        })
+        .collect();
+    let (mut moving, mut still, mut n_groups) = (Vec::new(), Vec::new(), 0);
+    for (row, joint) in growth.skeleton.joints().iter().enumerate() {
+        let of_joint: Vec<&Told> = joint.tracks.iter().filter_map(|track| told.get(track)).collect();
+        n_groups += usize::from(!of_joint.is_empty());
+        let Some(usual) = mean(poses.iter().map(|(_, at)| at[row])) else { continue };
+        for (frame, at) in &poses {
+            let now = of_joint
+                .iter()
+                .filter_map(|(first, at)| at.get(frame.checked_sub(*first)? as usize).copied());
+            if let Some(wanted) = mean(now) {
+                moving.push(apart(at[row], wanted));
+                still.push(apart(usual, wanted));
+            }
+        }
+    }
+    let (median_px, still_px) =
+        (median(moving).ok_or(WorkbenchError::NoTruth)?, median(still).ok_or(WorkbenchError::NoTruth)?);
+    Ok(Judged { n_groups, n_tracks: told.len(), median_px, still_px })
+}
+
+/// What the truth says of the centre of a track's group; `None` where no true point is near when the track begins.
+fn told_of(
+    project: &Project,
+    truth: &Truth,
+    track: TrackId,
+    place: [f64; 2],
+) -> Result<Option<Told>, WorkbenchError> {
+    let Some(span) = project.shown(track)? else { return Ok(None) };
+    let Some((frame, sample)) = span.frames().zip(&span.samples).find(|(_, sample)| sample.status.is_seen())
+    else {
+        return Ok(None);
+    };
+    let begins = [f64::from(sample.x), f64::from(sample.y)];
+    let there = truth.values().filter_map(|path| {
+        let (x, y, is_visible) = *path.positions.get(frame.checked_sub(path.first_frame)? as usize)?;
+        is_visible.then_some((apart([x, y], begins), [x, y], path))
+    });
+    let nearest = there.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(far, ..)| *far <= NEAR);
+    // The feature lies beside the point, and the centre beside the feature.
+    Ok(nearest.map(|(_, from, path)| {
+        let by = [begins[0] - from[0] - place[0], begins[1] - from[1] - place[1]];
+        (path.first_frame, path.positions.iter().map(|(x, y, _)| [x + by[0], y + by[1]]).collect())
+    }))
+}
+
+fn apart(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+fn mean(places: impl Iterator<Item = [f64; 2]>) -> Option<[f64; 2]> {
+    let (mut n, mut sum) = (0.0, [0.0; 2]);
+    for [x, y] in places {
+        (n, sum) = (n + 1.0, [sum[0] + x, sum[1] + y]);
+    }
+    (n > 0.0).then(|| sum.map(|v| v / n))
+}
+
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
+}

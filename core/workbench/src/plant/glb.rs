@@ -1,0 +1,139 @@
+//! A plant, or a forest of it, with its motion in one file of glTF.
+//!
+//! Its modes become morph targets: where nodes are is a sum of what modes do to them, one term for each mode and power of
+//! its arc tangent, and so the file has in every frame what the simulation has. Joints would have to be as many as nodes,
+//! more than engines take, and would turn where modes bend. A copy costs a weight a target and frame, not a mesh.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use honami_exchange::plant::{Body, Placed, Sizes, Target, write_glb};
+use honami_mechanics::wind::Wind;
+use honami_mechanics::{Direction, Forest, Stand, Stirring, Threads};
+
+use super::Vibrating;
+use super::grove::Grove;
+use super::sway::{Motion, free};
+use super::tubes::{SIDES, Tubes};
+use crate::error::WorkbenchError;
+use crate::progress::{Flow, Progress};
+
+/// What powers of the arc tangent are called.
+const POWERS: [&str; 3] = ["", ", squared", ", cubed"];
+
+/// What was written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Made {
+    /// Of the mesh.
+    pub n_vertices: usize,
+    /// Morph targets, so many for each mode.
+    pub n_targets: usize,
+    /// Of the file.
+    pub bytes: u64,
+}
+
+/// Moves a plant as [`sway`](super::sway::sway) does and writes it as a .glb.
+///
+/// # Errors
+/// What [`Forest`] refuses, more than readers of such files or this machine can hold, and what the disk says; nothing is
+/// left behind then.
+pub fn glb(
+    plant: &Vibrating,
+    wind: &dyn Wind,
+    motion: &Motion,
+    path: &Path,
+    progress: &dyn Progress,
+) -> Result<Made, WorkbenchError> {
+    motion.check()?;
+    let stirring = Arc::new(Stirring::new(&plant.beams, &plant.modes, plant.basis.clone(), motion.form));
+    let tubes = Tubes::new(&plant.beams);
+    let n_targets = stirring.n_modes() * stirring.n_powers();
+    let n_vertices = tubes.n_vertices();
+    let n_triangles = tubes.triangles().len();
+    let sizes =
+        Sizes { n_vertices, n_triangles, n_targets, n_copies: motion.n_copies, n_frames: motion.n_frames };
+    let (bytes, there) = (sizes.bytes()? as usize, free());
+    if bytes > there {
+        let (copies, nodes) = (motion.n_copies, plant.beams.len());
+        return Err(WorkbenchError::Memory { copies, nodes, bytes, there });
+    }
+    let copies = weights(plant, &stirring, wind, motion, progress)?;
+    let body = body(plant, &stirring, &tubes, motion.damping.mass.sqrt());
+    let bytes = write_glb(path, "plant", motion.fps, &body, &copies)?;
+    Ok(Made { n_vertices, n_targets, bytes })
+}
+
+/// Where copies stand, and what they have of every target in every frame.
+fn weights(
+    plant: &Vibrating,
+    stirring: &Arc<Stirring>,
+    wind: &dyn Wind,
+    motion: &Motion,
+    progress: &dyn Progress,
+) -> Result<Vec<Placed>, WorkbenchError> {
+    let grove = Grove::new(plant.height, motion);
+    let n_weights = motion.n_frames as usize * stirring.n_modes() * stirring.n_powers();
+    let copy = |(place, stand): (&Direction, &Stand)| Placed {
+        place: single(place),
+        turn: stand.turn,
+        weights: Vec::with_capacity(n_weights),
+    };
+    let mut copies: Vec<Placed> = grove.places.iter().zip(&grove.stands).map(copy).collect();
+    // Amplitudes are wanted; of nodes there must be one.
+    let mut forest = Forest::new(Arc::clone(stirring), &[0], &grove.stands, &motion.pace())?;
+    let threads = Threads::new(motion.n_threads)?;
+    if motion.pull.abs() > 0.0 {
+        forest.pull(0, &stirring.pulled(motion.pull));
+    }
+    for frame in 0..motion.n_frames {
+        if progress.report(u64::from(frame), u64::from(motion.n_frames), "motion") == Flow::Stop {
+            return Err(WorkbenchError::Stopped);
+        }
+        for (k, copy) in copies.iter_mut().enumerate() {
+            for (bending, q) in stirring.bendings().iter().zip(forest.amplitudes(k)) {
+                let s = bending.b().map_or(*q, |b| (b as f32 * q).atan());
+                copy.weights.extend((1..=stirring.n_powers() as i32).map(|power| s.powi(power)));
+            }
+        }
+        for _ in 0..motion.n_substeps {
+            let time = forest.time();
+            forest.step(&|copy| grove.blowing(wind, copy, time), None, &threads)?;
+        }
+    }
+    Ok(copies)
+}
+
+/// The mesh at rest, its root at 0, and what modes do to it; so many times as slow as its wood alone.
+fn body(plant: &Vibrating, stirring: &Stirring, tubes: &Tubes, slower: f64) -> Body {
+    let mut body = Body { triangles: tubes.triangles(), ..Body::default() };
+    for ring in tubes.rings() {
+        let centre = stirring.rest()[ring.node as usize];
+        for outward in ring.outward() {
+            body.positions.push(single(&(centre + outward * ring.radius)));
+            body.normals.push(single(&outward));
+        }
+    }
+    for (mode, bending) in stirring.bendings().iter().enumerate() {
+        // Of the arc tangent, of which a small amplitude is so much.
+        let of_arc = bending.b().map_or(1.0, f64::recip);
+        for (power, moved) in bending.powers().iter().enumerate() {
+            let mut vertices = Vec::with_capacity(SIDES * tubes.rings().len());
+            for ring in tubes.rings() {
+                let node = ring.node as usize;
+                let turn =
+                    if power == 0 { plant.modes.rotation(mode, node) * of_arc } else { Direction::zeros() };
+                vertices.extend(
+                    ring.outward().map(|out| single(&(moved[node] + turn.cross(&out) * ring.radius))),
+                );
+            }
+            let hz = plant.modes.hz(mode) / slower;
+            let name = format!("mode {}, {hz:.4} Hz{}", mode + 1, POWERS[power]);
+            body.targets.push(Target { name, moved: vertices });
+        }
+    }
+    body
+}
+
+fn single(at: &Direction) -> [f32; 3] {
+    [at.x as f32, at.y as f32, at.z as f32]
+}

@@ -1,0 +1,53 @@
+//! Where the copies of a forest stand, which wind they feel there, and where their nodes are.
+
+use honami_mechanics::wind::Wind;
+use honami_mechanics::{Direction, Stand};
+use rand::{RngExt as _, SeedableRng as _};
+
+use super::sway::Motion;
+
+/// Metres between copies of a plant of height 1, and how far each stands from there by chance.
+const APART: f64 = 0.8;
+/// Where on a copy's height its wind is measured, from the ground.
+const CROWN: f64 = 2.0 / 3.0;
+
+/// Where copies stand, and how.
+pub(super) struct Grove {
+    /// Of their roots, metres.
+    pub(super) places: Vec<Direction>,
+    pub(super) stands: Vec<Stand>,
+    /// Of the plant, metres.
+    pub(super) height: f64,
+}
+
+impl Grove {
+    /// In rows, each a little off and turned by chance; the first as it was measured.
+    pub(super) fn new(height: f64, motion: &Motion) -> Self {
+        let mut chance = rand_pcg::Pcg64Mcg::seed_from_u64(motion.seed);
+        let (side, apart) = ((motion.n_copies as f64).sqrt().ceil() as usize, APART * height);
+        let mut stand = |k: usize| {
+            let mut off = || chance.random_range(-0.25..0.25);
+            let (row, column) = (k / side, k % side);
+            let place = Direction::new((column as f64 + off()) * apart, (row as f64 + off()) * apart, 0.0);
+            let turn = chance.random_range(0.0..std::f32::consts::TAU);
+            let first = (Direction::zeros(), Stand::default());
+            if k == 0 { first } else { (place, Stand { turn, ..Stand::default() }) }
+        };
+        let (places, stands) = (0..motion.n_copies).map(&mut stand).unzip();
+        Self { places, stands, height }
+    }
+
+    /// The wind at a copy's crown.
+    pub(super) fn blowing(&self, wind: &dyn Wind, copy: usize, time: f64) -> Direction {
+        let up = Direction::z() * (CROWN * f64::from(self.stands[copy].scale) * self.height);
+        wind.sample(&(self.places[copy] + up), time)
+    }
+
+    /// From the axes of the plant to where a copy stands.
+    pub(super) fn shown(&self, copy: usize, own: &Direction) -> Direction {
+        let Stand { turn, scale, .. } = self.stands[copy];
+        let (sin, cos) = f64::from(turn).sin_cos();
+        let turned = Direction::new(cos * own.x - sin * own.y, sin * own.x + cos * own.y, own.z);
+        self.places[copy] + turned * f64::from(scale)
+    }
+}

@@ -1,0 +1,183 @@
+//! A plant in the hands of a simulator plugin: what it is given, and what it gives back.
+
+use honami_host::draft::Node;
+use honami_host::{
+    CallContext, Host, HostError, PlantInstance, PluginInfo, Simulator, Steps, Value, Values, WindRows,
+};
+use honami_mechanics::wind::Wind;
+use honami_mechanics::{Direction, Form, Integrator, Stand};
+use rayon::prelude::*;
+
+use super::grove::Grove;
+use super::sway::Motion;
+use super::{Vibrating, Wish};
+use crate::ear::Ear;
+use crate::error::WorkbenchError;
+
+/// Copies whose wind is worked out at a time.
+const SOME: usize = 256;
+
+/// Who moves plants.
+#[derive(Clone, Copy, Debug)]
+pub struct Mover<'a> {
+    /// Starts plugins.
+    pub host: &'a Host,
+    /// The simulator.
+    pub plugin: &'a PluginInfo,
+    /// Its parameters; the rest take their defaults.
+    pub values: &'a Values,
+}
+
+/// Values of a simulator's parameters by what is wanted of a plant and of its motion. What is as usual is left to the
+/// simulator, whose default it may not be; what is not goes by the name of the option, and whoever has no such parameter
+/// refuses it; but for modes, of which not all make use. The nodes that a simulator is given have the radius of the segment
+/// that leads to them: one that can be told so is.
+///
+/// # Errors
+/// What is no motion, and the first value that it has no parameter for or that is out of range.
+pub fn values(wish: &Wish, motion: &Motion, plugin: &PluginInfo) -> Result<Values, WorkbenchError> {
+    motion.check()?;
+    let (plain, usual) = (Wish::of("", 25), Motion::default());
+    let (wood, usual_wood) = (wish.beams.material, plain.beams.material);
+    let numbers = [
+        ("young", wood.young, usual_wood.young),
+        ("poisson", wood.poisson, usual_wood.poisson),
+        ("density", wood.density, usual_wood.density),
+        ("leaf_mass", wish.leaves.mass, plain.leaves.mass),
+        ("leaf_drag", wish.leaves.drag, plain.leaves.drag),
+        ("alpha", motion.damping.alpha, usual.damping.alpha),
+        ("beta", motion.damping.beta, usual.damping.beta),
+        ("heavier", motion.damping.mass, usual.damping.mass),
+        ("pull", motion.pull, usual.pull),
+    ];
+    let numbers = numbers.into_iter().filter(|(_, value, usual)| value.to_bits() != usual.to_bits());
+    let numbers = numbers.map(|(id, value, _)| (id, Value::Float(value)));
+    let knows = |id: &str| plugin.params.iter().any(|param| param.id == id);
+    let is_said = wish.n_modes != plain.n_modes && knows("modes");
+    let modes = is_said.then_some(("modes", Value::Int(wish.n_modes as i64)));
+    let method = match motion.integrator {
+        Integrator::Exact => None,
+        Integrator::Symplectic => Some("symplectic"),
+        Integrator::Newmark => Some("newmark"),
+    };
+    let bend = match motion.form {
+        Form::Linear => Some("linear"),
+        Form::Mode(3) => Some("s3"),
+        Form::Node | Form::Mode(_) => None,
+    };
+    let radius = knows("radius").then_some("tip");
+    let words = [("method", method), ("bend", bend), ("radius", radius)];
+    let words = words.into_iter().filter_map(|(id, word)| Some((id, Value::Text(word?.to_owned()))));
+    let mut values = Values::defaults(&plugin.params);
+    for (id, value) in numbers.chain(modes).chain(words) {
+        values.set(&plugin.params, id, value).map_err(HostError::from)?;
+    }
+    Ok(values)
+}
+
+/// A plant and its copies on their way.
+pub(super) struct Moving<'a> {
+    simulator: Simulator,
+    grove: &'a Grove,
+    motion: &'a Motion,
+    pool: rayon::ThreadPool,
+    /// Where a node of the beams is among those that were handed over: coarse before fine.
+    rows: Vec<u32>,
+    winds: Vec<[f32; 3]>,
+    times: Vec<f64>,
+}
+
+/// Displacements of all nodes of all copies, in the axes and the size of the plant.
+pub(super) struct Displacements<'a> {
+    rows: &'a [u32],
+    motion: &'a [[f32; 3]],
+}
+
+impl Displacements<'_> {
+    /// Metres.
+    pub(super) fn of(&self, copy: usize, node: usize) -> Direction {
+        let row = copy * self.rows.len() + self.rows[node] as usize;
+        Direction::from(self.motion[row].map(f64::from))
+    }
+}
+
+impl<'a> Moving<'a> {
+    /// Starts the simulator and hands the plant over.
+    pub(super) fn new(
+        plant: &Vibrating,
+        mover: &Mover<'_>,
+        grove: &'a Grove,
+        motion: &'a Motion,
+        ear: &Ear<'_>,
+    ) -> Result<Self, WorkbenchError> {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(motion.n_threads).build();
+        let pool = pool.map_err(|source| WorkbenchError::Pool { n: motion.n_threads, source })?;
+        let started =
+            ear.whole("modes", |cx| start(plant, mover, &grove.stands, motion.n_threads, motion.seed, cx));
+        let (simulator, rows) = started.map_err(stopped)?;
+        Ok(Self { simulator, grove, motion, pool, rows, winds: Vec::new(), times: Vec::new() })
+    }
+
+    /// Goes on to a frame, from the one before; the first is where it begins.
+    pub(super) fn frame(
+        &mut self,
+        frame: u32,
+        wind: &dyn Wind,
+        ear: &Ear<'_>,
+    ) -> Result<Displacements<'_>, WorkbenchError> {
+        let (dt, each) = (self.motion.pace().step, self.motion.n_substeps);
+        let n = if frame == 0 { 0 } else { each };
+        self.times.clear();
+        let first = u64::from(frame.saturating_sub(1)) * u64::from(each);
+        self.times.extend((0..u64::from(n)).map(|k| (first + k) as f64 * dt));
+        let (grove, times, n_copies) = (self.grove, &self.times, self.grove.stands.len());
+        self.pool.install(|| {
+            let blowing = |k: usize| grove.blowing(wind, k % n_copies, times[k / n_copies]);
+            let places = (0..times.len() * n_copies).into_par_iter().with_min_len(SOME);
+            places.map(|k| blowing(k).cast::<f32>().into()).collect_into_vec(&mut self.winds);
+        });
+        let wind = WindRows { times_s: &self.times, velocities: &self.winds };
+        let steps = Steps { dt, n, wind, detail: None };
+        let (done, total) = (u64::from(frame), u64::from(self.motion.n_frames));
+        let simulator = &mut self.simulator;
+        let motion = ear.call(done, total, move |cx| simulator.step(&steps, cx)).map_err(stopped)?;
+        Ok(Displacements { rows: &self.rows, motion })
+    }
+}
+
+/// Starts a simulator and hands a plant over, with the root at 0; where each node of the beams is among those that it was
+/// given, coarse before fine.
+pub(super) fn start(
+    plant: &Vibrating,
+    mover: &Mover<'_>,
+    stands: &[Stand],
+    n_threads: usize,
+    seed: u64,
+    cx: &CallContext<'_>,
+) -> Result<(Simulator, Vec<u32>), HostError> {
+    let order = plant.beams.coarse_to_fine();
+    let mut rows = vec![0; order.len()];
+    (0..).zip(&order).for_each(|(row, node)| rows[*node as usize] = row);
+    let root = plant.beams.position(0);
+    let node = |&node: &u32| Node {
+        parent: plant.beams.parent(node as usize).map(|parent| rows[parent as usize]),
+        // From the root: what is far from everything has few digits left for itself.
+        position: (plant.beams.position(node as usize) - root).cast::<f32>().into(),
+        radius: plant.beams.radius(node as usize) as f32,
+        track: None,
+    };
+    let nodes: Vec<Node> = order.iter().map(node).collect();
+    let instance = |stand: &Stand| PlantInstance { yaw: stand.turn, scale: stand.scale, mass: stand.mass };
+    let instances: Vec<PlantInstance> = stands.iter().map(instance).collect();
+    let (mut simulator, _) = mover.host.simulator(mover.plugin, mover.values, cx)?;
+    simulator.prepare(&nodes, &instances, n_threads as u32, seed, cx)?;
+    Ok((simulator, rows))
+}
+
+/// One who was stopped is no failure of the simulator.
+fn stopped(error: HostError) -> WorkbenchError {
+    match error {
+        HostError::Cancelled { .. } => WorkbenchError::Stopped,
+        error => error.into(),
+    }
+}

@@ -1,0 +1,132 @@
+//! The skin of a plant: tubes along its branches, each from where it leaves what bears it to its tip.
+//!
+//! Tubes are rings of vertices, a ring a node, upright on the branch. A ring moves as its node does and turns with it, to
+//! the first order of how far it turns; so the middle of a ring is where its node is.
+
+#[cfg(test)]
+mod tests;
+
+use honami_mechanics::{Beams, Direction};
+
+/// Vertices of a ring.
+pub(super) const SIDES: usize = 6;
+
+/// A ring of vertices about a node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Ring {
+    /// Of the beams.
+    pub(super) node: u32,
+    /// Metres.
+    pub(super) radius: f64,
+    /// At right angles to the branch and to each other, of length 1.
+    across: [Direction; 2],
+}
+
+/// Rings of all branches, branch after branch.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Tubes {
+    rings: Vec<Ring>,
+    /// How many rings each branch has.
+    lengths: Vec<usize>,
+}
+
+impl Tubes {
+    /// Of a fork the thickest goes on; the others begin in its middle.
+    #[must_use]
+    pub(super) fn new(beams: &Beams) -> Self {
+        let mut next: Vec<Option<u32>> = vec![None; beams.len()];
+        for node in 1..beams.len() as u32 {
+            let Some(parent) = beams.parent(node as usize) else { continue };
+            let best = &mut next[parent as usize];
+            if best.is_none_or(|best| beams.radius(node as usize) > beams.radius(best as usize)) {
+                *best = Some(node);
+            }
+        }
+        let mut tubes = Self::default();
+        for first in 1..beams.len() as u32 {
+            let Some(parent) = beams.parent(first as usize) else { continue };
+            // The root is at the foot of the branch that goes on there.
+            if parent != 0 && next[parent as usize] == Some(first) {
+                continue;
+            }
+            let mut nodes = vec![parent, first];
+            while let Some(node) = nodes.last().and_then(|last| next[*last as usize]) {
+                nodes.push(node);
+            }
+            tubes.add(beams, &nodes);
+        }
+        tubes
+    }
+
+    /// A branch by its nodes, the first of which bears it.
+    fn add(&mut self, beams: &Beams, nodes: &[u32]) {
+        let segments: Vec<(Direction, f64)> = nodes
+            .windows(2)
+            .map(|pair| {
+                let [base, tip] = [0, 1].map(|k| pair[k] as usize);
+                ((beams.position(tip) - beams.position(base)).normalize(), beams.radius(tip))
+            })
+            .collect();
+        let mut side = beside(&segments[0].0);
+        for (k, &node) in nodes.iter().enumerate() {
+            let (before, after) = (segments[k.saturating_sub(1)], segments[k.min(segments.len() - 1)]);
+            // Where a branch turns back on itself there is no middle way.
+            let along = (before.0 + after.0).try_normalize(1e-6).unwrap_or(after.0);
+            // The ring before, turned as little as can be: tubes do not twist.
+            side = (side - along * side.dot(&along)).try_normalize(1e-6).unwrap_or_else(|| beside(&along));
+            let radius = f64::midpoint(before.1, after.1);
+            self.rings.push(Ring { node, radius, across: [side, along.cross(&side)] });
+        }
+        self.lengths.push(nodes.len());
+    }
+
+    /// All rings.
+    #[must_use]
+    pub(super) fn rings(&self) -> &[Ring] {
+        &self.rings
+    }
+
+    /// Vertices, [`SIDES`] a ring.
+    #[must_use]
+    pub(super) fn n_vertices(&self) -> usize {
+        SIDES * self.rings.len()
+    }
+
+    /// Triangles, anticlockwise as seen from outside: two a side, and a lid on every tip.
+    #[must_use]
+    pub(super) fn triangles(&self) -> Vec<[u32; 3]> {
+        let (mut triangles, mut first) = (Vec::new(), 0);
+        for n_rings in &self.lengths {
+            for _ in 1..*n_rings {
+                for k in 0..SIDES {
+                    let [a, b] = [k, (k + 1) % SIDES].map(|k| (first + k) as u32);
+                    let [c, d] = [a, b].map(|below| below + SIDES as u32);
+                    triangles.extend([[a, b, d], [a, d, c]]);
+                }
+                first += SIDES;
+            }
+            let corner = |k: usize| (first + k) as u32;
+            triangles.extend((2..SIDES).map(|k| [corner(0), corner(k - 1), corner(k)]));
+            first += SIDES;
+        }
+        triangles
+    }
+}
+
+impl Ring {
+    /// From the node to each vertex, of length 1.
+    pub(super) fn outward(&self) -> impl Iterator<Item = Direction> {
+        let [side, other] = self.across;
+        (0..SIDES).map(move |k| {
+            let (sin, cos) = (std::f64::consts::TAU * k as f64 / SIDES as f64).sin_cos();
+            side * cos + other * sin
+        })
+    }
+}
+
+/// Any direction at right angles to one.
+fn beside(along: &Direction) -> Direction {
+    let least = along.iamin();
+    let axis = Direction::from_fn(|row, _| if row == least { 1.0 } else { 0.0 });
+    (axis - along * axis.dot(along)).normalize()
+}

@@ -1,0 +1,88 @@
+//! Skeletons from the tracks of a generated clip, through the real program.
+
+use honami_tests::{Bench, root, rows, skipped};
+
+/// A project of a generated clip, tracked and grouped.
+fn grouped() -> Bench {
+    let bench = Bench::tracked();
+    bench.json("cluster p.honami --groups 6");
+    bench
+}
+
+#[test]
+fn a_skeleton_moves_as_the_plant_does_and_its_bones_keep_their_length() {
+    let bench = grouped();
+    let answer = bench
+        .json("grow p.honami motion.bvh joints.csv rest.swc --flat --truth clip.truth.csv --leaves l.csv");
+    let truth = &answer["truth"];
+    let (off, still) = (truth["median_px"].as_f64().unwrap(), truth["still_px"].as_f64().unwrap());
+    assert!(off < 0.6 * still, "{answer}");
+    let number = |text: &str| text.parse::<f64>().unwrap();
+    let table = rows(&bench.path("joints.csv"));
+    let n_joints = answer["joints"].as_u64().unwrap() as usize;
+    assert_eq!(table.len(), 40 * n_joints);
+    for frame in table.chunks(n_joints) {
+        for row in &frame[1..] {
+            let from = &frame[row["parent"].parse::<usize>().unwrap()];
+            let along = |axis: &str| number(&row[axis]) - number(&from[axis]);
+            let length = along("x_px").hypot(along("y_px")).hypot(along("depth_px"));
+            assert!((length - number(&row["length_px"])).abs() < 1e-6, "{row:?}");
+        }
+    }
+    let n_leaves = rows(&bench.path("l.csv")).len();
+    assert_eq!(n_leaves % (40 * answer["tracks"].as_u64().unwrap() as usize), 0);
+    // What is at rest is a plant, and swings.
+    let plant = bench.json("simulate rest.swc --unit 0.01 --modes 3");
+    assert_eq!(plant["nodes"].as_u64().unwrap() as usize, n_joints);
+    let deep = bench.json("grow p.honami deep.bvh --root 80,115 --groups 4 --loop");
+    assert_eq!((&deep["groups"], &deep["root"]), (&4.into(), &serde_json::json!([80.0, 115.0])));
+    let frames = deep["frames"].as_array().unwrap();
+    assert!(frames[1].as_u64().unwrap() - frames[0].as_u64().unwrap() >= 20, "{deep}");
+    assert!(bench.text("grow p.honami").contains("in depth, with a mirror image behind"));
+}
+
+/// Another reader of motion capture finds joints where the table has them, to 1e-4 of a pixel, where it is installed.
+#[test]
+fn another_program_reads_the_same_motion() {
+    let python = |args: &[&str]| std::process::Command::new("python3").args(args).output();
+    if !python(&["-c", "import bvhio"]).is_ok_and(|output| output.status.success()) {
+        skipped("bvhio (pip install bvhio)");
+        return;
+    }
+    let bench = grouped();
+    let script = root().join("tests/peers/bvh_bvhio.py");
+    for more in ["--flat", "--groups 9", "--loop"] {
+        bench.text(&format!("grow p.honami motion.bvh joints.csv {more}"));
+        let files = [bench.path("motion.bvh"), bench.path("joints.csv")];
+        let output =
+            python(&[script.to_str().unwrap(), files[0].to_str().unwrap(), files[1].to_str().unwrap()])
+                .unwrap();
+        assert!(output.status.success(), "{more}: {output:?}");
+    }
+}
+
+#[test]
+fn what_cannot_grow_says_why() {
+    let bench = Bench::tracked();
+    let ungrouped = bench.line("grow p.honami out.bvh");
+    assert!(
+        ungrouped.code == Some(1) && ungrouped.stderr.contains("cluster the tracks first"),
+        "{ungrouped:?}"
+    );
+    bench.json("cluster p.honami");
+    let cases = [
+        ("grow p.honami out.obj", 2, "skeletons are written as .bvh, .csv or .swc, not as out.obj"),
+        ("grow p.honami --leaves out.obj", 2, "leaves are written as .csv, not as out.obj"),
+        ("grow p.honami --root 3", 2, "wanted a place as X,Y in pixels, got 3"),
+        ("grow p.honami --root nan,1", 2, "wanted a place as X,Y"),
+        ("grow p.honami --groups 0", 1, "groups, not 0"),
+        ("grow p.honami --groups 100000", 1, "groups, not 100000"),
+        ("grow p.honami --truth p.honami", 1, "p.honami"),
+        ("grow p.honami clip.y4m.csv/out.bvh", 1, "there is no folder"),
+        ("grow none.honami out.bvh", 1, "there is no project none.honami"),
+    ];
+    for (line, code, wanted) in cases {
+        let ran = bench.line(line);
+        assert!(ran.code == Some(code) && ran.stderr.contains(wanted), "{line}: {ran:?}");
+    }
+}

@@ -1,0 +1,52 @@
+//! What may be typed of skeletons.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+/// The branches behind the tracks: a skeleton that moves as filmed, from the groups of the shown clustering.
+///
+/// Groups are ellipses, forks the means of what they bear, shifted towards the root until bones change their length least
+/// (Diener 2009); then bones of constant length are moved so that tips are where their groups are. Lengths are pixels.
+/// docs/skeletons.md says how it is done, how good it is, and what files hold.
+#[derive(Args, Debug)]
+pub(in crate::cli) struct Grow {
+    /// Project file (.honami).
+    pub(in crate::cli) project: PathBuf,
+    /// Files to write: .bvh (motion capture), .csv (joints and angles in every frame), .swc (the shape at rest).
+    pub(in crate::cli) out: Vec<PathBuf>,
+    /// Where the plant leaves the ground, pixels of the picture (default: under the mean of all features, as low as the
+    /// lowest usually is).
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    pub(in crate::cli) root: Option<Place>,
+    /// Number of groups to cut the hierarchy into (default: as it is cut).
+    #[arg(long, value_name = "K")]
+    pub(in crate::cli) groups: Option<u32>,
+    /// Stay in the plane of the picture (default: groups lie on the front of an ellipsoid about the plant, and all of it
+    /// has a mirror image behind).
+    #[arg(long)]
+    pub(in crate::cli) flat: bool,
+    /// Only the frames after which the motion is most as it began, so that it repeats without a jump.
+    #[arg(long = "loop")]
+    pub(in crate::cli) is_loop: bool,
+    /// Write where every track is as a leaf of the skeleton: track,joint,frame,time_s,x_px,y_px,depth_px.
+    #[arg(long, value_name = "FILE.csv")]
+    pub(in crate::cli) leaves: Option<PathBuf>,
+    /// True positions of a generated clip, a table `track,frame,x,y,visible,branch`: say how far joints are from them.
+    #[arg(long, value_name = "FILE")]
+    pub(in crate::cli) truth: Option<PathBuf>,
+}
+
+/// `X,Y` in pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::cli) struct Place(pub(in crate::cli) [f64; 2]);
+
+impl std::str::FromStr for Place {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        let number = |word: &str| word.trim().parse::<f64>().ok().filter(|v| v.is_finite());
+        text.split_once(',')
+            .and_then(|(x, y)| Some(Self([number(x)?, number(y)?])))
+            .ok_or_else(|| format!("wanted a place as X,Y in pixels, got {text}"))
+    }
+}

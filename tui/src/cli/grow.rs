@@ -1,0 +1,106 @@
+//! `grow`: the branches behind the tracks.
+
+use honami_workbench::grow::{self, GrowRequest, Growth, Judged, SkeletonFormat};
+use serde_json::json;
+
+use super::args::grow::Grow;
+use super::{Answer, look, want};
+
+/// Grows a skeleton, and writes it.
+pub(super) fn grow(args: &Grow) -> anyhow::Result<Answer> {
+    let mut files = Vec::new();
+    for out in &args.out {
+        let format = SkeletonFormat::of(out);
+        want(format.is_some(), || {
+            format!("skeletons are written as .bvh, .csv or .swc, not as {}", out.display())
+        })?;
+        files.extend(format.map(|format| (format, out)));
+    }
+    let is_csv = |file: &std::path::PathBuf| file.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
+    if let Some(leaves) = args.leaves.as_ref().filter(|file| !is_csv(file)) {
+        want(false, || format!("leaves are written as .csv, not as {}", leaves.display()))?;
+    }
+    let project = look(&args.project)?;
+    let request = GrowRequest {
+        root: args.root.map(|place| place.0),
+        groups: args.groups,
+        is_flat: args.flat,
+        is_loop: args.is_loop,
+    };
+    let growth = grow::grow(&project, &request)?;
+    let judged = args.truth.as_ref().map(|truth| grow::judge(&growth, &project, truth)).transpose()?;
+    for (format, out) in &files {
+        grow::write(&growth, *format, out)?;
+    }
+    let n_rows = args.leaves.as_ref().map(|out| grow::write_leaves(&growth, out)).transpose()?;
+    let mut answer = describe(args, &growth);
+    if let Some(judged) = judged {
+        answer.text += &format!("\n{}", told(&judged));
+        answer.json["truth"] = json!({
+            "groups": judged.n_groups,
+            "tracks": judged.n_tracks,
+            "median_px": judged.median_px,
+            "still_px": judged.still_px,
+        });
+    }
+    for (format, out) in &files {
+        let what = match format {
+            SkeletonFormat::Bvh => "motion, degrees, y up",
+            SkeletonFormat::Angles => "joints and angles, radians, a row a joint and frame",
+            SkeletonFormat::Swc => "the shape at rest, z up",
+        };
+        answer.text += &format!("\n{}: {what}", out.display());
+    }
+    if let (Some(out), Some(n_rows)) = (&args.leaves, n_rows) {
+        answer.text += &format!("\n{}: leaves, {n_rows} rows", out.display());
+    }
+    Ok(answer)
+}
+
+fn describe(args: &Grow, growth: &Growth) -> Answer {
+    let skeleton = &growth.skeleton;
+    let n_joints = skeleton.joints().len();
+    let n_tracks = growth.places.len();
+    let [x, y] = honami_model::skeleton::seen(skeleton.root());
+    let is_deep = skeleton.rest().iter().any(|direction| direction[1].abs() > 0.0);
+    let depth = if is_deep { "in depth, with a mirror image behind" } else { "in the plane of the picture" };
+    let mut text = format!(
+        "{}: {} groups of {n_tracks} tracks, {n_joints} joints {depth}, root at {x:.1},{y:.1}",
+        args.project.display(),
+        growth.n_groups
+    );
+    if growth.n_collapsed > 0 {
+        text += &format!("\nforks that are one with another: {}", growth.n_collapsed);
+    }
+    let frames = &growth.frames;
+    text += &format!("\nframes {}..{}, {:.3} s", frames.start, frames.end, growth.seconds);
+    let is_uneven = skeleton.times().is_variable()
+        && args.out.iter().any(|out| SkeletonFormat::of(out) == Some(SkeletonFormat::Bvh));
+    let uneven =
+        "frames of the clip are not evenly spaced, those of .bvh are: their times are not kept there";
+    let notes: Vec<&str> =
+        growth.notes.iter().map(String::as_str).chain(is_uneven.then_some(uneven)).collect();
+    notes.iter().for_each(|note| text += &format!("\nnote: {note}"));
+    let json = json!({
+        "groups": growth.n_groups,
+        "tracks": n_tracks,
+        "joints": n_joints,
+        "collapsed": growth.n_collapsed,
+        "alphas": growth.alphas,
+        "root": [x, y],
+        "frames": [frames.start, frames.end],
+        "seconds": growth.seconds,
+        "files": args.out,
+        "leaves": args.leaves,
+        "notes": notes,
+    });
+    Answer { json, text, done: true }
+}
+
+fn told(judged: &Judged) -> String {
+    format!(
+        "beside the truth of {} tracks in {} groups: joints are {:.2} px off in the median; standing still they would be \
+         {:.2} px off",
+        judged.n_tracks, judged.n_groups, judged.median_px, judged.still_px
+    )
+}
