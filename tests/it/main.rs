@@ -17,6 +17,7 @@ mod offers;
 mod opencv;
 mod outlived;
 mod plants;
+mod plants_bending;
 mod plants_glb;
 mod python;
 mod real_clips;

@@ -207,6 +207,7 @@ fn run(command: Command, common: &Common) -> anyhow::Result<Outcome> {
         Command::Replay(args) => replay::replay(&args, common)?,
         Command::Keys(args) => keys::keys(&args),
         Command::Bench(args::plant::Bench::Forest(args)) => bench::forest(&args, common)?,
+        Command::Bench(args::plant::Bench::Bending(args)) => bench::bending(&args)?,
         Command::Doctor => help::doctor(common),
         Command::Completions { shell } => help::completions(shell),
         Command::Man { folder } => help::manual(&folder)?,

@@ -1,14 +1,14 @@
-//! Displacement by a mode that keeps the length of branches, where the mode alone would stretch them (thesis 6.4.2).
+//! Curves on which nodes follow a mode that by itself would stretch branches (thesis 6.4.2).
 //!
-//! Three forms: linear, q phi; the thesis's, a parabola of s = atan(b q) with a b of its own for every node (6.31 - 6.35;
-//! errata E45: the factor a of the text is in the vectors); and powers of s with one b a mode, which is as exact with
-//! three powers and a product of matrices for all nodes at once.
+//! The thesis's are parabolas of s = atan(b q) with a b of its own for every node (6.31 - 6.35; errata E45: the factor a
+//! of the text is in the vectors); with one b a mode, powers of s are a product of matrices for all nodes at once. Curves
+//! come near what one mode does ([`Turning`]); where several act, what they do together is missing.
 
 #[cfg(test)]
 mod tests;
 
-use crate::beams::Beams;
 use crate::modes::Modes;
+use crate::turning::Turning;
 use nalgebra::{DMatrix, Vector3};
 
 /// Amplitudes, to either side, that the curves are fitted at.
@@ -25,6 +25,8 @@ pub enum Form {
     Node,
     /// One arc tangent a mode, and so many powers of it, 2 or 3.
     Mode(usize),
+    /// By turns of segments, all modes together ([`Turning`]): lengths are exact.
+    Turn,
 }
 
 /// A mode's curves.
@@ -39,16 +41,19 @@ pub struct Bending {
 
 impl Bending {
     /// Fits a mode's curves up to an amplitude to either side.
+    ///
+    /// # Panics
+    /// For [`Form::Turn`], which has no curves.
     #[must_use]
-    pub fn new(beams: &Beams, modes: &Modes, mode: usize, q_max: f64, form: Form) -> Self {
-        let n = beams.len();
+    pub fn new(modes: &Modes, turning: &Turning, mode: usize, q_max: f64, form: Form) -> Self {
+        assert!(form != Form::Turn, "turns are no curves of a mode");
+        let n = turning.n_nodes();
         if form == Form::Linear {
             let linear = (0..n).map(|node| modes.displacement(mode, node)).collect();
             return Self { form, b: Vec::new(), powers: vec![linear] };
         }
         let amplitudes = amplitudes(q_max);
-        let exact: Vec<Vec<Vector3<f64>>> =
-            amplitudes.iter().map(|q| unstretched(beams, modes, mode, *q)).collect();
+        let exact: Vec<Vec<Vector3<f64>>> = amplitudes.iter().map(|q| turning.of_mode(mode, *q)).collect();
         // A row an amplitude.
         let of_nodes = |nodes: std::ops::Range<usize>| {
             DMatrix::from_fn(exact.len(), 3 * nodes.len(), |row, column| {
@@ -93,7 +98,7 @@ impl Bending {
         match self.form {
             Form::Linear => q,
             Form::Node => (self.b[node] * q).atan(),
-            Form::Mode(_) => (self.b[0] * q).atan(),
+            Form::Mode(_) | Form::Turn => (self.b[0] * q).atan(),
         }
     }
 
@@ -119,27 +124,6 @@ impl Bending {
 fn amplitudes(q_max: f64) -> Vec<f64> {
     let steps = (1..=SAMPLES).map(|k| q_max * k as f64 / SAMPLES as f64);
     steps.flat_map(|q| [-q, q]).collect()
-}
-
-/// Displacement of every node at an amplitude, each node pulled towards its parent so that no segment is longer or
-/// shorter than at rest, from the root on.
-#[must_use]
-pub fn unstretched(beams: &Beams, modes: &Modes, mode: usize, q: f64) -> Vec<Vector3<f64>> {
-    let mut moved: Vec<Vector3<f64>> = Vec::with_capacity(beams.len());
-    for (node, beam) in beams.nodes().iter().enumerate() {
-        let linear = modes.displacement(mode, node) * q;
-        let Some(parent) = beam.parent.map(|parent| parent as usize) else {
-            moved.push(linear);
-            continue;
-        };
-        let from = beams.nodes()[parent].position;
-        let at_rest = beam.position - from;
-        let along = beam.position + linear - from - moved[parent];
-        // A segment that has shrunk to a point keeps its direction.
-        let direction = along.try_normalize(f64::MIN_POSITIVE).unwrap_or_else(|| at_rest.normalize());
-        moved.push(from + moved[parent] + direction * at_rest.norm() - beam.position);
-    }
-    moved
 }
 
 /// The b for which powers of atan(b q) come nearest: by golden section, in units of the largest amplitude.

@@ -200,7 +200,7 @@ impl Forest {
         }
         let axis = |axis: usize| plant.basis.forces.iter().map(move |force| force[axis] as f32);
         let basis = (0..3).flat_map(axis).collect();
-        let rig = Rig::new(&plant.bendings, nodes);
+        let rig = Rig::new(&plant.following, nodes);
         let mut made = Self { plant, rig, copies, kinds, basis, amplitudes, speeds, pace: *pace, time: 0.0 };
         made.retune(pace)?;
         Ok(made)

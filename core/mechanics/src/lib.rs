@@ -20,11 +20,12 @@ mod six;
 mod stirring;
 mod threads;
 mod tree_matrix;
+mod turning;
 pub mod wind;
 mod wind_basis;
 
 pub use beams::{Beams, BeamsError, MOST_NODES, Options};
-pub use bending::{Bending, Form, unstretched};
+pub use bending::{Bending, Form};
 pub use element::{Section, frame, shape};
 pub use factor::Factor;
 pub use forest::{
@@ -36,9 +37,10 @@ pub use modes::{Modes, ModesError};
 pub use oscillator::{Damping, Integrator, LimitError, Oscillator, State, Step, symplectic_limit};
 pub use rig::Rig;
 pub use roof::Roof;
-pub use stirring::Stirring;
+pub use stirring::{Following, Stirring};
 pub use threads::{Threads, ThreadsError};
 pub use tree_matrix::TreeMatrix;
+pub use turning::Turning;
 
 /// A direction, a place or a velocity.
 pub type Direction = nalgebra::Vector3<f64>;

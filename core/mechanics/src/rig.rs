@@ -1,19 +1,19 @@
 //! Many copies of one plant at once: the displacements of all nodes of all of them as a product of two matrices.
 //!
-//! U = S V (thesis 6.4.1): a row of S are the amplitudes of a copy's modes, or powers of their arc tangents, V their
-//! displacements. V lies in tiles that stay in the nearest cache while the sums of some copies stay in registers.
+//! What modes do lies in tiles that stay in the nearest cache while the sums of some copies stay in registers.
 
 mod arc;
+mod curves;
 #[cfg(test)]
 mod tests;
 mod tile;
+mod turns;
 
-use crate::bending::Bending;
+use crate::stirring::Following;
 use crate::threads::Threads;
-use arc::arc_tangent;
-use nalgebra::Vector3;
-use pulp::Arch;
-use tile::{PANEL, Tiles};
+use curves::Curves;
+use tile::PANEL;
+use turns::Turns;
 
 /// Copies that one thread poses before it goes through all tiles again: their rows of S stay in the cache.
 pub(crate) const BATCH: usize = 8 * PANEL;
@@ -22,36 +22,34 @@ pub(crate) const BATCH: usize = 8 * PANEL;
 #[derive(Clone, Debug)]
 pub struct Rig {
     n_nodes: usize,
-    /// b of every mode, or 0 where it moves linearly.
-    b: Vec<f32>,
-    n_powers: usize,
-    tiles: Tiles,
+    n_modes: usize,
+    way: Way,
+}
+
+#[derive(Clone, Debug)]
+enum Way {
+    Curves(Curves),
+    Turns(Turns),
 }
 
 impl Rig {
-    /// Some nodes of the beams, in this order, by how all of them bend in every mode: linear or by powers of one arc tangent
-    /// a mode, the same number in all modes.
+    /// Some nodes of the beams, in this order, by how they follow the modes.
     ///
     /// # Panics
-    /// When a mode has an arc tangent a node ([`Form::Node`](crate::Form::Node)), of which there is no such product.
+    /// When a mode has an arc tangent a node ([`Form::Node`](crate::Form::Node)), of which there is no product.
     #[must_use]
-    pub fn new(bendings: &[Bending], nodes: &[u32]) -> Self {
-        assert!(bendings.iter().all(Bending::is_product), "one arc tangent a mode, or none");
-        let n_powers = bendings.first().map_or(1, |bending| bending.powers().len());
-        let numbers = |row: &Vec<Vector3<f64>>| -> Vec<f32> {
-            nodes.iter().flat_map(|&node| row[node as usize].iter().map(|v| *v as f32)).collect()
+    pub fn new(following: &Following, nodes: &[u32]) -> Self {
+        let way = match following {
+            Following::Curves(bendings) => Way::Curves(Curves::new(bendings, nodes)),
+            Following::Turns(turning) => Way::Turns(Turns::new(turning, nodes)),
         };
-        // Row by row, mode after mode, so that those of the first modes stand together.
-        let rows: Vec<Vec<f32>> =
-            bendings.iter().flat_map(|bending| bending.powers().iter().map(numbers)).collect();
-        let b = bendings.iter().map(|bending| bending.b().unwrap_or(0.0) as f32).collect();
-        Self { n_nodes: nodes.len(), b, n_powers, tiles: Tiles::new(&rows, 3 * nodes.len()) }
+        Self { n_nodes: nodes.len(), n_modes: following.n_modes(), way }
     }
 
     /// Modes.
     #[must_use]
     pub fn n_modes(&self) -> usize {
-        self.b.len()
+        self.n_modes
     }
 
     /// Nodes that it poses.
@@ -68,7 +66,10 @@ impl Rig {
     /// Memory of the matrix, bytes.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        self.tiles.bytes()
+        match &self.way {
+            Way::Curves(curves) => curves.bytes(),
+            Way::Turns(turns) => turns.bytes(),
+        }
     }
 
     /// Displacements of all nodes of all copies, metres, `(n_copies, n_nodes, 3)`, from the amplitudes of their modes,
@@ -93,33 +94,25 @@ impl Rig {
         n_modes: usize,
         displacements: &mut [f32],
     ) {
-        let (n_columns, n_rows) = (displacements.len() / amplitudes.len().max(1), n_modes * self.n_powers);
-        let mut panels = vec![[0.0; PANEL]; amplitudes.len().div_ceil(PANEL) * n_rows];
-        let mut turned = vec![0.0; n_modes];
+        let n_copies = amplitudes.len();
+        let n_rows = match &self.way {
+            Way::Curves(curves) => curves.n_rows(n_modes),
+            Way::Turns(_) => n_modes,
+        };
+        if n_rows == 0 || n_copies == 0 {
+            return displacements.fill(0.0);
+        }
+        let mut panels = vec![[0.0; PANEL]; n_copies.div_ceil(PANEL) * n_rows];
         for (copy, row) in amplitudes.enumerate() {
-            self.arcs(row, &mut turned);
             let panel = &mut panels[copy / PANEL * n_rows..][..n_rows];
-            for (shares, s) in panel.chunks_exact_mut(self.n_powers).zip(&turned) {
-                let mut power = 1.0;
-                for shares in shares {
-                    power *= s;
-                    shares[copy % PANEL] = power;
-                }
+            match &self.way {
+                Way::Curves(curves) => curves.shares(row, copy % PANEL, panel),
+                Way::Turns(_) => panel.iter_mut().zip(row).for_each(|(share, q)| share[copy % PANEL] = *q),
             }
         }
-        self.tiles.multiply(&panels, n_rows, n_columns, displacements);
-    }
-
-    /// s of the first modes.
-    fn arcs(&self, row: &[f32], turned: &mut [f32]) {
-        let bent = self.n_powers > 1;
-        Arch::new().dispatch(
-            #[inline(always)]
-            || {
-                for ((s, q), b) in turned.iter_mut().zip(row).zip(&self.b) {
-                    *s = if bent { arc_tangent(b * q) } else { *q };
-                }
-            },
-        );
+        match &self.way {
+            Way::Curves(curves) => curves.pose(&panels, n_rows, displacements, n_copies),
+            Way::Turns(turns) => turns.pose(&panels, n_rows, displacements, n_copies),
+        }
     }
 }

@@ -3,12 +3,13 @@
 use crate::beams::Beams;
 use crate::bending::{Bending, Form};
 use crate::modes::Modes;
+use crate::turning::Turning;
 use crate::wind_basis::WindBasis;
 use nalgebra::Vector3;
 
-/// Up to so many radians the node that turns most turns in each mode where its curves are fitted: as a rod does whose
-/// tip its own weight moves by 30 % of its length.
-const TURN: f64 = 0.4;
+/// Up to so many radians the node that turns most turns in each mode where its curves are fitted: as twigs do where the
+/// top of a tree is moved by 30 % of its height.
+const TURN: f64 = 0.85;
 /// A ball about half the height holds all nodes in the wind: so many times its radius at rest.
 const SWAY: f64 = 1.3;
 
@@ -17,7 +18,7 @@ const SWAY: f64 = 1.3;
 pub struct Stirring {
     pub(crate) omegas: Vec<f64>,
     pub(crate) basis: WindBasis,
-    pub(crate) bendings: Vec<Bending>,
+    pub(crate) following: Following,
     pub(crate) rest: Vec<Vector3<f64>>,
     /// Metres by which the slowest mode moves the node that it moves most, a unit of its amplitude.
     widest: f64,
@@ -25,22 +26,66 @@ pub struct Stirring {
     pub(crate) reach: f64,
 }
 
-impl Stirring {
-    /// Fits how every mode bends the plant: linear, or by powers of one arc tangent a mode. [`Form::Node`] is taken as two
+/// How nodes follow their modes.
+#[derive(Clone, Debug)]
+pub enum Following {
+    /// Each mode by itself, on straight lines or curves.
+    Curves(Vec<Bending>),
+    /// All together.
+    Turns(Turning),
+}
+
+impl Following {
+    /// All modes of beams, in a form.
+    #[must_use]
+    pub fn new(beams: &Beams, modes: &Modes, form: Form) -> Self {
+        match form {
+            Form::Turn => Self::Turns(Turning::new(beams, modes)),
+            form => Self::Curves(Self::curves(beams, modes, form)),
+        }
+    }
+
+    /// The curves of all modes, fitted up to turns of 0.85 radians; of a form that is no product of matrices, those by two
     /// powers.
     #[must_use]
+    pub fn curves(beams: &Beams, modes: &Modes, form: Form) -> Vec<Bending> {
+        let turning = Turning::new(beams, modes);
+        let form = if matches!(form, Form::Node | Form::Turn) { Form::Mode(2) } else { form };
+        let bending = |mode| Bending::new(modes, &turning, mode, modes.amplitude(mode, TURN), form);
+        (0..modes.len()).map(bending).collect()
+    }
+
+    /// Modes.
+    #[must_use]
+    pub fn n_modes(&self) -> usize {
+        match self {
+            Self::Curves(bendings) => bendings.len(),
+            Self::Turns(turning) => turning.n_modes(),
+        }
+    }
+
+    /// Numbers that a mode has for each coordinate of a node.
+    #[must_use]
+    pub fn n_powers(&self) -> usize {
+        match self {
+            Self::Curves(bendings) => bendings.first().map_or(1, |bending| bending.powers().len()),
+            Self::Turns(_) => 1,
+        }
+    }
+}
+
+impl Stirring {
+    /// A plant whose nodes follow its modes in a form.
+    #[must_use]
     pub fn new(beams: &Beams, modes: &Modes, basis: WindBasis, form: Form) -> Self {
-        let form = if form == Form::Node { Form::Mode(2) } else { form };
-        let bendings = (0..modes.len())
-            .map(|mode| Bending::new(beams, modes, mode, modes.amplitude(mode, TURN), form))
-            .collect();
+        let following = Following::new(beams, modes, form);
         let root = beams.nodes()[0].position;
         let rest: Vec<Vector3<f64>> = beams.nodes().iter().map(|node| node.position - root).collect();
         let height = rest.iter().map(|at| at.z).fold(0.0, f64::max);
         let centre = Vector3::z() * (height / 2.0);
         let reach = rest.iter().map(|at| (at - centre).norm()).fold(0.0, f64::max) * SWAY;
         let widest = (0..rest.len()).map(|node| modes.displacement(0, node).norm()).fold(0.0, f64::max);
-        Self { omegas: modes.omegas.clone(), basis, bendings, rest, widest, height, reach }
+        Self { omegas: modes.omegas.clone(), basis, following, rest, widest, height, reach }
     }
 
     /// Nodes, the root included.
@@ -55,16 +100,10 @@ impl Stirring {
         self.omegas.len()
     }
 
-    /// Numbers that a mode has for each coordinate of a node: 1 by straight lines.
+    /// How nodes follow their modes.
     #[must_use]
-    pub fn n_powers(&self) -> usize {
-        self.bendings.first().map_or(1, |bending| bending.powers().len())
-    }
-
-    /// How every mode bends the plant.
-    #[must_use]
-    pub fn bendings(&self) -> &[Bending] {
-        &self.bendings
+    pub fn following(&self) -> &Following {
+        &self.following
     }
 
     /// Nodes at rest, metres from the root.

@@ -2,6 +2,7 @@
 
 pub mod bench;
 pub mod film;
+pub mod forms;
 pub mod glb;
 mod grove;
 pub mod mover;

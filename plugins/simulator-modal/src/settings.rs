@@ -17,9 +17,11 @@ choice! {
 choice! {
     /// How nodes follow their modes.
     pub(crate) enum Bend {
+        /// Segments turn by all modes together: branches keep their length.
+        Turn = "turn" => "Segments turn",
         /// By straight lines: branches grow longer.
         Linear = "linear" => "Straight",
-        /// By one arc tangent a mode and its square: branches keep their length.
+        /// By one arc tangent a mode and its square, each mode by itself.
         S2 = "s2" => "s, s²",
         /// And its cube.
         S3 = "s3" => "s, s², s³",
@@ -58,7 +60,7 @@ params! {
         /// How many modes, the slowest first; a small plant may have fewer.
         modes: i64 = 25 => { label: "Modes", group: "Motion", min: 1, max: 5000, soft_max: 100 },
         /// How nodes follow their modes.
-        bend: Bend = "s2" => { label: "Nodes", group: "Motion" },
+        bend: Bend = "turn" => { label: "Nodes", group: "Motion" },
         /// How modes go on in time.
         method: Method = "exact" => { label: "Method", group: "Motion", affects: "step" },
         /// Damping by mass.
@@ -86,6 +88,7 @@ impl Settings {
     /// How nodes follow their modes.
     pub(crate) fn form(&self) -> Form {
         match self.bend {
+            Bend::Turn => Form::Turn,
             Bend::Linear => Form::Linear,
             Bend::S2 => Form::Mode(2),
             Bend::S3 => Form::Mode(3),

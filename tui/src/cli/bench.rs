@@ -2,11 +2,12 @@
 
 use honami_workbench::mechanics::Roof;
 use honami_workbench::plant::bench::{self, Boundary, Cell, Rate, Runs, Speed, TABLE_6_1, TABLE_6_2};
+use honami_workbench::plant::{self, forms};
 use honami_workbench::plugins::Kind;
 use serde_json::{Value, json};
 
 use super::args::Common;
-use super::args::plant::BenchForest;
+use super::args::plant::{BenchBending, BenchForest};
 use super::{Answer, report, simulate, told_options, want};
 
 /// The cell in which what a plugin costs is measured, unless others are asked for.
@@ -58,16 +59,56 @@ pub(super) fn forest(args: &BenchForest, common: &Common) -> anyhow::Result<Answ
         "plugin_ms": boundary.plugin_s * 1e3,
         "ratio": boundary.ratio,
     });
-    text += "\n\nfps: frames per second, the median of the runs; lengths kept: by one arc tangent a mode and its powers";
+    text += "\n\nfps: frames per second, the median of the runs; s: the arc tangent of a mode, and its powers; turns: of segments";
     text += "\nof limit: the greater share of multiplications and of writing; state: share of the frame that modes take";
     Ok(Answer { json, text, done: true })
+}
+
+/// Compares the ways in which nodes can follow modes.
+pub(super) fn bending(args: &BenchBending) -> anyhow::Result<Answer> {
+    let plant = plant::vibrate(&simulate::wish(&args.plant))?;
+    let rows = forms::forms(&plant);
+    let head = |what: &str| forms::DEFLECTIONS.map(|share| format!("{what} {:.0} %", 100.0 * share));
+    let mut table =
+        vec![[vec!["lengths, off, %".to_owned()], head("mode 1,").into(), head("wind,").into()].concat()];
+    for row in &rows {
+        let cells = row.alone.iter().chain(&row.in_wind);
+        let cells = cells.map(|cell| format!("{} {}", percent(cell.stretch), percent(cell.off)));
+        table.push(std::iter::once(row.form.to_owned()).chain(cells).collect());
+    }
+    let text = format!(
+        "{} nodes, {} modes; the node that is moved most by so much of the height, by the slowest mode or by all in a wind\n{}\n\
+         lengths: errors of segments; off: from where turning segments have nodes; roots of mean squares",
+        plant.beams.len(),
+        plant.modes.len(),
+        report::table(&table)
+    );
+    let cells = |cells: &[forms::Cell]| -> Vec<Value> {
+        let cells = cells.iter().zip(forms::DEFLECTIONS);
+        cells
+            .map(|(cell, share)| json!({ "deflection": share, "stretch": cell.stretch, "off": cell.off }))
+            .collect()
+    };
+    let entry = |row: &forms::Row| json!({ "form": row.form, "slowest_mode": cells(&row.alone), "in_wind": cells(&row.in_wind) });
+    let json = json!({ "height_m": plant.height, "forms": rows.iter().map(entry).collect::<Vec<_>>() });
+    Ok(Answer { json, text, done: true })
+}
+
+/// Of a share, with two digits.
+fn percent(share: f64) -> String {
+    match 100.0 * share {
+        percent if percent < 1e-4 => "0".to_owned(),
+        percent if percent < 0.1 => format!("{percent:.4}"),
+        percent if percent < 10.0 => format!("{percent:.2}"),
+        percent => format!("{percent:.1}"),
+    }
 }
 
 /// What a plugin costs, in a line.
 fn across(cell: &Cell, Boundary { direct_s, plugin_s, ratio }: &Boundary) -> String {
     let [least, median, most] = ratio.map(|ratio| 100.0 * (ratio - 1.0));
     format!(
-        "{} trees of {} nodes with {} modes, s,s2, in turns: a frame takes {:.3} ms, {:.3} ms through the plugin: {median:+.1} % \
+        "{} trees of {} nodes with {} modes, with and without the plugin in turns: a frame takes {:.3} ms, {:.3} ms through the plugin: {median:+.1} % \
          ({least:+.1} to {most:+.1} %)",
         cell.0,
         cell.1,
@@ -100,17 +141,19 @@ fn rows(speeds: &[Speed], roof: &Roof) -> Vec<Vec<String>> {
         "of limit",
         "s,s2,s3 fps",
         "of limit",
+        "turns fps",
+        "of limit",
         "state",
     ];
     let row = |speed: &Speed| {
         let thesis = speed.thesis_fps.map_or_else(String::new, |fps| format!("{fps:.0}"));
         let mut row =
             vec![speed.n_copies.to_string(), speed.n_nodes.to_string(), speed.n_modes.to_string(), thesis];
-        for rate in [&speed.linear, &speed.squared, &speed.cubed] {
+        for rate in [&speed.linear, &speed.squared, &speed.cubed, &speed.turned] {
             row.push(format!("{:.1}", rate.fps));
             row.push(format!("{:.0} %", 100.0 * share(rate, roof)));
         }
-        row.push(format!("{:.1} %", 100.0 * speed.squared.state_share));
+        row.push(format!("{:.1} %", 100.0 * speed.turned.state_share));
         row
     };
     std::iter::once(head.map(str::to_owned).to_vec()).chain(speeds.iter().map(row)).collect()
@@ -136,5 +179,6 @@ fn entry(speed: &Speed, roof: &Roof) -> Value {
         "linear": rate(&speed.linear),
         "squared": rate(&speed.squared),
         "cubed": rate(&speed.cubed),
+        "turned": rate(&speed.turned),
     })
 }

@@ -107,6 +107,7 @@ fn motion(args: &Simulate, n_frames: u32, damping: Damping) -> Motion {
         },
         damping,
         form: match args.bend {
+            Bend::Turn => Form::Turn,
             Bend::Linear => Form::Linear,
             Bend::S2 => Form::Mode(2),
             Bend::S3 => Form::Mode(3),
@@ -228,11 +229,12 @@ fn told(args: &Simulate, motion: &Motion, moved: &Moved, made: Option<&Made>) ->
     }
     if let (Some(path), Some(made)) = (&args.glb, made) {
         text += &format!(
-            "\n{}: a mesh of {} vertices with {} morph targets, {:.1} MB",
+            "\n{}: a mesh of {} vertices with {} morph targets, {:.1} MB; at most {:.2} mm from where it moved",
             path.display(),
             made.n_vertices,
             made.n_targets,
-            made.bytes as f64 / 1e6
+            made.bytes as f64 / 1e6,
+            made.off * 1e3
         );
     }
     text
@@ -240,7 +242,7 @@ fn told(args: &Simulate, motion: &Motion, moved: &Moved, made: Option<&Made>) ->
 
 fn entry(motion: &Motion, moved: &Moved, args: &Simulate, made: Option<&Made>) -> serde_json::Value {
     let glb = made.map(|made| {
-        json!({ "file": args.glb, "vertices": made.n_vertices, "targets": made.n_targets, "bytes": made.bytes })
+        json!({ "file": args.glb, "vertices": made.n_vertices, "targets": made.n_targets, "bytes": made.bytes, "off_m": made.off })
     });
     json!({
         "frames": moved.n_frames,

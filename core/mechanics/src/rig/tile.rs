@@ -3,7 +3,7 @@
 use pulp::{Arch, Simd, WithSimd};
 
 /// Columns of a tile: four vectors of sixteen numbers, or eight of eight.
-const COLUMNS: usize = 64;
+pub(super) const COLUMNS: usize = 64;
 /// Rows of the product whose sums are in registers together.
 pub(super) const PANEL: usize = 6;
 
@@ -47,6 +47,60 @@ impl Tiles {
             return product.fill(0.0);
         }
         Arch::new().dispatch(Multiply { tiles: self, panels, n_rows, n_columns, product });
+    }
+}
+
+impl Tiles {
+    /// Panels times the first so many rows of this, three tiles at a time: what is done with six rows of 192 sums, for each
+    /// of so many groups of tiles with every panel.
+    #[inline(always)]
+    pub(super) fn by_groups(
+        &self,
+        panels: &[[f32; PANEL]],
+        n_rows: usize,
+        n_groups: usize,
+        each: impl FnMut(usize, usize, &mut [[[f32; COLUMNS]; 3]; PANEL]),
+    ) {
+        Arch::new().dispatch(Groups { tiles: self, panels, n_rows, n_groups, each });
+    }
+}
+
+struct Groups<'a, F> {
+    tiles: &'a Tiles,
+    panels: &'a [[f32; PANEL]],
+    n_rows: usize,
+    n_groups: usize,
+    each: F,
+}
+
+impl<F: FnMut(usize, usize, &mut [[[f32; COLUMNS]; 3]; PANEL])> WithSimd for Groups<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        match S::F32_LANES {
+            16 => in_groups::<S, 4, F>(simd, self),
+            _ => in_groups::<S, 2, F>(simd, self),
+        }
+    }
+}
+
+#[inline(always)]
+fn in_groups<S: Simd, const C: usize, F: FnMut(usize, usize, &mut [[[f32; COLUMNS]; 3]; PANEL])>(
+    simd: S,
+    Groups { tiles, panels, n_rows, n_groups, mut each }: Groups<'_, F>,
+) {
+    let mut stage = [[[0.0; COLUMNS]; 3]; PANEL];
+    for (group, tiles) in tiles.rows.chunks_exact(3 * tiles.n_rows).take(n_groups).enumerate() {
+        for (k, panel) in panels.chunks_exact(n_rows).enumerate() {
+            for (axis, tile) in tiles.chunks_exact(tiles.len() / 3).enumerate() {
+                for part in (0..COLUMNS).step_by(C * S::F32_LANES) {
+                    let sums = sums::<S, C>(simd, tile, part, panel);
+                    put::<S, C>(stage.iter_mut().map(|rows| &mut rows[axis][part..]), &sums);
+                }
+            }
+            each(group, k, &mut stage);
+        }
     }
 }
 

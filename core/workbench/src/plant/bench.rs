@@ -68,6 +68,8 @@ pub struct Speed {
     pub squared: Rate,
     /// And its cube.
     pub cubed: Rate,
+    /// By turns of segments.
+    pub turned: Rate,
 }
 
 /// A forest that moves.
@@ -119,7 +121,8 @@ pub fn speeds(cells: &[Cell], runs: &Runs, progress: &dyn Progress) -> Result<Ve
             rate(&Arc::new(stirring), n_copies, runs, &threads)
         };
         let (linear, squared, cubed) = (rate(Form::Linear)?, rate(Form::Mode(2))?, rate(Form::Mode(3))?);
-        speeds.push(Speed { n_copies, n_nodes, n_modes, thesis_fps, linear, squared, cubed });
+        let turned = rate(Form::Turn)?;
+        speeds.push(Speed { n_copies, n_nodes, n_modes, thesis_fps, linear, squared, cubed, turned });
     }
     Ok(speeds)
 }
@@ -154,7 +157,7 @@ fn rate(
     }
     let [fps, state_share] = [fps, share].map(median);
     let numbers = (3 * n_copies * n_nodes) as f64;
-    let rows = (plant.n_modes() * plant.n_powers()) as f64;
+    let rows = (plant.n_modes() * plant.following().n_powers()) as f64;
     Ok(Rate { fps, state_share, written: 4.0 * numbers * fps, flops: 2.0 * rows * numbers * fps })
 }
 
@@ -184,7 +187,7 @@ pub struct Boundary {
     pub ratio: [f64; 3],
 }
 
-/// Measures what a plugin costs: two forests of a cell, frames in turns, branches as long as they are by two powers.
+/// Measures what a plugin costs: two forests of a cell, frames in turns, segments turning.
 ///
 /// # Errors
 /// What the simulator or the system refuses.
@@ -198,7 +201,7 @@ pub fn boundary(
     let plant = vibrate(&wish)?;
     sway::room(n_copies, 2 * n_nodes, 2 * n_modes)?;
     let stands: Vec<Stand> = (0..n_copies).map(|k| Stand { turn: k as f32, ..Stand::default() }).collect();
-    let stirring = Stirring::new(&plant.beams, &plant.modes, plant.basis.clone(), Form::Mode(2));
+    let stirring = Stirring::new(&plant.beams, &plant.modes, plant.basis.clone(), Form::Turn);
     let pace = Pace { step: 1.0 / 30.0, integrator: Integrator::Exact, damping: Damping::default() };
     let mut forest = Forest::new(Arc::new(stirring), &plant.beams.coarse_to_fine(), &stands, &pace)?;
     let (mut motion, threads) = (vec![[0.0; 3]; n_copies * n_nodes], Threads::new(runs.n_threads)?);

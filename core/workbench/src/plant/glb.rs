@@ -1,15 +1,16 @@
 //! A plant, or a forest of it, with its motion in one file of glTF.
 //!
 //! Its modes become morph targets: where nodes are is a sum of what modes do to them, one term for each mode and power of
-//! its arc tangent, and so the file has in every frame what the simulation has. Joints would have to be as many as nodes,
-//! more than engines take, and would turn where modes bend. A copy costs a weight a target and frame, not a mesh.
+//! its arc tangent. Where a motion is such a sum, the file has in every frame what the simulation has; where segments turn
+//! by all modes together, it comes near, and how near is told. Joints would have to be as many as nodes, more than engines
+//! take. A copy costs a weight a target and frame, not a mesh.
 
 use std::path::Path;
 use std::sync::Arc;
 
 use honami_exchange::plant::{Body, Placed, Sizes, Target, write_glb};
 use honami_mechanics::wind::Wind;
-use honami_mechanics::{Direction, Forest, Stand, Stirring, Threads};
+use honami_mechanics::{Bending, Detail, Direction, Following, Forest, Pose, Stand, Stirring, Threads};
 
 use super::Vibrating;
 use super::grove::Grove;
@@ -22,7 +23,7 @@ use crate::progress::{Flow, Progress};
 const POWERS: [&str; 3] = ["", ", squared", ", cubed"];
 
 /// What was written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Made {
     /// Of the mesh.
     pub n_vertices: usize,
@@ -30,6 +31,8 @@ pub struct Made {
     pub n_targets: usize,
     /// Of the file.
     pub bytes: u64,
+    /// How far nodes of the first copy are from where the simulation has them, metres, at most.
+    pub off: f64,
 }
 
 /// Moves a plant as [`sway`](super::sway::sway) does and writes it as a .glb.
@@ -46,8 +49,9 @@ pub fn glb(
 ) -> Result<Made, WorkbenchError> {
     motion.check()?;
     let stirring = Arc::new(Stirring::new(&plant.beams, &plant.modes, plant.basis.clone(), motion.form));
+    let bendings = Following::curves(&plant.beams, &plant.modes, motion.form);
     let tubes = Tubes::new(&plant.beams);
-    let n_targets = stirring.n_modes() * stirring.n_powers();
+    let n_targets = n_targets(&bendings);
     let n_vertices = tubes.n_vertices();
     let n_triangles = tubes.triangles().len();
     let sizes =
@@ -57,30 +61,38 @@ pub fn glb(
         let (copies, nodes) = (motion.n_copies, plant.beams.len());
         return Err(WorkbenchError::Memory { copies, nodes, bytes, there });
     }
-    let copies = weights(plant, &stirring, wind, motion, progress)?;
-    let body = body(plant, &stirring, &tubes, motion.damping.mass.sqrt());
+    let (copies, off) = weights(plant, &stirring, &bendings, wind, motion, progress)?;
+    let body = body(plant, &stirring, &bendings, &tubes, motion.damping.mass.sqrt());
     let bytes = write_glb(path, "plant", motion.fps, &body, &copies)?;
-    Ok(Made { n_vertices, n_targets, bytes })
+    Ok(Made { n_vertices, n_targets, bytes, off })
 }
 
-/// Where copies stand, and what they have of every target in every frame.
+fn n_targets(bendings: &[Bending]) -> usize {
+    bendings.iter().map(|bending| bending.powers().len()).sum()
+}
+
+/// Where copies stand, and what they have of every target in every frame; and how far the first is off at most.
 fn weights(
     plant: &Vibrating,
     stirring: &Arc<Stirring>,
+    bendings: &[Bending],
     wind: &dyn Wind,
     motion: &Motion,
     progress: &dyn Progress,
-) -> Result<Vec<Placed>, WorkbenchError> {
+) -> Result<(Vec<Placed>, f64), WorkbenchError> {
     let grove = Grove::new(plant.height, motion);
-    let n_weights = motion.n_frames as usize * stirring.n_modes() * stirring.n_powers();
+    let n_weights = motion.n_frames as usize * n_targets(bendings);
     let copy = |(place, stand): (&Direction, &Stand)| Placed {
         place: single(place),
         turn: stand.turn,
         weights: Vec::with_capacity(n_weights),
     };
     let mut copies: Vec<Placed> = grove.places.iter().zip(&grove.stands).map(copy).collect();
-    // Amplitudes are wanted; of nodes there must be one.
-    let mut forest = Forest::new(Arc::clone(stirring), &[0], &grove.stands, &motion.pace())?;
+    let nodes: Vec<u32> = (0..stirring.n_nodes() as u32).collect();
+    let mut forest = Forest::new(Arc::clone(stirring), &nodes, &grove.stands, &motion.pace())?;
+    let mut details = vec![Detail::default(); copies.len()];
+    details[0] = Detail { n_nodes: u32::MAX, n_modes: u32::MAX };
+    let (mut first, mut off) = (vec![[0.0; 3]; nodes.len()], 0.0_f64);
     let threads = Threads::new(motion.n_threads)?;
     if motion.pull.abs() > 0.0 {
         forest.pull(0, &stirring.pulled(motion.pull));
@@ -90,21 +102,33 @@ fn weights(
             return Err(WorkbenchError::Stopped);
         }
         for (k, copy) in copies.iter_mut().enumerate() {
-            for (bending, q) in stirring.bendings().iter().zip(forest.amplitudes(k)) {
+            for (bending, q) in bendings.iter().zip(forest.amplitudes(k)) {
                 let s = bending.b().map_or(*q, |b| (b as f32 * q).atan());
-                copy.weights.extend((1..=stirring.n_powers() as i32).map(|power| s.powi(power)));
+                copy.weights.extend((1..=bending.powers().len() as i32).map(|power| s.powi(power)));
             }
         }
+        forest.pose(Pose { details: Some(&details), motion: &mut first }, &threads);
+        off = off.max(farthest(bendings, forest.amplitudes(0), &first));
         for _ in 0..motion.n_substeps {
             let time = forest.time();
             forest.step(&|copy| grove.blowing(wind, copy, time), None, &threads)?;
         }
     }
-    Ok(copies)
+    Ok((copies, off))
+}
+
+/// Metres between where curves have nodes and where they are, at most.
+fn farthest(bendings: &[Bending], amplitudes: &[f32], moved: &[[f32; 3]]) -> f64 {
+    let off = |(node, moved): (usize, &[f32; 3])| {
+        let curves = bendings.iter().zip(amplitudes);
+        let curved: Direction = curves.map(|(bending, q)| bending.displacement(node, f64::from(*q))).sum();
+        (curved - Direction::from(moved.map(f64::from))).norm()
+    };
+    moved.iter().enumerate().map(off).fold(0.0, f64::max)
 }
 
 /// The mesh at rest, its root at 0, and what modes do to it; so many times as slow as its wood alone.
-fn body(plant: &Vibrating, stirring: &Stirring, tubes: &Tubes, slower: f64) -> Body {
+fn body(plant: &Vibrating, stirring: &Stirring, bendings: &[Bending], tubes: &Tubes, slower: f64) -> Body {
     let mut body = Body { triangles: tubes.triangles(), ..Body::default() };
     for ring in tubes.rings() {
         let centre = stirring.rest()[ring.node as usize];
@@ -113,7 +137,7 @@ fn body(plant: &Vibrating, stirring: &Stirring, tubes: &Tubes, slower: f64) -> B
             body.normals.push(single(&outward));
         }
     }
-    for (mode, bending) in stirring.bendings().iter().enumerate() {
+    for (mode, bending) in bendings.iter().enumerate() {
         // Of the arc tangent, of which a small amplitude is so much.
         let of_arc = bending.b().map_or(1.0, f64::recip);
         for (power, moved) in bending.powers().iter().enumerate() {

@@ -61,9 +61,10 @@ pub fn values(wish: &Wish, motion: &Motion, plugin: &PluginInfo) -> Result<Value
         Integrator::Newmark => Some("newmark"),
     };
     let bend = match motion.form {
+        Form::Turn => None,
         Form::Linear => Some("linear"),
         Form::Mode(3) => Some("s3"),
-        Form::Node | Form::Mode(_) => None,
+        Form::Node | Form::Mode(_) => Some("s2"),
     };
     let radius = knows("radius").then_some("tip");
     let words = [("method", method), ("bend", bend), ("radius", radius)];

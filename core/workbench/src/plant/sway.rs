@@ -61,7 +61,7 @@ impl Default for Motion {
             n_substeps: 1,
             integrator: Integrator::Exact,
             damping: Damping::default(),
-            form: Form::Mode(2),
+            form: Form::Turn,
             pull: 0.0,
             n_sensors: 1,
             sensors: Vec::new(),

@@ -32,8 +32,8 @@ pub(in crate::cli) struct Simulate {
     /// How modes go on in time.
     #[arg(long, value_enum, default_value_t = Method::Exact)]
     pub(in crate::cli) method: Method,
-    /// How nodes follow their modes: by straight lines, or so that branches keep their length.
-    #[arg(long, value_enum, default_value_t = Bend::S2)]
+    /// How nodes follow the modes.
+    #[arg(long, value_enum, default_value_t = Bend::Turn)]
     pub(in crate::cli) bend: Bend,
     /// Damping by mass, per second.
     #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 0.3)]
@@ -137,9 +137,11 @@ pub(in crate::cli) enum Method {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(in crate::cli) enum Bend {
+    /// Segments turn by all modes together: branches keep their length.
+    Turn,
     /// Straight lines: branches grow longer.
     Linear,
-    /// One arc tangent a mode and its square.
+    /// One arc tangent a mode and its square: lengths are kept where one mode acts.
     S2,
     /// And its cube.
     S3,
@@ -150,6 +152,14 @@ pub(in crate::cli) enum Bench {
     /// Forests of generated trees, cell by cell of the thesis's tables 6.1 and 6.2: frames per second of its graphics card,
     /// and of this machine with nodes on straight lines and so that branches keep their length.
     Forest(BenchForest),
+    /// How long branches stay, and how far nodes are off, by each way in which nodes can follow the modes of a plant.
+    Bending(BenchBending),
+}
+
+#[derive(Args, Debug)]
+pub(in crate::cli) struct BenchBending {
+    #[command(flatten)]
+    pub(in crate::cli) plant: Plant,
 }
 
 #[derive(Args, Debug)]
