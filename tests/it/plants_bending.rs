@@ -25,7 +25,8 @@ fn forms_of_displacement_are_compared_in_one_table() {
     let straight = stretch(&told, "linear", "slowest_mode")[1];
     assert!(of_one.iter().all(|error| *error < 0.05 * straight), "{of_one:?} {straight}");
     let text = bench.text("bench bending synth::tree:400,3 --modes 8");
-    assert!(text.lines().any(|line| line.starts_with("turn: segments turn  0 0")), "{text}");
+    let of_turns = text.lines().find(|line| line.starts_with("turn: segments turn")).unwrap();
+    assert_eq!(of_turns.matches("0 0").count(), 6, "{text}");
 }
 
 /// The walnut at 30 % of its height: 8.5 % by straight lines, a quarter of a percent by s and s2, as another program has
