@@ -89,9 +89,9 @@ struct Shape {
     n_instances: usize,
 }
 
-/// Of a motion that was written in this process so many rows are looked at, evenly spread: all of those of a forest
-/// would be read as slowly as they were written.
-const LOOKS: usize = 1 << 14;
+/// Of a motion that was written in this process a row a copy is looked at, evenly spread, and so many at least: where a
+/// copy's motion is lost it is in all of its rows, and all rows of a forest would be read as slowly as they were written.
+const LOOKS_LEAST: usize = 1 << 10;
 
 impl Simulator {
     pub(crate) fn new(handle: Handle, info: &PluginInfo, values: Values) -> Self {
@@ -168,7 +168,7 @@ impl Simulator {
         self.handle.ask(&Request::Step(steps), cx, &mut self.reply)?;
         let all = shape.n_nodes * shape.n_instances;
         let wanted = steps.detail.map_or(all, |copies| copies.iter().map(|copy| copy.nodes as usize).sum());
-        let looks = if self.handle.can_end() { usize::MAX } else { LOOKS };
+        let looks = if self.handle.can_end() { usize::MAX } else { shape.n_instances.max(LOOKS_LEAST) };
         if let Err(what) = check_motion(self.reply.table(&reply::MOTION), wanted, looks) {
             return Err(self.handle.misbehaved("step", what));
         }
