@@ -87,7 +87,7 @@ fn line(cell: &str, row: &Value) -> String {
     let number = |value: &Value| value.as_f64().map_or_else(|| "-".to_owned(), |fps| format!("{fps:.1}"));
     let share = |form: &str| format!("{:.0} %", 100.0 * row[form]["of_limit"].as_f64().unwrap_or_default());
     format!(
-        "{cell:14} thesis {:>7}  numpy {:>8}  linear {:>8} ({})  s,s2 {:>8} ({})  s,s2,s3 {:>8} ({})  state {:.1} %  plugin {:+.1} %",
+        "{cell:14} thesis {:>7}  numpy {:>8}  linear {:>8} ({})  s,s2 {:>8} ({})  s,s2,s3 {:>8} ({})  turns {:>8}  state {:.1} %  plugin {:+.1} %",
         number(&row["thesis_fps"]),
         number(&row["numpy_fps"]),
         number(&row["fps"]),
@@ -96,6 +96,7 @@ fn line(cell: &str, row: &Value) -> String {
         share("squared"),
         number(&row["cubed"]["fps"]),
         share("cubed"),
+        number(&row["turned"]["fps"]),
         100.0 * row["squared"]["state_share"].as_f64().unwrap_or_default(),
         100.0 * (row["boundary"]["ratio"][1].as_f64().unwrap_or_default() - 1.0),
     )
