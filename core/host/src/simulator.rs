@@ -1,6 +1,8 @@
 //! A simulator at work, and the check of what it returns. Metres, z up, right-handed; radians; seconds.
 
 mod input;
+#[cfg(test)]
+mod tests;
 
 use crate::context::CallContext;
 use crate::draft::Node;
@@ -89,8 +91,9 @@ struct Shape {
     n_instances: usize,
 }
 
-/// Of a motion that was written in this process a row a copy is looked at, evenly spread, and so many at least: where a
-/// copy's motion is lost it is in all of its rows, and all rows of a forest would be read as slowly as they were written.
+/// Of a motion that was written in this process a row a copy is looked at, its last where all nodes are wanted, and so many
+/// rows at least: where a copy's motion is lost it is in all of its rows but the first, the root's, and all rows of a
+/// forest would be read as slowly as they were written.
 const LOOKS_LEAST: usize = 1 << 10;
 
 impl Simulator {
@@ -233,10 +236,15 @@ fn check_motion(table: Option<&Table>, wanted: usize, looks: usize) -> Result<()
     if table.rows() != wanted {
         return Err(format!("committed {} rows of motion, wanted {wanted}", table.rows()));
     }
-    let rows = table.required::<f32>("d").as_chunks::<3>().0;
-    let stride = (rows.len() / looks).max(1);
-    match rows.iter().step_by(stride).position(|row| !row.iter().all(|v| v.is_finite())) {
-        Some(k) => Err(format!("row {} of the motion is not finite", k * stride)),
+    match lost(table.required::<f32>("d").as_chunks().0, looks) {
+        Some(row) => Err(format!("row {row} of the motion is not finite")),
         None => Ok(()),
     }
+}
+
+/// A row that is no number, of so many that are looked at.
+fn lost(rows: &[[f32; 3]], looks: usize) -> Option<usize> {
+    let stride = (rows.len() / looks).max(1);
+    let mut looked_at = (stride - 1..rows.len()).step_by(stride);
+    looked_at.find(|row| !rows[*row].iter().all(|v| v.is_finite()))
 }

@@ -10,6 +10,8 @@ use nalgebra::Vector3;
 /// Up to so many radians the node that turns most turns in each mode where its curves are fitted: as twigs do where the
 /// top of a tree is moved by 30 % of its height.
 const TURN: f64 = 0.85;
+/// Modes whose frequencies differ by no more than this, relatively, are as slow as one another.
+const AS_SLOW: f64 = 1e-5;
 /// A ball about half the height holds all nodes in the wind: so many times its radius at rest.
 const SWAY: f64 = 1.3;
 
@@ -20,8 +22,8 @@ pub struct Stirring {
     pub(crate) basis: WindBasis,
     pub(crate) following: Following,
     pub(crate) rest: Vec<Vector3<f64>>,
-    /// Metres by which the slowest mode moves the node that it moves most, a unit of its amplitude.
-    widest: f64,
+    /// Amplitudes of the modes that are pulled, a metre.
+    pull: Vec<f64>,
     pub(crate) height: f64,
     pub(crate) reach: f64,
 }
@@ -84,8 +86,8 @@ impl Stirring {
         let height = rest.iter().map(|at| at.z).fold(0.0, f64::max);
         let centre = Vector3::z() * (height / 2.0);
         let reach = rest.iter().map(|at| (at - centre).norm()).fold(0.0, f64::max) * SWAY;
-        let widest = (0..rest.len()).map(|node| modes.displacement(0, node).norm()).fold(0.0, f64::max);
-        Self { omegas: modes.omegas.clone(), basis, following, rest, widest, height, reach }
+        let pull = pull(modes, rest.len());
+        Self { omegas: modes.omegas.clone(), basis, following, rest, pull, height, reach }
     }
 
     /// Nodes, the root included.
@@ -112,11 +114,15 @@ impl Stirring {
         &self.rest
     }
 
-    /// Amplitudes with the slowest mode pulled out, so that the node it moves most is so many metres from rest.
+    /// Amplitudes with the slowest mode pulled out, so that on straight lines the node it moves most is so many metres from
+    /// rest, towards x, or y, or z, along which it moves most. Modes that are as slow are pulled with it, so that equal modes
+    /// may be any of their sums.
     #[must_use]
     pub fn pulled(&self, metres: f64) -> Vec<f32> {
         let mut amplitudes = vec![0.0; self.n_modes()];
-        amplitudes[0] = (metres / self.widest.max(f64::MIN_POSITIVE)) as f32;
+        for (amplitude, pull) in amplitudes.iter_mut().zip(&self.pull) {
+            *amplitude = (pull * metres) as f32;
+        }
         amplitudes
     }
 
@@ -125,4 +131,19 @@ impl Stirring {
     pub fn height(&self) -> f64 {
         self.height
     }
+}
+
+/// Amplitudes of the slowest mode, and of those as slow, that move the node which they move most by a metre.
+fn pull(modes: &Modes, n_nodes: usize) -> Vec<f64> {
+    let slowest =
+        modes.omegas.iter().take_while(|omega| **omega <= modes.omegas[0] * (1.0 + AS_SLOW)).count();
+    let moves = |node: usize| (0..slowest).map(move |mode| modes.displacement(mode, node));
+    let squares = |node: usize| moves(node).map(|by| by.component_mul(&by)).sum::<Vector3<f64>>();
+    let most = (0..n_nodes).map(|node| squares(node).sum()).fold(0.0, f64::max);
+    let node = (0..n_nodes).find(|node| squares(*node).sum() >= (1.0 - AS_SLOW) * most).unwrap_or(0);
+    let along = squares(node);
+    let axis = (0..3).find(|axis| along[*axis] >= (1.0 - AS_SLOW) * along.max()).unwrap_or(0);
+    let shares: Vec<f64> = moves(node).map(|by| by[axis]).collect();
+    let moved: Vector3<f64> = moves(node).zip(&shares).map(|(by, share)| by * *share).sum();
+    shares.iter().map(|share| share / moved.norm().max(f64::MIN_POSITIVE)).collect()
 }

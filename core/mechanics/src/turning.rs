@@ -1,8 +1,9 @@
 //! Displacement by modes that turn segments: every length is kept exactly, whatever modes act together.
 //!
 //! Thesis 6.4.2 puts each mode right by itself, so that lengths are off again where several act. Here modes add up as
-//! turns: a segment turns by the vector sum of what each mode turns it, and stands on the tip of the one before (modal
-//! warping: Choi and Ko, IEEE Trans. Vis. Comput. Graph. 11 (2005) 91). Small turns are those of the modes themselves.
+//! turns: a segment turns by the vector sum of what each mode turns it, and stands on the tip of the one before. So modes
+//! of solids are added up by Huang, Tong, Zhou, Bao and Desbrun, IEEE Trans. Vis. Comput. Graph. 17 (2011) 983; modal
+//! warping (Choi and Ko, the same 11 (2005) 91) turns each node by itself. Small turns are those of the modes themselves.
 
 #[cfg(test)]
 mod tests;
@@ -10,6 +11,7 @@ mod tests;
 use crate::beams::Beams;
 use crate::modes::Modes;
 use nalgebra::{Rotation3, Vector3};
+use std::f64::consts::PI;
 
 /// What modes do to the segments of a plant.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,7 +76,9 @@ impl Turning {
     fn moved(&self, turn: impl Fn(usize) -> Vector3<f64>) -> Vec<Vector3<f64>> {
         let mut moved = vec![Vector3::zeros()];
         for (k, (segment, parent)) in self.segments.iter().zip(&self.parents).enumerate() {
-            moved.push(moved[*parent as usize] + Rotation3::new(turn(k)) * segment - segment);
+            // No farther than round to the other side, which is beyond what any plant does.
+            let turn = turn(k).cap_magnitude(PI);
+            moved.push(moved[*parent as usize] + Rotation3::new(turn) * segment - segment);
         }
         moved
     }

@@ -85,6 +85,27 @@ fn in_a_steady_wind_every_copy_comes_to_rest_bent_alike() {
     }
 }
 
+/// A round rod's slowest modes are any two across each other: whichever were found, it is pulled to the same place.
+#[test]
+fn equal_modes_are_pulled_to_the_same_place_whichever_were_found() {
+    let node = |k: u32| honami_model::plant::Node {
+        parent: k.checked_sub(1),
+        position: [0.0, 0.0, f64::from(k)],
+        radius: 0.02,
+    };
+    let rod = honami_model::plant::Plant::new((0..6).map(node).collect()).unwrap();
+    let beams = Beams::new(&rod, &Options::default()).unwrap();
+    for seed in [1, 2, 3, 4] {
+        let modes = Modes::new(&beams, 4, seed).unwrap();
+        let basis = WindBasis::new(&beams, &modes, &Drag::default());
+        let plant = Arc::new(Stirring::new(&beams, &modes, basis, Form::Linear));
+        let mut forest = forest(&plant, &[Stand::default()], &PACE);
+        forest.pull(0, &plant.pulled(0.25));
+        let [x, y, z] = posed(&mut forest, None, &threads(1))[5];
+        assert!((x - 0.25).abs() < 1e-5 && y.abs() < 1e-5 && z.abs() < 1e-5, "{seed}: {x} {y} {z}");
+    }
+}
+
 /// A copy of another size swings as a plant of that size does.
 #[test]
 fn a_larger_copy_is_the_larger_plant() {

@@ -64,7 +64,8 @@ fn a_pose_by_turns_is_what_the_modes_together_do() {
         let modes = Modes::new(&beams, n_modes, 1).unwrap();
         let turning = Turning::new(&beams, &modes);
         let mut chance = Pcg64::seed_from_u64(2);
-        let most: Vec<f64> = (0..n_modes).map(|mode| modes.amplitude(mode, 1.5) / n_modes as f64).collect();
+        // Up to three radians, and some beyond what a segment turns at most.
+        let most: Vec<f64> = (0..n_modes).map(|mode| modes.amplitude(mode, 6.0) / n_modes as f64).collect();
         let amplitudes: Vec<f32> = (0..n_copies * n_modes)
             .map(|k| (most[k % n_modes] * chance.random_range(-1.0..1.0)) as f32)
             .collect();
@@ -81,7 +82,7 @@ fn a_pose_by_turns_is_what_the_modes_together_do() {
                 for (got, node) in pose.as_chunks::<3>().0.iter().zip(&nodes) {
                     let wanted = wanted[*node as usize].cast::<f32>();
                     let off = (nalgebra::Vector3::from(*got) - wanted).amax();
-                    assert!(off < 2e-6, "{n_nodes} {copy} {node}: {got:?} {wanted}");
+                    assert!(off < 1e-5, "{n_nodes} {copy} {node}: {got:?} {wanted}");
                 }
             }
         }

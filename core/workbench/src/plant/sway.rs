@@ -212,7 +212,8 @@ fn ends(plant: &Vibrating, n: usize) -> Vec<u32> {
 /// # Errors
 /// [`WorkbenchError::Memory`] where there is less.
 pub(crate) fn room(copies: usize, nodes: usize, modes: usize) -> Result<usize, WorkbenchError> {
-    let bytes = copies * (3 * nodes + 2 * modes) * size_of::<f32>();
+    let numbers = nodes.saturating_mul(3).saturating_add(modes.saturating_mul(2));
+    let bytes = copies.saturating_mul(numbers).saturating_mul(size_of::<f32>());
     let there = free();
     if bytes > there { Err(WorkbenchError::Memory { copies, nodes, bytes, there }) } else { Ok(bytes) }
 }
