@@ -28,7 +28,8 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("honami-synth", &["honami-model"]),
     ("honami-follow", &["honami-plugin", "honami-vision"]),
     ("honami-tracker-*", &["honami-plugin", "honami-vision", "honami-follow"]),
-    ("honami-clusterer-*", &["honami-plugin", "honami-motion"]),
+    ("honami-grouping", &["honami-plugin", "honami-model", "honami-motion"]),
+    ("honami-clusterer-*", &["honami-plugin", "honami-motion", "honami-grouping"]),
     ("honami-simulator-*", &["honami-plugin", "honami-mechanics", "honami-model"]),
     (
         "honami-workbench",

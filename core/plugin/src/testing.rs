@@ -1,9 +1,11 @@
 //! Runs plugins without a host, for the tests of their crates.
 
 mod clip;
+mod samples;
 mod suite;
 
 pub use clip::{Clip, off_px};
+pub use samples::{Samples, groups};
 pub use suite::suite;
 
 use crate::clusterer::{Clusterer, Clustering, Tracks};

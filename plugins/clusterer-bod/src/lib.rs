@@ -3,11 +3,10 @@
 #[cfg(test)]
 mod tests;
 
+use honami_grouping::{BEFORE_LINKAGE, Linkage, heard, linked, positions};
 use honami_motion::likeness::{self, Likenesses};
-use honami_motion::{Criterion, MotionError, Positions, likenesses, linkage};
-use honami_plugin::{
-    Clusterer, Clustering, Cx, Error, Info, Merge, Result, Track, Tracks, choice, export, params,
-};
+use honami_motion::likenesses;
+use honami_plugin::{Clusterer, Clustering, Cx, Info, Result, Tracks, choice, export, params};
 
 choice! {
     /// What makes two tracks alike.
@@ -30,16 +29,6 @@ choice! {
         Keep = "keep" => "Keep",
         /// Frequencies at which leaves flutter each for itself count less.
         TakeDown = "down" => "Take down",
-    }
-}
-
-choice! {
-    /// What makes two groups close.
-    pub(crate) enum Linkage {
-        /// The least increase of inertia: groups of similar size.
-        Ward = "ward" => "Ward",
-        /// The mean distance between their tracks: groups as uneven as they come.
-        Average = "average" => "Average",
     }
 }
 
@@ -75,22 +64,13 @@ impl Clusterer for Components {
     };
 
     fn cluster(settings: &Settings, tracks: &Tracks<'_>, cx: &Cx<'_>) -> Result<Clustering> {
-        let mut heard = Ok(());
-        let found = likenesses(&positions(tracks), &options(settings, tracks), &mut |done| {
-            heard = cx.progress(0.95 * done, "components");
-            heard.is_ok()
-        });
-        heard?;
-        let found = found.map_err(error)?;
+        let positions = positions(tracks).1;
+        let found = heard(cx, BEFORE_LINKAGE, "components", |keep_going| {
+            likenesses(&positions, &options(settings, tracks), keep_going)
+        })?;
         tell(&found, settings, cx);
-        cx.progress(0.95, "linkage")?;
-        let criterion = match settings.linkage {
-            Linkage::Ward => Criterion::Ward,
-            Linkage::Average => Criterion::Average,
-        };
-        let tree = linkage(found.condensed, found.n_tracks, criterion).map_err(error)?;
-        let merges = tree.merges().iter().map(|m| Merge { a: m.a, b: m.b, height: m.height, size: m.size });
-        Ok(Clustering { merges: merges.collect(), frames: Vec::new() })
+        let merges = linked(found.condensed, found.n_tracks, settings.linkage, cx)?;
+        Ok(Clustering { merges, frames: Vec::new() })
     }
 }
 
@@ -110,14 +90,6 @@ fn options(settings: &Settings, tracks: &Tracks<'_>) -> likeness::Options {
         },
         n_threads: tracks.max_threads as usize,
     }
-}
-
-fn positions(tracks: &Tracks<'_>) -> Positions {
-    let samples = |track: Track<'_>| {
-        let sample = |k: usize| track.seen(k).then(|| [track.x[k], track.y[k]]);
-        (track.first_frame, (0..track.x.len()).map(sample).collect())
-    };
-    Positions::of_samples(&tracks.iter().map(samples).collect::<Vec<_>>()).1
 }
 
 /// What a user should know of the grouping.
@@ -147,15 +119,6 @@ fn tell(found: &Likenesses, settings: &Settings, cx: &Cx<'_>) {
         cx.warn(&format!(
             "{n_unseen} tracks are never seen together with others: they count as farthest from all"
         ));
-    }
-}
-
-fn error(error: MotionError) -> Error {
-    match error {
-        MotionError::TooFewTracks(_) | MotionError::TooFewFrames(_) | MotionError::NeverTogether => {
-            Error::data(error.to_string())
-        }
-        _ => error.into(),
     }
 }
 

@@ -1,86 +1,25 @@
 //! The plugin through its trait: what it finds, what its settings do, what it refuses.
 
-use honami_plugin::testing;
+use honami_plugin::testing::{self, Samples};
 
 use super::*;
 
 const N_FRAMES: u32 = 80;
 const N_TRACKS: u32 = 24;
 
-/// Samples of tracks, all over the same frames.
-struct Table {
-    ids: Vec<u32>,
-    first_frames: Vec<i64>,
-    lens: Vec<u32>,
-    offsets: Vec<u64>,
-    x: Vec<f32>,
-    y: Vec<f32>,
-    status: Vec<u8>,
-    times_s: Vec<f64>,
-}
-
 /// Three branches, whose tracks take turns and are far from each other, at frequencies of their own; `ways` says which
 /// way a track goes.
-fn three_branches(ways: impl Fn(u32) -> f64) -> Table {
+fn three_branches(ways: impl Fn(u32) -> f64) -> Samples {
     let position = |track: u32, frame: u32| {
         let (branch, rank) = (f64::from(track % 3), f64::from(track / 3));
         let sway = ways(track) * (3.0 + rank) * (f64::from(frame) * (0.2 + 0.17 * branch) + branch).sin();
-        [(90.0 * rank + 7.0 * branch + sway) as f32, (40.0 + 0.4 * sway) as f32]
+        [90.0 * rank + 7.0 * branch + sway, 40.0 + 0.4 * sway]
     };
-    let samples: Vec<[f32; 2]> = (0..N_TRACKS)
-        .flat_map(|track| (0..N_FRAMES).map(|frame| position(track, frame)).collect::<Vec<_>>())
-        .collect();
-    Table {
-        ids: (100..100 + N_TRACKS).collect(),
-        first_frames: vec![5; N_TRACKS as usize],
-        lens: vec![N_FRAMES; N_TRACKS as usize],
-        offsets: (0..N_TRACKS).map(|k| u64::from(k * N_FRAMES)).collect(),
-        x: samples.iter().map(|p| p[0]).collect(),
-        y: samples.iter().map(|p| p[1]).collect(),
-        status: vec![1; samples.len()],
-        times_s: (0..100).map(|k| f64::from(k) / 25.0).collect(),
-    }
+    Samples::new(N_TRACKS, 5, N_FRAMES, position)
 }
 
-impl Table {
-    fn tracks(&self) -> Tracks<'_> {
-        Tracks {
-            ids: &self.ids,
-            first_frames: &self.first_frames,
-            lens: &self.lens,
-            offsets: &self.offsets,
-            x: &self.x,
-            y: &self.y,
-            status: &self.status,
-            first_time: 0,
-            times_s: &self.times_s,
-            width: 800,
-            height: 360,
-            max_threads: 2,
-            seed: 0,
-        }
-    }
-}
-
-/// The leaves of each of the last three clusters, sorted.
 fn three_groups(found: &Clustering) -> Vec<Vec<u32>> {
-    let leaves = |cluster: u32| {
-        let (mut open, mut leaves) = (vec![cluster], Vec::new());
-        while let Some(cluster) = open.pop() {
-            match cluster.checked_sub(N_TRACKS).map(|row| found.merges[row as usize]) {
-                Some(merge) => open.extend([merge.a, merge.b]),
-                None => leaves.push(cluster),
-            }
-        }
-        leaves.sort_unstable();
-        leaves
-    };
-    let last = &found.merges[found.merges.len() - 2..];
-    let top = 2 * N_TRACKS - 2;
-    let tops = last.iter().flat_map(|merge| [merge.a, merge.b]).filter(|&cluster| cluster != top - 1);
-    let mut groups: Vec<Vec<u32>> = tops.map(leaves).collect();
-    groups.sort();
-    groups
+    testing::groups(found, 3)
 }
 
 fn branches() -> Vec<Vec<u32>> {
@@ -117,12 +56,9 @@ fn tracks_that_go_the_other_way_belong_together_by_likenesses_that_do_not_ask_wh
 fn lost_samples_do_not_count_and_gaps_do_not_part_a_branch() {
     let settings = Settings { position: 0.1, ..Settings::default() };
     let mut table = three_branches(|_| 1.0);
-    let lose = |table: &mut Table, x: f32| {
+    let lose = |table: &mut Samples, x: f32| {
         for track in [4, 9, 17] {
-            let start = track * N_FRAMES as usize;
-            for k in start..start + 35 {
-                (table.x[k], table.y[k], table.status[k]) = (x, -x, 0);
-            }
+            table.lose(track, 0..35, [x, -x]);
         }
     };
     lose(&mut table, 0.0);
@@ -134,8 +70,7 @@ fn lost_samples_do_not_count_and_gaps_do_not_part_a_branch() {
 
 #[test]
 fn one_track_cannot_be_grouped() {
-    let whole = three_branches(|_| 1.0);
-    let table = Table { ids: vec![1], first_frames: vec![5], lens: vec![9], offsets: vec![0], ..whole };
+    let table = Samples::new(1, 5, 9, |_, _| [0.0; 2]);
     let error = testing::cluster::<Components>(&Settings::default(), &table.tracks()).unwrap_err();
     assert_eq!(error.to_string(), "grouping needs at least 2 tracks, came 1");
 }

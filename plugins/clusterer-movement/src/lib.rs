@@ -3,20 +3,9 @@
 #[cfg(test)]
 mod tests;
 
-use honami_motion::{Composite, Criterion, MotionError, Positions, composite, denoised, linkage};
-use honami_plugin::{
-    Clusterer, Clustering, Cx, Error, FrameNote, Info, Merge, Result, Track, Tracks, choice, export, params,
-};
-
-choice! {
-    /// What makes two groups close.
-    pub(crate) enum Linkage {
-        /// The least increase of inertia: groups of similar size.
-        Ward = "ward" => "Ward",
-        /// The mean distance between their tracks: groups as uneven as they come.
-        Average = "average" => "Average",
-    }
-}
+use honami_grouping::{BEFORE_LINKAGE, Linkage, heard, linked, positions};
+use honami_motion::{Composite, Positions, composite, denoised};
+use honami_plugin::{Clusterer, Clustering, Cx, FrameNote, Info, Result, Tracks, export, params};
 
 params! {
     /// What the user may choose.
@@ -61,47 +50,22 @@ impl Clusterer for Movement {
             outlier_sd: settings.outliers.then_some(settings.outlier_sd),
             n_threads: tracks.max_threads as usize,
         };
-        let criterion = match settings.linkage {
-            Linkage::Ward => Criterion::Ward,
-            Linkage::Average => Criterion::Average,
-        };
-        let mut heard = Ok(());
-        let distances = composite(&positions, &options, &mut |done| {
-            heard = cx.progress(0.95 * done, "distances");
-            heard.is_ok()
-        });
-        heard?;
-        let distances = distances.map_err(error)?;
+        let distances =
+            heard(cx, BEFORE_LINKAGE, "distances", |keep_going| composite(&positions, &options, keep_going))?;
         if distances.n_apart > 0 {
             let n = distances.n_apart;
             cx.warn(&format!("{n} pairs of tracks are never seen together: they count as farthest apart"));
         }
         let frames = notes(&distances, first_frame);
-        cx.progress(0.95, "linkage")?;
-        let tree = linkage(distances.condensed, distances.n_tracks, criterion).map_err(error)?;
-        let merges = tree.merges().iter().map(|m| Merge { a: m.a, b: m.b, height: m.height, size: m.size });
-        Ok(Clustering { merges: merges.collect(), frames })
+        let merges = linked(distances.condensed, distances.n_tracks, settings.linkage, cx)?;
+        Ok(Clustering { merges, frames })
     }
-}
-
-/// The seen samples, and the frame of the first.
-fn positions(tracks: &Tracks<'_>) -> (i64, Positions) {
-    let samples = |track: Track<'_>| {
-        let sample = |k: usize| track.seen(k).then(|| [track.x[k], track.y[k]]);
-        (track.first_frame, (0..track.x.len()).map(sample).collect())
-    };
-    Positions::of_samples(&tracks.iter().map(samples).collect::<Vec<_>>())
 }
 
 /// The same without noise.
 fn smooth(positions: &Positions, tracks: &Tracks<'_>, cx: &Cx<'_>) -> Result<Positions> {
-    let mut heard = Ok(());
-    let smooth = denoised(positions, tracks.max_threads as usize, &mut |_| {
-        heard = cx.progress(0.0, "noise");
-        heard.is_ok()
-    });
-    heard?;
-    let (positions, n) = smooth.map_err(error)?;
+    let n_threads = tracks.max_threads as usize;
+    let (positions, n) = heard(cx, 0.0, "noise", |keep_going| denoised(positions, n_threads, keep_going))?;
     cx.info(&format!("denoised tracks are made of {n} components"));
     Ok(positions)
 }
@@ -113,15 +77,6 @@ fn notes(distances: &Composite, first_frame: i64) -> Vec<FrameNote> {
         mean.map(|distance| FrameNote { frame: first_frame + frame, outlier, distance })
     };
     (0..).zip(&distances.frame_means).filter_map(note).collect()
-}
-
-fn error(error: MotionError) -> Error {
-    match error {
-        MotionError::TooFewTracks(_) | MotionError::TooFewFrames(_) | MotionError::NeverTogether => {
-            Error::data(error.to_string())
-        }
-        _ => error.into(),
-    }
 }
 
 export! {
