@@ -9,6 +9,7 @@ pub mod composite;
 pub mod disagreement;
 pub mod likeness;
 pub mod linkage;
+pub mod ncut;
 pub mod overlay;
 mod pool;
 pub mod positions;
@@ -20,6 +21,7 @@ pub use bod::{Bod, Table, denoised};
 pub use composite::{Composite, composite};
 pub use likeness::{Likeness, Likenesses, likenesses};
 pub use linkage::{Criterion, linkage};
+pub use ncut::{Ncut, ncut};
 pub use positions::Positions;
 
 /// Why tracks cannot be compared or grouped.

@@ -152,7 +152,7 @@ impl Table {
     }
 
     /// The most by which a position is off because f32 has so few digits, pixels.
-    pub(super) fn rounding_px(&self) -> f64 {
+    pub(crate) fn rounding_px(&self) -> f64 {
         self.rounding_px
     }
 
