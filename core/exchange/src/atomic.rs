@@ -1,5 +1,8 @@
 //! Files that are whole or not there: written beside their place, and renamed when complete.
 
+#[cfg(test)]
+mod tests;
+
 use std::io::{BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
@@ -9,20 +12,23 @@ use crate::table::TableError;
 #[derive(Debug)]
 pub struct AtomicFile {
     path: PathBuf,
+    /// Where that is, links followed.
+    place: PathBuf,
     file: BufWriter<tempfile::NamedTempFile>,
 }
 
 impl AtomicFile {
-    /// Starts the file `path`.
+    /// Starts the file `path`, or that to which it is a link.
     ///
     /// # Errors
     /// [`TableError::File`] when the folder cannot be written to, [`TableError::Precious`] when a project, a clip or a
-    /// library stands there: nobody means to lose it.
+    /// library stands there, or what is no file, such as a device: nobody means to lose it.
     pub fn create(path: &Path) -> Result<Self, TableError> {
         if let Some(what) = precious(path) {
             return Err(TableError::Precious { path: path.into(), what });
         }
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let place = std::fs::canonicalize(path).unwrap_or_else(|_none| path.to_owned());
+        let folder = place.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let mut builder = tempfile::Builder::new();
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666)); // less the umask
@@ -34,7 +40,7 @@ impl AtomicFile {
             TableError::File { path: path.into(), source }
         };
         let file = builder.prefix(".honami-").suffix(".part").tempfile_in(folder).map_err(plain)?;
-        Ok(Self { path: path.into(), file: BufWriter::with_capacity(1 << 16, file) })
+        Ok(Self { path: path.into(), place: place.clone(), file: BufWriter::with_capacity(1 << 16, file) })
     }
 
     /// The name it will have.
@@ -48,12 +54,12 @@ impl AtomicFile {
     /// # Errors
     /// [`TableError::File`] on a full disk; what stood there before then still does.
     pub fn finish(self) -> Result<(), TableError> {
-        let Self { path, file } = self;
+        let Self { path, place, file } = self;
         file.into_inner()
             .map_err(std::io::IntoInnerError::into_error)
             .and_then(|file| {
                 file.as_file().sync_all()?;
-                file.persist(&path).map_err(|failed| failed.error)
+                file.persist(&place).map_err(|failed| failed.error)
             })
             .map_err(|source| TableError::File { path: path.clone(), source })?;
         Ok(())
@@ -73,6 +79,12 @@ fn precious(path: &Path) -> Option<&'static str> {
         (0, b"II*\0", "a picture"),
         (0, b"\x7FELF", "a library"),
     ];
+    match std::fs::metadata(path).map(|there| there.file_type()) {
+        Ok(kind) if kind.is_dir() => return Some("a folder"),
+        // Its place would be taken by a file.
+        Ok(kind) if !kind.is_file() => return Some("a device or a pipe"),
+        _ => {}
+    }
     let mut head = [0; 16];
     // What cannot be read is told when it is written.
     let n =
