@@ -2,15 +2,28 @@
 
 use honami_model::hierarchy::Dendrogram;
 use honami_motion::likeness::{self, Flutter};
-use honami_motion::{Criterion, Likeness, MotionError, Positions, composite, denoised, likenesses, linkage};
+use honami_motion::{
+    Criterion, Likeness, MotionError, Positions, composite, denoised, likenesses, linkage, ncut,
+};
 
 type Method = fn(&Positions) -> Result<Dendrogram, MotionError>;
 
 /// What a row is called, and what it does.
-pub(crate) const METHODS: [(&str, Method); 8] = [
+pub(crate) const METHODS: [(&str, Method); 17] = [
     ("position", |tracks| thesis(tracks, 0.0)),
     ("distance of movement (`movement`)", |tracks| thesis(tracks, 1.0)),
     ("the same, denoised", |tracks| thesis(&denoised(tracks, 0, &mut |_| true)?.0, 1.0)),
+    ("normalised cuts of abs(ρ) (`ncut`, position=0)", |tracks| cuts(tracks, 0.0, false)),
+    ("the same, denoised", |tracks| cuts(tracks, 0.0, true)),
+    ("normalised cuts of abs(ρ) and position (`ncut`)", |tracks| cuts(tracks, 1.0, false)),
+    ("the same, denoised", |tracks| cuts(tracks, 1.0, true)),
+    ("`ncut`, order=cuts, levels=12, neighbours=50", |tracks| clearest(tracks, false)),
+    ("the same, denoised", |tracks| clearest(tracks, true)),
+    ("abs(ρ) and Ward", |tracks| correlation(tracks, 0.0)),
+    ("abs(ρ), position and Ward", |tracks| correlation(tracks, 1.0)),
+    ("the same, denoised (`bod`, likeness=steps, flutter=keep)", |tracks| {
+        components(tracks, Likeness::Steps, 1.0, Flutter::Keep)
+    }),
     ("`bod`, flutter=keep", |tracks| components(tracks, Likeness::Loadings, 0.6, Flutter::Keep)),
     ("`bod`, flutter=down", |tracks| components(tracks, Likeness::Loadings, 0.6, Flutter::TakeDown)),
     ("**`bod`, as it comes**", |tracks| components(tracks, Likeness::Loadings, 0.6, Flutter::Auto)),
@@ -21,6 +34,59 @@ pub(crate) const METHODS: [(&str, Method); 8] = [
 fn thesis(tracks: &Positions, movement_weight: f64) -> Result<Dendrogram, MotionError> {
     let options = composite::Options { movement_weight, ..Default::default() };
     linkage(composite(tracks, &options, &mut |_| true)?.condensed, tracks.n_tracks(), Criterion::Ward)
+}
+
+/// Zeng's, of the whole graph and level by level, as in print.
+fn cuts(tracks: &Positions, position_weight: f64, denoises: bool) -> Result<Dendrogram, MotionError> {
+    let n_neighbours = tracks.n_tracks();
+    let options = ncut::Options { position_weight, denoises, n_neighbours, ..Default::default() };
+    Ok(ncut(tracks, &options, &mut |_| true)?.tree)
+}
+
+/// The same of the nearest, what falls apart most clearly first.
+fn clearest(tracks: &Positions, denoises: bool) -> Result<Dendrogram, MotionError> {
+    let order = ncut::Order::Cuts;
+    let options = ncut::Options { order, denoises, n_levels: 12, n_neighbours: 50, ..Default::default() };
+    Ok(ncut(tracks, &options, &mut |_| true)?.tree)
+}
+
+/// sqrt(1 - |rho|) of tracks as they are (errata Z1), and places, each by its spread over all N x N pairs.
+fn correlation(tracks: &Positions, position_weight: f64) -> Result<Dendrogram, MotionError> {
+    let (n, n_frames) = (tracks.n_tracks(), tracks.n_frames());
+    let at = |track: usize, frame: usize| tracks.get(track, frame).unwrap_or_default().map(f64::from);
+    let mut steps: Vec<Vec<[f64; 2]>> = Vec::new();
+    let mut places = Vec::new();
+    for track in 0..n {
+        let all: Vec<[f64; 2]> = (0..n_frames).map(|frame| at(track, frame)).collect();
+        places.push([0, 1].map(|axis| all.iter().map(|at| at[axis]).sum::<f64>() / n_frames as f64));
+        let mean = [0, 1].map(|axis| (all[n_frames - 1][axis] - all[0][axis]) / (n_frames - 1) as f64);
+        let own: Vec<[f64; 2]> = all
+            .windows(2)
+            .map(|pair| [0, 1].map(|axis| pair[1][axis] - pair[0][axis] - mean[axis]))
+            .collect();
+        let length = own.iter().flatten().map(|v| v * v).sum::<f64>().sqrt();
+        steps.push(own.iter().map(|v| v.map(|v| v / length)).collect());
+    }
+    let apart = |i: usize, j: usize| {
+        let pairs = || steps[i].iter().zip(&steps[j]);
+        let re: f64 = pairs().map(|(a, b)| a[0] * b[0] + a[1] * b[1]).sum();
+        let im: f64 = pairs().map(|(a, b)| a[1] * b[0] - a[0] * b[1]).sum();
+        (1.0 - re.hypot(im)).max(0.0).sqrt()
+    };
+    let far = |i: usize, j: usize| (places[i][0] - places[j][0]).hypot(places[i][1] - places[j][1]);
+    let (apart, far) = (spread(n, apart), spread(n, far));
+    let both = apart.iter().zip(&far).map(|(apart, far)| apart + position_weight * far);
+    linkage(both.collect(), n, Criterion::Ward)
+}
+
+/// A distance of all pairs over its standard deviation.
+fn spread(n: usize, distance: impl Fn(usize, usize) -> f64) -> Vec<f64> {
+    let all: Vec<f64> =
+        (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j))).map(|(i, j)| distance(i, j)).collect();
+    let entries = (n * n) as f64;
+    let mean = 2.0 * all.iter().sum::<f64>() / entries;
+    let sd = (2.0 * all.iter().map(|d| d * d).sum::<f64>() / entries - mean * mean).sqrt();
+    all.iter().map(|d| d / sd).collect()
 }
 
 fn components(
