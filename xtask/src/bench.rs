@@ -25,7 +25,11 @@ const BENCHES: [Bench; 16] = [
         forest::run,
     ),
     ("modes", "vibrations of trees beside SciPy's, a row a size: `bench modes [NODES…]`", modes),
-    ("cluster", "distances and components + Ward, N = 2000, against SciPy's linkage", cluster),
+    (
+        "cluster",
+        "distances, components and normalised cuts, N = 2000 and more, against SciPy's linkage",
+        cluster,
+    ),
     (
         "grouping",
         "groups of branches that are known, by every method: `bench grouping [--trees N] [--large] [--development]`",

@@ -1,17 +1,18 @@
-//! Times what groups 2,000 tracks by their components, over 300 and 500 frames; prints a JSON line each.
+//! Times what groups 2,000 tracks by their components, over 300 and 500 frames, and by normalised cuts, these also 20,000;
+//! prints a JSON line each.
 
 use std::time::Instant;
 
-use honami_motion::{Bod, Criterion, Positions, Table, likeness, likenesses, linkage};
+use honami_motion::{Bod, Criterion, Positions, Table, likeness, likenesses, linkage, ncut};
 use rand::{RngExt, SeedableRng};
 
 const N_TRACKS: usize = 2000;
 
 /// Tracks of 40 branches that sway each at its own frequency, with a little noise; one in ten starts late if there are gaps.
-fn branches(n_frames: usize, has_gaps: bool) -> Positions {
+fn branches(n_tracks: usize, n_frames: usize, has_gaps: bool) -> Positions {
     let mut rng = rand_pcg::Pcg64Mcg::seed_from_u64(1);
-    let mut positions = Positions::new(N_TRACKS, n_frames);
-    for track in 0..N_TRACKS {
+    let mut positions = Positions::new(n_tracks, n_frames);
+    for track in 0..n_tracks {
         let branch = (track % 40) as f32;
         let rest = [rng.random_range(0.0..80.0) + 110.0 * (branch % 8.0), rng.random_range(0.0..700.0)];
         let swing = rng.random_range(4.0..12.0_f32);
@@ -33,7 +34,7 @@ fn branches(n_frames: usize, has_gaps: bool) -> Positions {
 #[expect(clippy::print_stdout, reason = "the result of a benchmark")]
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     for (n_frames, has_gaps) in [(300, false), (500, false), (300, true)] {
-        let positions = branches(n_frames, has_gaps);
+        let positions = branches(N_TRACKS, n_frames, has_gaps);
         let [mut table_ms, mut bod_ms, mut all_ms, mut ward_ms] = [f64::INFINITY; 4];
         let mut n_above = 0;
         for _ in 0..3 {
@@ -56,6 +57,23 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             "n_tracks": N_TRACKS, "n_frames": n_frames, "gaps": has_gaps, "threads": rayon::current_num_threads(),
             "components": n_above, "table_ms": table_ms, "decomposition_ms": bod_ms,
             "distances_ms": all_ms, "ward_ms": ward_ms,
+        });
+        println!("{line}");
+    }
+    for (n_tracks, n_frames) in [(N_TRACKS, 500), (10 * N_TRACKS, 150)] {
+        let positions = branches(n_tracks, n_frames, false);
+        let start = Instant::now();
+        let mut graph_s = 0.0;
+        let found = ncut(&positions, &ncut::Options::default(), &mut |done| {
+            if done <= 0.5 {
+                graph_s = start.elapsed().as_secs_f64();
+            }
+            true
+        })?;
+        let line = serde_json::json!({
+            "n_tracks": n_tracks, "n_frames": n_frames, "threads": rayon::current_num_threads(),
+            "graph_s": graph_s, "cuts_s": start.elapsed().as_secs_f64() - graph_s,
+            "groups": found.n_groups, "residual": found.residual,
         });
         println!("{line}");
     }

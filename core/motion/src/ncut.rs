@@ -33,10 +33,11 @@ use divide::divide;
 /// Which group a hierarchy opens next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Order {
-    /// All of a level before any of the next: halves, quarters, eighths.
-    Levels,
     /// The one that falls apart most clearly.
     Cuts,
+    /// All of a level before any of the next, as in the thesis: halves, quarters, eighths. What has two branches on one side
+    /// and one on the other is then cut into four, and not into three.
+    Levels,
 }
 
 /// How tracks are grouped.
@@ -44,7 +45,7 @@ pub enum Order {
 pub struct Options {
     /// Weight of the distance between mean positions, w_pos; 0: movement alone.
     pub position_weight: f64,
-    /// How often groups are halved: 2 to the power of this many groups, where all can be.
+    /// How often groups are halved at most; Zeng finds 5 to 7 levels sufficient.
     pub n_levels: u32,
     /// Which group is opened next.
     pub order: Order,
@@ -63,8 +64,8 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             position_weight: 1.0,
-            n_levels: 6,
-            order: Order::Levels,
+            n_levels: 12,
+            order: Order::Cuts,
             n_neighbours: 50,
             denoises: false,
             seed: 0,

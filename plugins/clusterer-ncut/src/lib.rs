@@ -13,21 +13,20 @@ const RESIDUAL: f64 = 1e-6;
 choice! {
     /// Which group is opened next.
     pub(crate) enum Order {
-        /// All of a level before any of the next: halves, quarters, eighths.
-        Levels = "levels" => "Level by level",
-        /// The one that falls apart most clearly; more levels do no harm then.
+        /// The one that falls apart most clearly.
         Cuts = "cuts" => "Clearest first",
+        /// All of a level before any of the next, as in print: halves, quarters, eighths.
+        Levels = "levels" => "Level by level",
     }
 }
 
 params! {
     /// What the user may choose.
     pub(crate) struct Settings {
-        /// How often groups are halved: 6 levels make 64 groups. Within the last ones tracks are joined along their largest
-        /// affinities.
-        levels: i64 = 6 => { label: "Levels", min: 1, max: 16, soft_max: 7 },
         /// Which group is opened next.
-        order: Order = "levels" => { label: "Order" },
+        order: Order = "cuts" => { label: "Order" },
+        /// How often groups are halved at most. Within the last ones tracks are joined along their largest affinities.
+        levels: i64 = 12 => { label: "Levels", min: 1, max: 16 },
         /// Weight of the distance between mean positions; 0: movement alone.
         position: f64 = 1.0 => { label: "Weight of position", min: 0, max: 100, soft_max: 4 },
         /// Others that each track is joined to at least: those most alike. With as many as there are tracks the graph is

@@ -70,6 +70,32 @@ fn lost_samples_do_not_count_and_gaps_do_not_part_a_branch() {
     assert_eq!(testing::cluster::<Cuts>(&by_movement(), &samples.tracks()).unwrap(), found);
 }
 
+/// Groups on a circle, each of a frequency and a direction of its own: one, two and three cuts find them.
+#[test]
+fn two_three_and_four_groups_are_what_one_two_and_three_cuts_find() {
+    let mut state = 7_u64;
+    let mut near = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 40) as f64 / f64::from(1 << 20) - 8.0
+    };
+    for n_groups in [2, 3, 4] {
+        let places: Vec<[f64; 2]> = (0..8 * n_groups).map(|_| [near(), near()]).collect();
+        let samples = Samples::new(8 * n_groups, 0, 40, |track, frame| {
+            let angle = std::f64::consts::TAU * f64::from(track % n_groups) / f64::from(n_groups);
+            let hz = [0.7, 1.9, 1.2, 2.6][(track % n_groups) as usize];
+            let sway = 9.0 * (std::f64::consts::TAU * hz * f64::from(frame) / 25.0 + angle).sin();
+            let [x, y] = places[track as usize];
+            let (sin, cos) = angle.sin_cos();
+            [160.0 + 90.0 * cos + x + sway * cos - 0.3 * sway * sin, 120.0 + 70.0 * sin + y + sway * sin]
+        });
+        let found = testing::cluster::<Cuts>(&Settings::default(), &samples.tracks()).unwrap();
+        let group = |group: u32| (0..8 * n_groups).filter(|track| track % n_groups == group).collect();
+        let wanted: Vec<Vec<u32>> = (0..n_groups).map(group).collect();
+        assert_eq!(testing::groups(&found, n_groups as usize), wanted);
+        assert!(found.merges.is_sorted_by(|a, b| a.height <= b.height));
+    }
+}
+
 #[test]
 fn one_track_cannot_be_grouped() {
     let samples = Samples::new(1, 5, 9, |_, _| [0.0; 2]);

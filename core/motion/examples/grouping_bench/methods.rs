@@ -13,11 +13,11 @@ pub(crate) const METHODS: [(&str, Method); 17] = [
     ("position", |tracks| thesis(tracks, 0.0)),
     ("distance of movement (`movement`)", |tracks| thesis(tracks, 1.0)),
     ("the same, denoised", |tracks| thesis(&denoised(tracks, 0, &mut |_| true)?.0, 1.0)),
-    ("normalised cuts of abs(ρ) (`ncut`, position=0)", |tracks| cuts(tracks, 0.0, false)),
+    ("normalised cuts of abs(ρ), as in print", |tracks| cuts(tracks, 0.0, false)),
     ("the same, denoised", |tracks| cuts(tracks, 0.0, true)),
-    ("normalised cuts of abs(ρ) and position (`ncut`)", |tracks| cuts(tracks, 1.0, false)),
+    ("normalised cuts of abs(ρ) and position, as in print", |tracks| cuts(tracks, 1.0, false)),
     ("the same, denoised", |tracks| cuts(tracks, 1.0, true)),
-    ("`ncut`, order=cuts, levels=12, neighbours=50", |tracks| clearest(tracks, false)),
+    ("`ncut`, as it comes", |tracks| clearest(tracks, false)),
     ("the same, denoised", |tracks| clearest(tracks, true)),
     ("abs(ρ) and Ward", |tracks| correlation(tracks, 0.0)),
     ("abs(ρ), position and Ward", |tracks| correlation(tracks, 1.0)),
@@ -38,15 +38,20 @@ fn thesis(tracks: &Positions, movement_weight: f64) -> Result<Dendrogram, Motion
 
 /// Zeng's, of the whole graph and level by level, as in print.
 fn cuts(tracks: &Positions, position_weight: f64, denoises: bool) -> Result<Dendrogram, MotionError> {
-    let n_neighbours = tracks.n_tracks();
-    let options = ncut::Options { position_weight, denoises, n_neighbours, ..Default::default() };
+    let options = ncut::Options {
+        position_weight,
+        denoises,
+        n_neighbours: tracks.n_tracks(),
+        n_levels: 6,
+        order: ncut::Order::Levels,
+        ..Default::default()
+    };
     Ok(ncut(tracks, &options, &mut |_| true)?.tree)
 }
 
-/// The same of the nearest, what falls apart most clearly first.
+/// Of the nearest, what falls apart most clearly first.
 fn clearest(tracks: &Positions, denoises: bool) -> Result<Dendrogram, MotionError> {
-    let order = ncut::Order::Cuts;
-    let options = ncut::Options { order, denoises, n_levels: 12, n_neighbours: 50, ..Default::default() };
+    let options = ncut::Options { denoises, ..Default::default() };
     Ok(ncut(tracks, &options, &mut |_| true)?.tree)
 }
 

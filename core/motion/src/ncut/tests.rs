@@ -416,7 +416,7 @@ fn a_large_graph_has_the_same_bits_for_any_number_of_threads() {
             );
         }
     }
-    let options = Options { n_neighbours: 12, position_weight: 4.0, ..Options::default() };
+    let options = Options { n_neighbours: 12, n_levels: 6, position_weight: 4.0, ..Options::default() };
     let with = |n_threads| of(&positions, &Options { n_threads, ..options });
     let one = with(1);
     assert!(
