@@ -10,7 +10,7 @@
 //!
 //! (Zeng 2.20 and 5.1 with errata Z1; s^2 the mean square distance over all pairs). The text wants "spatial distances and
 //! similarity of motion" in one affinity, and does not say how: the product is that of Shi and Malik's affinities, IEEE PAMI
-//! 22, 2000, 4. The graph of these is cut in two where that costs least, each half is cut again, and so on ([`mod@divide`]).
+//! 22, 2000, 4. The graph of these is cut in two where that costs least, each half is cut again, and so on (`divide.rs`).
 //!
 //! Two tracks at rest are as alike as can be, and one at rest has nothing in common with one that moves. One that is never
 //! seen has nothing in common with any. Gaps are filled from the other tracks ([`crate::bod::Table`]).
