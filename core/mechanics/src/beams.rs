@@ -216,6 +216,13 @@ impl Beams {
         order
     }
 
+    /// All of its wood, and what hangs on it.
+    #[must_use]
+    pub fn kilograms(&self) -> f64 {
+        let wood: f64 = self.segments().map(|(_, _, own, _)| own.area() * own.length * own.density).sum();
+        wood + self.nodes.iter().map(|node| node.load).sum::<f64>()
+    }
+
     pub(crate) fn nodes(&self) -> &[Beam] {
         &self.nodes
     }

@@ -6,6 +6,7 @@
 //! it. Amplitudes and displacements are those of the plant itself, in its own axes and size: whoever shows a copy turns
 //! and scales it, and need not go through memory for that.
 
+mod air;
 mod detail;
 mod state;
 #[cfg(test)]
@@ -23,6 +24,7 @@ use crate::threads::Threads;
 use nalgebra::Vector3;
 use pulp::Arch;
 use std::collections::BTreeMap;
+use std::f64::consts::{SQRT_2, TAU};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
@@ -91,7 +93,7 @@ pub enum ForestError {
     },
     /// Damping that no plant has.
     #[error(
-        "plants are {mass} times as heavy, with damping {alpha} and {beta}: masses are more than 0, damping is not negative"
+        "plants are {mass} times as heavy, with damping {alpha}, {beta} and {air} times that of the air: masses are more than 0, damping is not negative"
     )]
     Damping {
         /// Of all copies.
@@ -100,6 +102,8 @@ pub enum ForestError {
         alpha: f64,
         /// Damping by stiffness.
         beta: f64,
+        /// So many times that of the air.
+        air: f64,
     },
     /// The method does not bear so long a step.
     #[error(transparent)]
@@ -134,6 +138,8 @@ pub struct Forest {
     kinds: Vec<Kind>,
     /// p of every mode: all x, then all y, then all z.
     basis: Vec<f32>,
+    /// T of every mode, a row for each of its numbers.
+    tensors: Vec<f32>,
     /// Amplitudes of modes, `(n_copies, n_modes)`, and how fast they change.
     amplitudes: Vec<f32>,
     speeds: Vec<f32>,
@@ -148,6 +154,8 @@ struct Kind {
     mass: f64,
     /// Steps of all modes: six rows of a number a mode.
     steps: Vec<f32>,
+    /// What the air takes from a mode in half a step, by the damping of a mode of the plant.
+    air: f64,
 }
 
 /// Copies that a thread takes at a time.
@@ -184,10 +192,10 @@ impl Forest {
             let kind = *found.entry([scale, mass].map(f32::to_bits)).or_insert(next);
             copies.push((f64::from(turn).sin_cos().into(), kind));
         }
-        let mut kinds = vec![Kind { scale: 1.0, mass: 1.0, steps: Vec::new() }; found.len()];
+        let mut kinds = vec![Kind { scale: 1.0, mass: 1.0, steps: Vec::new(), air: 0.0 }; found.len()];
         for (bits, kind) in found {
             let [scale, mass] = bits.map(|bits| f64::from(f32::from_bits(bits)));
-            kinds[kind as usize] = Kind { scale, mass, steps: Vec::new() };
+            kinds[kind as usize] = Kind { scale, mass, steps: Vec::new(), air: 0.0 };
         }
         let n_modes = plant.omegas.len();
         let n_numbers = stands.len() * n_modes;
@@ -200,8 +208,11 @@ impl Forest {
         }
         let axis = |axis: usize| plant.basis.forces.iter().map(move |force| force[axis] as f32);
         let basis = (0..3).flat_map(axis).collect();
+        let tensors = air::rows(&plant.basis);
         let rig = Rig::new(&plant.following, nodes);
-        let mut made = Self { plant, rig, copies, kinds, basis, amplitudes, speeds, pace: *pace, time: 0.0 };
+        let (pace_now, time) = (*pace, 0.0);
+        let mut made =
+            Self { plant, rig, copies, kinds, basis, tensors, amplitudes, speeds, pace: pace_now, time };
         made.retune(pace)?;
         Ok(made)
     }
@@ -234,7 +245,8 @@ impl Forest {
     #[must_use]
     pub fn bytes(&self) -> usize {
         let kinds: usize = self.kinds.iter().map(|kind| kind.steps.len()).sum();
-        let numbers = self.amplitudes.capacity() + self.speeds.capacity() + kinds + self.basis.len();
+        let numbers = self.amplitudes.capacity() + self.speeds.capacity() + kinds;
+        let numbers = numbers + self.basis.len() + self.tensors.len();
         numbers * size_of::<f32>() + size_of_val(self.copies.as_slice()) + self.rig.bytes()
     }
 
@@ -243,15 +255,19 @@ impl Forest {
     /// # Errors
     /// [`ForestError`]; it then goes on as before.
     pub fn retune(&mut self, pace: &Pace) -> Result<(), ForestError> {
-        let Damping { alpha, beta, mass } = pace.damping;
+        let Damping { alpha, beta, mass, air } = pace.damping;
         let is_plant =
-            mass.is_finite() && mass > 0.0 && [alpha, beta].iter().all(|v| v.is_finite() && *v >= 0.0);
+            mass.is_finite() && mass > 0.0 && [alpha, beta, air].iter().all(|v| v.is_finite() && *v >= 0.0);
         if !is_plant {
-            return Err(ForestError::Damping { mass, alpha, beta });
+            return Err(ForestError::Damping { mass, alpha, beta, air });
         }
         let steps = self.kinds.iter().map(|kind| steps(&self.plant, kind, pace));
         let steps = steps.collect::<Result<Vec<_>, _>>()?;
-        self.kinds.iter_mut().zip(steps).for_each(|(kind, steps)| kind.steps = steps);
+        for (kind, steps) in self.kinds.iter_mut().zip(steps) {
+            kind.steps = steps;
+            // Of s times the size the drag on a mode is s^3 times as much, the mass s^4 times (lengths of both included).
+            kind.air = air * pace.step / (2.0 * mass * kind.mass * kind.scale);
+        }
         self.pace = *pace;
         Ok(())
     }
@@ -278,7 +294,8 @@ impl Forest {
     ) -> Result<(), ForestError> {
         let n_modes = self.plant.omegas.len();
         let calm = AtomicUsize::new(usize::MAX);
-        let (rig, copies, kinds, basis) = (&self.rig, &self.copies, &self.kinds, &self.basis);
+        let (rig, copies, kinds) = (&self.rig, &self.copies, &self.kinds);
+        let (basis, tensors) = (&self.basis, &self.tensors);
         let pieces = pieces(n_modes, rig, &mut self.amplitudes, &mut self.speeds, pose);
         threads.each(pieces.into_iter(), |piece| {
             // Instructions are chosen once for some copies: for one alone that would take as long as its step.
@@ -291,7 +308,9 @@ impl Forest {
                         let (turn, kind) = &copies[copy];
                         let v = wind(copy);
                         if v.iter().all(|v| v.is_finite()) {
-                            advance(&kinds[*kind as usize].steps, basis, pressed(turn, &v), q, speed);
+                            let (kind, own) = (&kinds[*kind as usize], in_own_axes(turn, &v));
+                            let held = air::weights(&own, kind.air);
+                            advance(&kind.steps, (basis, pressed(&own)), (tensors, held), q, speed);
                         } else {
                             calm.fetch_min(copy, Relaxed);
                         }
@@ -384,11 +403,16 @@ fn split<'a, T>(rest: &mut &'a mut [T], n: usize) -> &'a mut [T] {
     taken
 }
 
-/// |v| v in the axes of a copy.
+/// A wind in the axes of a copy.
 #[inline(always)]
-fn pressed([sin, cos]: &[f64; 2], v: &Vector3<f64>) -> [f32; 3] {
-    let own = Vector3::new(cos * v.x + sin * v.y, cos * v.y - sin * v.x, v.z) * v.norm();
-    [own.x as f32, own.y as f32, own.z as f32]
+fn in_own_axes([sin, cos]: &[f64; 2], v: &Vector3<f64>) -> Vector3<f64> {
+    Vector3::new(cos * v.x + sin * v.y, cos * v.y - sin * v.x, v.z)
+}
+
+/// |v| v.
+#[inline(always)]
+fn pressed(v: &Vector3<f64>) -> [f32; 3] {
+    (v * v.norm()).map(|v| v as f32).into()
 }
 
 /// The step of every mode of a kind.
@@ -401,6 +425,11 @@ fn steps(plant: &Stirring, kind: &Kind, pace: &Pace) -> Result<Vec<f32>, LimitEr
         let mut oscillator = Oscillator::new(omega / kind.scale, &damping);
         oscillator.mass = damping.mass * kind.scale.powi(2);
         let step = oscillator.step_by(pace.integrator, pace.step)?;
+        // Where the air takes all speed, every step, symplectic Euler bears less: of its trace 1 - (omega dt)^2 is left.
+        let limit = SQRT_2 / oscillator.omega;
+        if pace.integrator == Integrator::Symplectic && pace.damping.air > 0.0 && pace.step >= limit {
+            return Err(LimitError::Limit { step: pace.step, limit, hz: oscillator.omega / TAU });
+        }
         for (row, number) in step.numbers().into_iter().enumerate() {
             rows[row * n_modes + mode] = number as f32;
         }
@@ -408,9 +437,15 @@ fn steps(plant: &Stirring, kind: &Kind, pace: &Pace) -> Result<Vec<f32>, LimitEr
     Ok(rows)
 }
 
-/// A step of all modes of a copy.
+/// A step of all modes of a copy: the force by the basis, and what the air takes by the tensors.
 #[inline(always)]
-fn advance(steps: &[f32], basis: &[f32], [x, y, z]: [f32; 3], q: &mut [f32], speed: &mut [f32]) {
+fn advance(
+    steps: &[f32],
+    (basis, [x, y, z]): (&[f32], [f32; 3]),
+    (tensors, held): (&[f32], [f32; air::SIX]),
+    q: &mut [f32],
+    speed: &mut [f32],
+) {
     let n = q.len();
     let speed = &mut speed[..n];
     let [qq, qs, qf, sq, ss, sf] = [0, 1, 2, 3, 4, 5].map(
@@ -418,10 +453,19 @@ fn advance(steps: &[f32], basis: &[f32], [x, y, z]: [f32; 3], q: &mut [f32], spe
         |k| &steps[k * n..][..n],
     );
     let [px, py, pz] = [&basis[..n], &basis[n..][..n], &basis[2 * n..][..n]];
+    let tensors = [0, 1, 2, 3, 4, 5].map(
+        #[inline(always)]
+        |k| &tensors[k * n..][..n],
+    );
     for m in 0..n {
         let force = x * px[m] + y * py[m] + z * pz[m];
-        let (q_now, speed_now) = (q[m], speed[m]);
+        let mut taken = 0.0;
+        for (tensor, held) in tensors.iter().zip(held) {
+            taken += tensor[m] * held;
+        }
+        let left = air::fade(taken);
+        let (q_now, speed_now) = (q[m], speed[m] * left);
         q[m] = qq[m] * q_now + qs[m] * speed_now + qf[m] * force;
-        speed[m] = sq[m] * q_now + ss[m] * speed_now + sf[m] * force;
+        speed[m] = (sq[m] * q_now + ss[m] * speed_now + sf[m] * force) * left;
     }
 }

@@ -5,7 +5,7 @@ mod tests;
 
 use std::f64::consts::TAU;
 
-/// Rayleigh's damping (6.11) and what scales the mass (6.36): chosen while it runs.
+/// Rayleigh's damping (6.11), the air's, and what scales the mass (6.36): chosen while it runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Damping {
     /// Of the mass, per second.
@@ -14,12 +14,14 @@ pub struct Damping {
     pub beta: f64,
     /// So many times as heavy as its wood.
     pub mass: f64,
+    /// So many times what the drag of its branches and leaves makes of the wind; 0: none.
+    pub air: f64,
 }
 
 impl Default for Damping {
-    /// 5 % of critical at 1 Hz, and no added mass.
+    /// 5 % of critical at 1 Hz, what the air adds to that, and no added mass.
     fn default() -> Self {
-        Self { alpha: 0.3, beta: 0.008, mass: 1.0 }
+        Self { alpha: 0.3, beta: 0.008, mass: 1.0, air: 1.0 }
     }
 }
 
@@ -76,7 +78,7 @@ pub struct State {
 }
 
 impl Oscillator {
-    /// A mode of mass 1 and this frequency with the damping of its plant: omega' = omega / sqrt(m) (6.37) and
+    /// A mode of mass 1 and this frequency with the damping of its plant, but for the air's, which is the wind's matter: omega' = omega / sqrt(m) (6.37) and
     /// gamma' = alpha + beta omega'^2 (6.18; errata E42: 6.38 has m alpha + beta omega').
     #[must_use]
     pub fn new(omega: f64, damping: &Damping) -> Self {

@@ -2,7 +2,9 @@
 
 mod field;
 mod flow;
+mod flowing;
 mod gust;
+mod layer;
 mod noise;
 mod spectrum;
 #[cfg(test)]
@@ -10,7 +12,9 @@ mod tests;
 
 pub use field::{Draw, Field};
 pub use flow::{Primitive, Shape};
+pub use flowing::{Flowing, FlowingError, Inflow};
 pub use gust::{Frozen, Mask, Series};
+pub use layer::Layer;
 pub use noise::Noise;
 pub use spectrum::{Kaimal, Power, Spectrum, series};
 
@@ -21,6 +25,12 @@ use std::f64::consts::TAU;
 pub trait Wind: Send + Sync {
     /// Velocity at a place, metres, and a time, seconds.
     fn sample(&self, place: &Vector3<f64>, time: f64) -> Vector3<f64>;
+}
+
+impl Wind for Box<dyn Wind> {
+    fn sample(&self, place: &Vector3<f64>, time: f64) -> Vector3<f64> {
+        (**self).sample(place, time)
+    }
 }
 
 /// The same wind everywhere and for ever.

@@ -397,6 +397,9 @@ pub enum WorkbenchError {
         /// What is wrong, and what there is.
         what: String,
     },
+    /// No air flows over these trees.
+    #[error(transparent)]
+    Air(#[from] honami_mechanics::wind::FlowingError),
     /// No skeleton grows from these tracks.
     #[error(transparent)]
     Structure(#[from] honami_structure::StructureError),

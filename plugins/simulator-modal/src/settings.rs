@@ -67,6 +67,8 @@ params! {
         alpha: f64 = 0.3 => { label: "Damping by mass", group: "Motion", unit: "1/s", min: 0, max: 1000, soft_max: 5, affects: "step" },
         /// Damping by stiffness.
         beta: f64 = 0.008 => { label: "Damping by stiffness", group: "Motion", unit: "s", min: 0, max: 100, soft_max: 0.1, affects: "step" },
+        /// Damping by the air, which grows with the wind: so many times what the drag of branches and leaves gives; 0: none.
+        air_damping: f64 = 1.0 => { label: "Damping by the air", group: "Motion", unit: "1", min: 0, max: 1000, soft_max: 5, affects: "step" },
         /// So many times as heavy as its wood, all over: rain, snow, fruit.
         heavier: f64 = 1.0 => { label: "Heavier", group: "Motion", unit: "1", min: 0.01, max: 100, scale: "log", affects: "step" },
         /// In the beginning the slowest mode is pulled out, so that the node that it moves most is so far from rest.
@@ -102,7 +104,8 @@ impl Settings {
             Method::Symplectic => Integrator::Symplectic,
             Method::Newmark => Integrator::Newmark,
         };
-        let damping = Damping { alpha: self.alpha, beta: self.beta, mass: self.heavier };
+        let damping =
+            Damping { alpha: self.alpha, beta: self.beta, mass: self.heavier, air: self.air_damping };
         Pace { step: 1.0, integrator, damping }
     }
 }

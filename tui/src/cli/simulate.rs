@@ -7,7 +7,8 @@ use honami_workbench::mechanics::{Damping, Form, Integrator, Leaves, Material, O
 use honami_workbench::plant::glb::{self, Made};
 use honami_workbench::plant::mover::{self, Mover};
 use honami_workbench::plant::sway::{self, Motion, Moved, Outs};
-use honami_workbench::plant::{self, Vibrating, Wish, weather};
+use honami_workbench::plant::weather::{self, Ground, Typed};
+use honami_workbench::plant::{self, Vibrating, Wish};
 use honami_workbench::plugins::Kind;
 use serde_json::json;
 
@@ -31,22 +32,22 @@ pub(super) fn simulate(args: &Simulate, common: &Common) -> anyhow::Result<Answe
     })?;
     let is_plant = args.heavier.is_finite()
         && args.heavier > 0.0
-        && [args.alpha, args.beta].iter().all(|v| v.is_finite() && *v >= 0.0);
+        && [args.alpha, args.beta, args.air_damping].iter().all(|v| v.is_finite() && *v >= 0.0);
     want(is_plant, || {
         format!(
-            "a plant is {} times as heavy, with damping {} and {}: masses are more than 0, damping is not negative",
-            args.heavier, args.alpha, args.beta
+            "a plant is {} times as heavy, with damping {}, {} and {} times that of the air: masses are more than 0, damping is not negative",
+            args.heavier, args.alpha, args.beta, args.air_damping
         )
     })?;
     want(args.sensors > 0, || "one sensor at least is wanted".to_owned())?;
-    are_apart(args)?;
-    let wind = weather::blow(&args.wind)?;
+    let wind = weather::read(&args.wind)?;
+    are_apart(args, &wind)?;
     let wish = wish(&args.plant);
     let plant = plant::vibrate(&wish)?;
     if let Some(beams) = &args.beams {
         plant::write_beams(&plant, beams)?;
     }
-    let damping = Damping { alpha: args.alpha, beta: args.beta, mass: args.heavier };
+    let damping = Damping { alpha: args.alpha, beta: args.beta, mass: args.heavier, air: args.air_damping };
     let (mut text, mut json) = describe(&wish, &plant, &damping);
     let is_written = args.out.is_some() || args.cache.is_some() || args.glb.is_some();
     if args.wind != "still"
@@ -65,6 +66,7 @@ pub(super) fn simulate(args: &Simulate, common: &Common) -> anyhow::Result<Answe
         }
         let mover = Mover { host: &options.host, plugin, values: &values };
         let bar = report::Bar::with(common);
+        let wind = wind.over(&Ground::of(&plant, &motion))?;
         // First, because it may be refused.
         let made = args.glb.as_deref().map(|path| glb::glb(&plant, &*wind, &motion, path, &bar));
         let made = made.transpose()?;
@@ -79,10 +81,11 @@ pub(super) fn simulate(args: &Simulate, common: &Common) -> anyhow::Result<Answe
 }
 
 /// Nothing that is written takes the place of what is read, or of what else is written.
-fn are_apart(args: &Simulate) -> anyhow::Result<()> {
+fn are_apart(args: &Simulate, wind: &Typed) -> anyhow::Result<()> {
     let place = |path: &Path| path.canonicalize().unwrap_or_else(|_none| path.to_owned());
     let outs = [&args.out, &args.cache, &args.glb, &args.beams].into_iter().flatten();
-    let mut taken = vec![place(Path::new(&args.plant.source)), place(Path::new(&args.wind))];
+    let read = std::iter::once(Path::new(&args.plant.source)).chain(wind.files());
+    let mut taken: Vec<_> = read.map(place).collect();
     for out in outs {
         want(!taken.contains(&place(out)), || {
             format!("{} is read or written already: choose another name", out.display())

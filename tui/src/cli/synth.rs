@@ -6,9 +6,11 @@ use std::path::Path;
 
 use anyhow::Context as _;
 use honami_workbench::generate::{self, Generated};
+use honami_workbench::mechanics::Damping;
 use honami_workbench::media;
 use honami_workbench::plant::sway::Motion;
-use honami_workbench::plant::{self, Wish, weather};
+use honami_workbench::plant::weather::{self, Ground};
+use honami_workbench::plant::{self, Wish};
 use honami_workbench::plugins::quoted;
 use honami_workbench::progress::{Flow, Progress};
 use honami_workbench::session::Session;
@@ -57,16 +59,18 @@ fn film(args: &Synth, source: &str, settings: &Settings) -> anyhow::Result<Answe
         (None, Wind::Wind) => "wind",
         (None, Wind::Storm) => "storm",
     };
-    let wind = weather::blow(&format!(
+    let wind = weather::read(&format!(
         "{weather}{}",
         if args.pull.is_none() { format!(":seed={}", args.seed) } else { String::new() }
     ))?;
-    let motion =
-        Motion { n_frames: args.frames, fps: args.fps, pull: args.pull.unwrap_or(0.0), ..Motion::default() };
+    // The damping that is told is all there is: the air's would be another in every gust.
+    let damping = Damping { air: 0.0, ..Damping::default() };
+    let (fps, pull) = (args.fps, args.pull.unwrap_or(0.0));
+    let motion = Motion { n_frames: args.frames, fps, pull, damping, ..Motion::default() };
+    let wind = wind.over(&Ground::of(&plant, &motion))?;
     let bar = report::Bar::new();
     let moving = plant::film::film(&plant, &*wind, &motion, &bar)?;
     let mut answer = describe(&generate::film(settings, &moving, &args.out, &bar)?);
-    let damping = motion.damping;
     let (hz, omega) = (plant.modes.hz(0), plant.modes.omegas[0]);
     let ratio = (damping.alpha + damping.beta * omega.powi(2)) / (2.0 * omega);
     answer.text += &format!("\nslowest mode: {hz:.4} Hz, damping {:.2} %", 100.0 * ratio);

@@ -7,10 +7,10 @@ use nalgebra::{Rotation3, Vector3};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-const PACE: Pace = Pace {
+pub(super) const PACE: Pace = Pace {
     step: 0.02,
     integrator: Integrator::Exact,
-    damping: Damping { alpha: 0.3, beta: 0.008, mass: 1.0 },
+    damping: Damping { alpha: 0.3, beta: 0.008, mass: 1.0, air: 1.0 },
 };
 
 fn stirring(plant: &honami_model::plant::Plant, n_modes: usize, form: Form) -> Arc<Stirring> {
@@ -20,11 +20,11 @@ fn stirring(plant: &honami_model::plant::Plant, n_modes: usize, form: Form) -> A
     Arc::new(Stirring::new(&beams, &modes, basis, form))
 }
 
-fn plant(n_nodes: usize, n_modes: usize, form: Form) -> Arc<Stirring> {
+pub(super) fn plant(n_nodes: usize, n_modes: usize, form: Form) -> Arc<Stirring> {
     stirring(&honami_synth::tree(n_nodes, 1).unwrap(), n_modes, form)
 }
 
-fn threads(n: usize) -> Threads {
+pub(super) fn threads(n: usize) -> Threads {
     Threads::new(n).unwrap()
 }
 
@@ -40,13 +40,13 @@ fn place(copy: usize) -> Vector3<f64> {
     Vector3::new((copy % 20) as f64 * 10.0, (copy / 20) as f64 * 10.0, 0.0)
 }
 
-fn forest(plant: &Arc<Stirring>, stands: &[Stand], pace: &Pace) -> Forest {
+pub(super) fn forest(plant: &Arc<Stirring>, stands: &[Stand], pace: &Pace) -> Forest {
     let nodes: Vec<u32> = (0..plant.n_nodes() as u32).collect();
     Forest::new(Arc::clone(plant), &nodes, stands, pace).unwrap()
 }
 
 /// So many steps in a wind that blows at every place as it does.
-fn go(forest: &mut Forest, n: usize, wind: &dyn Wind, threads: &Threads) {
+pub(super) fn go(forest: &mut Forest, n: usize, wind: &dyn Wind, threads: &Threads) {
     for _ in 0..n {
         let time = forest.time();
         forest.step(&|copy| wind.sample(&place(copy), time), None, threads).unwrap();
@@ -61,7 +61,7 @@ fn posed(forest: &mut Forest, details: Option<&[Detail]>, threads: &Threads) -> 
     motion
 }
 
-fn blowing(v: Vector3<f64>) -> impl Wind {
+pub(super) fn blowing(v: Vector3<f64>) -> impl Wind {
     crate::wind::Constant(v)
 }
 
@@ -294,7 +294,11 @@ fn what_is_no_forest_is_named() {
         }
     }
     assert!(of(&[Stand { turn: f32::NAN, ..one[0] }], &PACE).unwrap().contains("turned by NaN"));
-    for damping in [Damping { mass: 0.0, ..PACE.damping }, Damping { alpha: -1.0, ..PACE.damping }] {
+    for damping in [
+        Damping { mass: 0.0, ..PACE.damping },
+        Damping { alpha: -1.0, ..PACE.damping },
+        Damping { air: f64::NAN, ..PACE.damping },
+    ] {
         assert!(of(&one, &Pace { damping, ..PACE }).unwrap().contains("damping is not negative"));
     }
     for step in [0.0, -0.1, f64::NAN] {
@@ -307,7 +311,7 @@ fn what_is_no_forest_is_named() {
 fn steps_beyond_the_limit_of_a_method_are_refused_with_it() {
     let plant = plant(20, 3, Form::Linear);
     let fastest = plant.omegas[2];
-    let damping = Damping { alpha: 0.0, beta: 0.0, mass: 1.0 };
+    let damping = Damping { alpha: 0.0, beta: 0.0, mass: 1.0, air: 0.0 };
     let of = |step: f64, integrator: Integrator| {
         Forest::new(Arc::clone(&plant), &[0], &[Stand::default()], &Pace { step, integrator, damping })
             .map(|_| ())

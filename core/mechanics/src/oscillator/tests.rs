@@ -98,7 +98,7 @@ fn newmark_converges_to_the_exact_answer_with_the_square_of_the_step() {
 /// Errata E42.
 #[test]
 fn a_heavier_plant_swings_more_slowly_and_is_damped_by_its_new_frequency() {
-    let heavy = Oscillator::new(10.0, &Damping { alpha: 0.2, beta: 0.01, mass: 4.0 });
+    let heavy = Oscillator::new(10.0, &Damping { alpha: 0.2, beta: 0.01, mass: 4.0, air: 1.0 });
     assert_eq!(heavy, Oscillator { omega: 5.0, gamma: 0.2 + 0.01 * 25.0, mass: 4.0 });
     // Under the same force it stays where it did: it is heavier, not stiffer.
     let light = Oscillator::new(10.0, &Damping { mass: 1.0, ..Damping::default() });

@@ -47,6 +47,7 @@ pub fn values(wish: &Wish, motion: &Motion, plugin: &PluginInfo) -> Result<Value
         ("leaf_drag", wish.leaves.drag, plain.leaves.drag),
         ("alpha", motion.damping.alpha, usual.damping.alpha),
         ("beta", motion.damping.beta, usual.damping.beta),
+        ("air_damping", motion.damping.air, usual.damping.air),
         ("heavier", motion.damping.mass, usual.damping.mass),
         ("pull", motion.pull, usual.pull),
     ];

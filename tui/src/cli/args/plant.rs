@@ -14,7 +14,8 @@ pub(in crate::cli) struct Simulate {
     pub(in crate::cli) plant: Plant,
     #[command(flatten)]
     pub(in crate::cli) plugin: WithPlugin,
-    /// What blows: a name with values, such as steady:speed=5,towards=90, or a table that an anemometer has recorded.
+    /// What blows: a name with values, such as steady:speed=5,towards=90, or a table that an anemometer has recorded; or
+    /// several with a + between them, wind+vortex:strength=300.
     #[arg(long, value_name = "WIND", default_value = "still")]
     pub(in crate::cli) wind: String,
     /// Begin with the slowest mode pulled out, so that the node it moves most is this far from rest, metres.
@@ -41,6 +42,9 @@ pub(in crate::cli) struct Simulate {
     /// Damping by stiffness, seconds.
     #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 0.008)]
     pub(in crate::cli) beta: f64,
+    /// Damping by the air, which grows with the wind: so many times what the drag of branches and leaves gives; 0: none.
+    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 1.0)]
+    pub(in crate::cli) air_damping: f64,
     /// So many times as heavy as its wood.
     #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 1.0)]
     pub(in crate::cli) heavier: f64,

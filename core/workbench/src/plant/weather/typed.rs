@@ -1,0 +1,157 @@
+//! A wind by what was typed: names with values, files, and several of them at once.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use honami_exchange::plant::{PlantFileError, anemometer};
+use honami_mechanics::Direction;
+use honami_mechanics::wind::{Series, Sum, Wind};
+
+use super::{Ground, MOST, Make, NOT_NEGATIVE, POSITIVE, Values, WEATHERS};
+use crate::error::WorkbenchError;
+
+/// Winds that were typed, one after the other; all there is to know of them but what they blow over.
+pub struct Typed(Vec<Part>);
+
+enum Part {
+    Named(Values),
+    Recorded(PathBuf, Series),
+}
+
+fn wrong(what: String) -> WorkbenchError {
+    WorkbenchError::Weather { what }
+}
+
+/// Reads what was typed: names and files with a + between them. One before a digit is part of a number, or of a name.
+///
+/// # Errors
+/// [`WorkbenchError::Weather`] says which names and values there are; and what is wrong with a recording.
+pub fn read(typed: &str) -> Result<Typed, WorkbenchError> {
+    let is_file = |text: &str| Path::new(text).is_file();
+    let texts = if is_file(typed) { vec![typed] } else { apart(typed) };
+    let parts = texts.into_iter().map(part).collect::<Result<Vec<_>, _>>()?;
+    let carries = |part: &Part| match part {
+        Part::Named(values) if matches!(values.weather.make, Make::Carrying(_)) => Some(values.weather.name),
+        Part::Named(_) | Part::Recorded(..) => None,
+    };
+    match parts.last().and_then(carries) {
+        Some(name) => {
+            Err(wrong(format!("{name} carries what follows it: {name}+noise:speed=0, for instance")))
+        }
+        None => Ok(Typed(parts)),
+    }
+}
+
+fn apart(typed: &str) -> Vec<&str> {
+    let mut texts = Vec::new();
+    let mut first = 0;
+    for (at, _) in typed.match_indices('+') {
+        if !typed[at + 1..].starts_with(|next: char| next.is_ascii_digit()) {
+            texts.push(&typed[first..at]);
+            first = at + 1;
+        }
+    }
+    texts.push(&typed[first..]);
+    texts
+}
+
+fn part(typed: &str) -> Result<Part, WorkbenchError> {
+    let (name, given) = typed.split_once(':').unwrap_or((typed, ""));
+    let Some(weather) = WEATHERS.iter().find(|weather| weather.name == name) else {
+        let path = Path::new(typed);
+        if path.exists() {
+            return Ok(Part::Recorded(path.to_owned(), recorded(path)?));
+        }
+        let names: Vec<&str> = WEATHERS.iter().map(|weather| weather.name).collect();
+        return Err(wrong(format!("{typed:?} is no wind and no file: there are {}", names.join(", "))));
+    };
+    let mut values: Vec<f64> = weather.values.iter().map(|(_, value)| *value).collect();
+    for pair in given.split(',').filter(|pair| !pair.is_empty()) {
+        let (key, value) = pair.split_once('=').unwrap_or((pair, ""));
+        let Some(place) = weather.values.iter().position(|(known, _)| *known == key.trim()) else {
+            let known: Vec<&str> = weather.values.iter().map(|(known, _)| *known).collect();
+            let known = if known.is_empty() { "nothing".to_owned() } else { known.join(", ") };
+            return Err(wrong(format!("{name} has no {key:?}: it takes {known}")));
+        };
+        values[place] = number(name, key.trim(), value)?;
+    }
+    let values = Values { weather, values };
+    // What is carried by its mean stands still without one.
+    let is_carried = weather.values.iter().any(|(known, _)| *known == "decay");
+    if is_carried && values.of("speed") <= 0.0 {
+        return Err(wrong(format!(
+            "{name} is carried by its mean: speed is a number above 0, not {}",
+            values.of("speed")
+        )));
+    }
+    Ok(Part::Named(values))
+}
+
+fn number(name: &str, key: &str, value: &str) -> Result<f64, WorkbenchError> {
+    let (least, told) = if POSITIVE.contains(&key) {
+        (1.0 / MOST, "0.000001")
+    } else if NOT_NEGATIVE.contains(&key) {
+        (0.0, "0")
+    } else {
+        (-MOST, "-1000000")
+    };
+    // Any seed is as good as another.
+    let is_fine = |v: &f64| if key == "seed" { v.is_finite() } else { (least..=MOST).contains(v) };
+    let found = value.trim().parse().ok().filter(is_fine);
+    found.ok_or_else(|| wrong(format!("{key} of {name} is a number from {told} to 1000000, not {value:?}")))
+}
+
+fn recorded(path: &Path) -> Result<Series, WorkbenchError> {
+    let text =
+        fs::read_to_string(path).map_err(|source| PlantFileError::Io { path: path.to_owned(), source })?;
+    let recording = anemometer::parse(&text)?;
+    let samples: Vec<Direction> = recording.samples.into_iter().map(Direction::from).collect();
+    if let Some(wild) = samples.iter().find(|v| v.amax() > MOST) {
+        let (file, speed) = (path.display(), wild.amax());
+        return Err(wrong(format!("{file}: a wind of {speed:e} m/s, more than 1000000")));
+    }
+    Ok(Series { step: recording.step, samples })
+}
+
+impl Typed {
+    /// Recordings among them.
+    pub fn files(&self) -> impl Iterator<Item = &Path> {
+        self.0.iter().filter_map(|part| match part {
+            Part::Recorded(path, _) => Some(path.as_path()),
+            Part::Named(_) => None,
+        })
+    }
+
+    /// The wind over some ground.
+    ///
+    /// # Errors
+    /// What cannot flow over it.
+    pub fn over(&self, ground: &Ground) -> Result<Box<dyn Wind>, WorkbenchError> {
+        // From the last: what carries takes all that follows it.
+        let mut winds: Vec<Box<dyn Wind>> = Vec::new();
+        for part in self.0.iter().rev() {
+            let wind = match part {
+                Part::Recorded(_, series) => Box::new(series.clone()),
+                Part::Named(values) => match values.weather.make {
+                    Make::Alone(make) => make(values),
+                    Make::Over(make) => make(values, ground)?,
+                    Make::Carrying(make) => make(values, together(std::mem::take(&mut winds))),
+                },
+            };
+            winds.push(wind);
+        }
+        winds.reverse();
+        Ok(together(winds))
+    }
+}
+
+fn together(mut winds: Vec<Box<dyn Wind>>) -> Box<dyn Wind> {
+    match winds.pop() {
+        Some(wind) if winds.is_empty() => wind,
+        Some(last) => {
+            winds.push(last);
+            Box::new(Sum(winds))
+        }
+        None => Box::new(Sum(winds)),
+    }
+}
