@@ -35,13 +35,16 @@ pub struct Weather {
     make: Make,
 }
 
+/// A wind, or why there is none.
+type Blown = Result<Box<dyn Wind>, WorkbenchError>;
+
 /// What a wind is made of.
 #[derive(Clone, Copy)]
 enum Make {
     /// Its values,
     Alone(fn(&Values) -> Box<dyn Wind>),
     /// and what it blows over,
-    Over(fn(&Values, &Ground) -> Result<Box<dyn Wind>, WorkbenchError>),
+    Over(fn(&Values, &Ground) -> Blown),
     /// or what follows it.
     Carrying(fn(&Values, Box<dyn Wind>) -> Box<dyn Wind>),
 }
@@ -251,7 +254,7 @@ fn gusts(v: &Values) -> Box<dyn Wind> {
 }
 
 /// Air over trees: what each holds back is its mass times the drag, square metres of ground a kilogram and second.
-fn flowing(v: &Values, ground: &Ground) -> Result<Box<dyn Wind>, WorkbenchError> {
+fn flowing(v: &Values, ground: &Ground) -> Blown {
     let held = |&(place, mass): &([f64; 2], f64)| (place, v.of("drag") * mass);
     let trees: Vec<([f64; 2], f64)> = ground.trees.iter().map(held).collect();
     let air = Flowing::new(&Inflow {

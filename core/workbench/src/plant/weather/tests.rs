@@ -68,8 +68,10 @@ fn frozen_carries_what_follows_it() {
 
 #[test]
 fn air_that_flows_by_itself_is_held_back_by_the_trees() {
-    let along =
-        |typed: &str| (0..20).map(|k| at(typed, [6.0, 6.0, 5.0], 0.1 * f64::from(k)).x).sum::<f64>() / 20.0;
+    let along = |typed: &str| {
+        let (wind, middle) = (blow(typed).unwrap(), Direction::new(6.0, 6.0, 5.0));
+        (0..20).map(|k| wind.sample(&middle, 0.1 * f64::from(k)).x).sum::<f64>() / 20.0
+    };
     let [free, some, much] = [0.0, 0.02, 0.2].map(|drag| along(&format!("air:deviation=0,drag={drag}")));
     assert!((free - 8.0).abs() < 1e-5, "what does not gust is steady where nothing holds it back: {free}");
     assert!(some < 0.98 * free && much < 0.8 * some, "{free} {some} {much}");
