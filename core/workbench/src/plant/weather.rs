@@ -202,10 +202,16 @@ const ABOUT: &[(&str, f64)] = &[("strength", 200.0), ("x", 0.0), ("y", -15.0), (
 
 /// No value is larger: what is made of them stays a number.
 const MOST: f64 = 1e6;
-/// Values that no wind of that name can have at 0 or below.
-const POSITIVE: &[&str] = &["scale", "cell", "second", "length", "radius", "core", "decay"];
-/// And those that it cannot have below 0.
-const NOT_NEGATIVE: &[&str] = &["drag", "viscosity"];
+/// From where to where a value may be, by its name.
+fn range(name: &str) -> [f64; 2] {
+    match name {
+        "scale" | "cell" | "second" | "length" | "radius" | "core" | "decay" => [1.0 / MOST, MOST],
+        "drag" | "viscosity" | "density" | "deviation" => [0.0, MOST],
+        // Steeper spectra are no number at their ends.
+        "beta" => [0.0, 20.0],
+        _ => [-MOST, MOST],
+    }
+}
 
 /// Values of a wind, all of them.
 struct Values {

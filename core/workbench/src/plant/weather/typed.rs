@@ -1,5 +1,6 @@
 //! A wind by what was typed: names with values, files, and several of them at once.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -7,7 +8,7 @@ use honami_exchange::plant::{PlantFileError, anemometer};
 use honami_mechanics::Direction;
 use honami_mechanics::wind::{Series, Sum, Wind};
 
-use super::{Ground, MOST, Make, NOT_NEGATIVE, POSITIVE, Values, WEATHERS};
+use super::{Ground, MOST, Make, Values, WEATHERS, range};
 use crate::error::WorkbenchError;
 
 /// Winds that were typed, one after the other; all there is to know of them but what they blow over.
@@ -66,6 +67,7 @@ fn part(typed: &str) -> Result<Part, WorkbenchError> {
         return Err(wrong(format!("{typed:?} is no wind and no file: there are {}", names.join(", "))));
     };
     let mut values: Vec<f64> = weather.values.iter().map(|(_, value)| *value).collect();
+    let mut told = BTreeSet::new();
     for pair in given.split(',').filter(|pair| !pair.is_empty()) {
         let (key, value) = pair.split_once('=').unwrap_or((pair, ""));
         let Some(place) = weather.values.iter().position(|(known, _)| *known == key.trim()) else {
@@ -73,6 +75,9 @@ fn part(typed: &str) -> Result<Part, WorkbenchError> {
             let known = if known.is_empty() { "nothing".to_owned() } else { known.join(", ") };
             return Err(wrong(format!("{name} has no {key:?}: it takes {known}")));
         };
+        if !told.insert(place) {
+            return Err(wrong(format!("{name} is told its {} twice", key.trim())));
+        }
         values[place] = number(name, key.trim(), value)?;
     }
     let values = Values { weather, values };
@@ -88,17 +93,15 @@ fn part(typed: &str) -> Result<Part, WorkbenchError> {
 }
 
 fn number(name: &str, key: &str, value: &str) -> Result<f64, WorkbenchError> {
-    let (least, told) = if POSITIVE.contains(&key) {
-        (1.0 / MOST, "0.000001")
-    } else if NOT_NEGATIVE.contains(&key) {
-        (0.0, "0")
-    } else {
-        (-MOST, "-1000000")
-    };
-    // Any seed is as good as another.
-    let is_fine = |v: &f64| if key == "seed" { v.is_finite() } else { (least..=MOST).contains(v) };
-    let found = value.trim().parse().ok().filter(is_fine);
-    found.ok_or_else(|| wrong(format!("{key} of {name} is a number from {told} to 1000000, not {value:?}")))
+    if key == "seed" {
+        // Any is as good as another.
+        let seed = value.trim().parse::<u32>().map(f64::from);
+        return seed
+            .map_err(|_none| wrong(format!("seed of {name} is a whole number, 0 or more, not {value:?}")));
+    }
+    let [least, most] = range(key);
+    let found = value.trim().parse().ok().filter(|v| (least..=most).contains(v));
+    found.ok_or_else(|| wrong(format!("{key} of {name} is a number from {least} to {most}, not {value:?}")))
 }
 
 fn recorded(path: &Path) -> Result<Series, WorkbenchError> {
