@@ -350,6 +350,11 @@ impl Forest {
         self.amplitudes[copy * n_modes..][..n_modes].copy_from_slice(amplitudes);
         self.speeds[copy * n_modes..][..n_modes].fill(0.0);
     }
+
+    /// The same of every copy: one that is twice as large is pulled twice as far.
+    pub fn pull_all(&mut self, amplitudes: &[f32]) {
+        (0..self.len()).for_each(|copy| self.pull(copy, amplitudes));
+    }
 }
 
 impl Piece<'_> {

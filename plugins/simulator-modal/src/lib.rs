@@ -79,9 +79,7 @@ impl Simulator for Modal {
 
     fn reset(&mut self) {
         self.forest.reset();
-        for copy in 0..self.forest.len() {
-            self.forest.pull(copy, &self.pulled);
-        }
+        self.forest.pull_all(&self.pulled);
     }
 
     fn step(&mut self, steps: &Steps<'_>, out: &mut [[f32; 3]], cx: &Cx<'_>) -> Result<()> {

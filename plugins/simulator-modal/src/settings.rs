@@ -71,7 +71,7 @@ params! {
         air_damping: f64 = 1.0 => { label: "Damping by the air", group: "Motion", unit: "1", min: 0, max: 1000, soft_max: 5, affects: "step" },
         /// So many times as heavy as its wood, all over: rain, snow, fruit.
         heavier: f64 = 1.0 => { label: "Heavier", group: "Motion", unit: "1", min: 0.01, max: 100, scale: "log", affects: "step" },
-        /// In the beginning the slowest mode is pulled out, so that the node that it moves most is so far from rest.
+        /// In the beginning the slowest mode of every copy is pulled out, so that the node that it moves most is so far from rest.
         pull: f64 = 0.0 => { label: "Pull", group: "Motion", unit: "m", min: -1000, max: 1000, soft_min: -2, soft_max: 2 },
     }
 }

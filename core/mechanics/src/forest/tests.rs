@@ -391,3 +391,15 @@ fn a_saved_state_is_that_of_its_own_forest_alone() {
     assert_eq!(forest.load(&broken), Err(StateError::Numbers));
     assert_eq!(forest.save(), saved, "what is refused changes nothing");
 }
+
+/// Copies of any size and mass, that moved before: all are where they were pulled to, and stand still.
+#[test]
+fn a_pull_pulls_every_copy() {
+    let plant = plant(30, 4, Form::Linear);
+    let mut forest = forest(&plant, &stands(3), &PACE);
+    go(&mut forest, 5, &blowing(Vector3::x()), &threads(1));
+    let pulled = plant.pulled(0.3);
+    forest.pull_all(&pulled);
+    assert!((0..3).all(|copy| forest.amplitudes(copy) == pulled) && pulled[0].abs() > 0.0, "{pulled:?}");
+    assert!(forest.speeds.iter().all(|speed| speed.to_bits() == 0));
+}

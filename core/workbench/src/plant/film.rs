@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use honami_mechanics::wind::Wind;
-use honami_mechanics::{Direction, Forest, Pose, Stand, Stirring, Threads};
+use honami_mechanics::{Direction, Pose, Stand, Stirring, Threads};
 use honami_synth::Moving;
 
 use super::Vibrating;
@@ -15,7 +15,7 @@ use crate::progress::{Flow, Progress};
 /// Where all nodes are in every frame of a motion, in the plane in which they move most.
 ///
 /// # Errors
-/// What [`Forest`] refuses, and [`WorkbenchError::Stopped`].
+/// What [`Forest`](honami_mechanics::Forest) refuses, and [`WorkbenchError::Stopped`].
 pub fn film(
     plant: &Vibrating,
     wind: &dyn Wind,
@@ -28,11 +28,8 @@ pub fn film(
     let grove =
         Grove { places: vec![Direction::zeros()], stands: vec![Stand::default()], height: plant.height };
     let nodes: Vec<u32> = (0..n_nodes as u32).collect();
-    let mut forest = Forest::new(Arc::clone(&stirring), &nodes, &grove.stands, &motion.pace())?;
+    let mut forest = grove.forest(&stirring, &nodes, motion)?;
     let threads = Threads::new(motion.n_threads)?;
-    if motion.pull.abs() > 0.0 {
-        forest.pull(0, &stirring.pulled(motion.pull));
-    }
     let mut moved = vec![[0.0; 3]; n_nodes];
     let mut frames: Vec<Vec<Direction>> = Vec::new();
     // Sums over all nodes and frames: of x x, y y and x y of displacements.

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use honami_exchange::plant::{Body, Placed, Sizes, Target, write_glb};
 use honami_mechanics::wind::Wind;
-use honami_mechanics::{Bending, Detail, Direction, Following, Forest, Pose, Stand, Stirring, Threads};
+use honami_mechanics::{Bending, Detail, Direction, Following, Pose, Stand, Stirring, Threads};
 
 use super::Vibrating;
 use super::grove::Grove;
@@ -38,7 +38,7 @@ pub struct Made {
 /// Moves a plant as [`sway`](super::sway::sway) does and writes it as a .glb.
 ///
 /// # Errors
-/// What [`Forest`] refuses, more than readers of such files or this machine can hold, and what the disk says; nothing is
+/// What [`Forest`](honami_mechanics::Forest) refuses, more than readers of such files or this machine can hold, and what the disk says; nothing is
 /// left behind then.
 pub fn glb(
     plant: &Vibrating,
@@ -89,14 +89,11 @@ fn weights(
     };
     let mut copies: Vec<Placed> = grove.places.iter().zip(&grove.stands).map(copy).collect();
     let nodes: Vec<u32> = (0..stirring.n_nodes() as u32).collect();
-    let mut forest = Forest::new(Arc::clone(stirring), &nodes, &grove.stands, &motion.pace())?;
+    let mut forest = grove.forest(stirring, &nodes, motion)?;
     let mut details = vec![Detail::default(); copies.len()];
     details[0] = Detail { n_nodes: u32::MAX, n_modes: u32::MAX };
     let (mut first, mut off) = (vec![[0.0; 3]; nodes.len()], 0.0_f64);
     let threads = Threads::new(motion.n_threads)?;
-    if motion.pull.abs() > 0.0 {
-        forest.pull(0, &stirring.pulled(motion.pull));
-    }
     for frame in 0..motion.n_frames {
         if progress.report(u64::from(frame), u64::from(motion.n_frames), "motion") == Flow::Stop {
             return Err(WorkbenchError::Stopped);

@@ -18,7 +18,7 @@ pub(in crate::cli) struct Simulate {
     /// several with a + between them, wind+vortex:strength=300.
     #[arg(long, value_name = "WIND", default_value = "still")]
     pub(in crate::cli) wind: String,
-    /// Begin with the slowest mode pulled out, so that the node it moves most is this far from rest, metres.
+    /// Begin with the slowest mode of every copy pulled out, so that the node it moves most is this far from rest, metres.
     #[arg(long, value_name = "M", default_value_t = 0.0, allow_negative_numbers = true)]
     pub(in crate::cli) pull: f64,
     /// How long.
