@@ -5,10 +5,11 @@
 //! SIAM J. Matrix Anal. Appl. 15, 1994).
 
 use crate::factor::{Factor, WIDE};
+use crate::modes::{ModesError, eigen};
 use crate::simd::{accumulate, dot, mixed, products};
 use crate::six::DOF;
 use crate::tree_matrix::TreeMatrix;
-use nalgebra::{DMatrix, DMatrixView, SymmetricEigen};
+use nalgebra::{DMatrix, DMatrixView, DMatrixViewMut};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::mem::{replace, take};
@@ -56,27 +57,31 @@ pub(crate) struct Ritz {
 
 impl<'a> Lanczos<'a> {
     /// With room for so many columns, which may become more.
+    ///
+    /// # Errors
+    /// [`ModesError::Memory`].
     pub(crate) fn new(
         factor: &'a Factor,
         shift: f64,
         mass: &'a TreeMatrix,
         seed: u64,
         n_columns: usize,
-    ) -> Self {
+    ) -> Result<Self, ModesError> {
         let height = DOF * mass.len();
         let mut chance = Pcg64::seed_from_u64(seed);
         let mut first: Vec<f64> = (0..WIDE * height).map(|_| chance.random_range(-1.0..1.0)).collect();
         // Chance is mostly fast vibrations: one step towards the slow ones.
         factor.solve(&mut first);
         let (diagonal, below) = Default::default();
-        let basis = Vec::with_capacity(n_columns * height);
+        let mut basis = Vec::new();
+        reserve(&mut basis, n_columns * height)?;
         let [mass_last, mut mass_next] = [0, 1].map(|_| vec![0.0; WIDE * height]);
         mass.times(&first, &mut mass_next);
         let next = first;
         let mut made =
             Self { factor, shift, mass, height, basis, mass_last, next, mass_next, diagonal, below, chance };
-        made.append();
-        made
+        made.append()?;
+        Ok(made)
     }
 
     /// Columns.
@@ -85,15 +90,19 @@ impl<'a> Lanczos<'a> {
     }
 
     /// So many blocks more.
-    pub(crate) fn grow(&mut self, n_blocks: usize) {
+    ///
+    /// # Errors
+    /// [`ModesError::Memory`].
+    pub(crate) fn grow(&mut self, n_blocks: usize) -> Result<(), ModesError> {
         for _ in 0..n_blocks {
             let (mut next, mut mass_next) = (take(&mut self.next), take(&mut self.mass_next));
             let own = self.follow(&mut next, &mut mass_next);
             (self.next, self.mass_next) = (next, mass_next);
             self.diagonal.push(own);
-            let below = self.append();
+            let below = self.append()?;
             self.below.push(below);
         }
+        Ok(())
     }
 
     /// The operator on the last block, less what lies in the basis, and M times that; the share of the last block itself.
@@ -141,7 +150,7 @@ impl<'a> Lanczos<'a> {
 
     /// Makes the next columns orthogonal to one another and of length 1 and adds them; what was there is they
     /// times what is returned. A column that is nothing new is another, by chance.
-    fn append(&mut self) -> Square {
+    fn append(&mut self) -> Result<Square, ModesError> {
         let (mut wide, mut mass_wide) = (take(&mut self.next), take(&mut self.mass_next));
         let height = self.height;
         let mut triangle = Square::default();
@@ -171,10 +180,11 @@ impl<'a> Lanczos<'a> {
         for columns in [&mut wide, &mut mass_wide] {
             mixed(columns, by);
         }
+        reserve(&mut self.basis, wide.len())?;
         self.basis.extend_from_slice(&wide);
         self.next = wide;
         self.mass_next = replace(&mut self.mass_last, mass_wide);
-        triangle
+        Ok(triangle)
     }
 
     /// Puts chance into a column, orthogonal to all before; its length.
@@ -215,8 +225,11 @@ impl<'a> Lanczos<'a> {
 
     /// Eigenvalues that are found: all of the `n_below` below the shift, if so many are, and those above it up to the
     /// first that is not.
-    pub(crate) fn ritz(&self, n_below: usize) -> Ritz {
-        let eigen = SymmetricEigen::new(self.tridiagonal());
+    ///
+    /// # Errors
+    /// [`ModesError::Numbers`].
+    pub(crate) fn ritz(&self, n_below: usize) -> Result<Ritz, ModesError> {
+        let eigen = eigen(self.tridiagonal())?;
         let n = eigen.eigenvalues.len();
         let last = self.below.last().copied().unwrap_or_default();
         let is_found = |k: usize| {
@@ -235,21 +248,38 @@ impl<'a> Lanczos<'a> {
         let above = above.into_iter().take_while(|k| is_found(*k));
         let order: Vec<usize> =
             if below.len() < n_below { Vec::new() } else { below.into_iter().chain(above).collect() };
-        Ritz {
+        Ok(Ritz {
             lambdas: order.iter().map(|k| self.shift + nu(k).recip()).collect(),
             small: eigen.eigenvectors.select_columns(&order),
-        }
+        })
     }
 
     /// The smallest eigenvalue that the basis can tell of, found or not.
-    pub(crate) fn smallest(&self) -> f64 {
-        let largest = self.tridiagonal().symmetric_eigenvalues().max();
-        self.shift + largest.recip()
+    ///
+    /// # Errors
+    /// [`ModesError::Numbers`].
+    pub(crate) fn smallest(&self) -> Result<f64, ModesError> {
+        let largest = eigen(self.tridiagonal())?.eigenvalues.max();
+        Ok(self.shift + largest.recip())
     }
 
     /// Vectors of the first few that are found, one after the other, of length 1 in M.
-    pub(crate) fn vectors(&self, ritz: &Ritz, n: usize) -> Vec<f64> {
+    ///
+    /// # Errors
+    /// [`ModesError::Memory`].
+    pub(crate) fn vectors(&self, ritz: &Ritz, n: usize) -> Result<Vec<f64>, ModesError> {
         let basis = DMatrixView::from_slice(&self.basis, self.height, ritz.small.nrows());
-        (basis * ritz.small.columns(0, n)).data.into()
+        let mut vectors = Vec::new();
+        reserve(&mut vectors, n * self.height)?;
+        vectors.resize(n * self.height, 0.0);
+        let mut columns = DMatrixViewMut::from_slice(&mut vectors, self.height, n);
+        columns.gemm(1.0, &basis, &ritz.small.columns(0, n), 0.0);
+        Ok(vectors)
     }
+}
+
+/// Room for so many numbers more.
+fn reserve(numbers: &mut Vec<f64>, n_more: usize) -> Result<(), ModesError> {
+    let bytes = n_more.saturating_mul(size_of::<f64>());
+    numbers.try_reserve(n_more).map_err(|_full| ModesError::Memory { bytes })
 }

@@ -1,7 +1,10 @@
 //! The slowest vibrations of a plant, and a proof that none was missed.
 
+mod dense;
 #[cfg(test)]
 mod tests;
+
+pub(crate) use dense::eigen;
 
 use crate::beams::Beams;
 use crate::factor::{Factor, Flexibility, Singular, WIDE};
@@ -9,11 +12,13 @@ use crate::lanczos::Lanczos;
 use crate::simd::dot;
 use crate::six::DOF;
 use crate::tree_matrix::TreeMatrix;
-use nalgebra::{DMatrix, Dyn, SymmetricEigen, Vector3};
+use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
 /// Up to so many degrees of freedom all vibrations are worked out at once.
-const DENSE_MAX: usize = 96;
+const DENSE: usize = 96;
+/// And of a plant with up to so many where more than half of them are wanted: that takes seconds, and grows with the cube.
+const DENSE_MOST: usize = 1500;
 /// Eigenvalues closer than this are one for the proof, which needs a gap to count below.
 const GAP: f64 = 1e-7;
 /// Vibrations beyond the wanted ones that are looked at to find a gap.
@@ -22,8 +27,12 @@ const BEYOND: usize = 3;
 const WIDTH: usize = 3;
 /// Blocks that tell about where the first eigenvalue lies.
 const BLOCKS_FIRST: usize = 4;
-/// Blocks between two looks at how far it is.
+/// Blocks between two looks at how far it is; and so many columns of the basis are worth one more, since a look takes time
+/// that grows with their cube.
 const BLOCKS_A_LOOK: usize = 2;
+const COLUMNS_A_BLOCK: usize = 64;
+/// Bytes that a node takes in matrices and their factors, about.
+const NODE_BYTES: usize = 4000;
 /// Attempts at a shift amid what is wanted; where all fail, many eigenvalues are as one, and any shift serves.
 const SHIFTS_MAX: usize = 12;
 
@@ -50,9 +59,35 @@ pub enum ModesError {
         /// Of the plant.
         there: usize,
     },
-    /// Numbers so far apart that the matrix has no factors.
+    /// More than half of many.
+    #[error(
+        "{wanted} modes of {there} were asked for: more than half of them are worked out where there are {DENSE_MOST} at \
+         most, here {} can be had", there / 2
+    )]
+    Half {
+        /// Asked for.
+        wanted: usize,
+        /// Of the plant.
+        there: usize,
+    },
+    /// More than the system gives.
+    #[error(
+        "to find the modes takes {} MB more than the system gives: fewer modes, or fewer nodes, are wanted",
+        bytes / 1_000_000
+    )]
+    Memory {
+        /// Wanted at once.
+        bytes: usize,
+    },
+    /// A shift for which the matrix has no factors.
     #[error(transparent)]
     Singular(#[from] Singular),
+    /// Matrices that overflow or vanish.
+    #[error(
+        "the plant cannot be calculated with: its lengths, radii, masses or its wood are too small, too large or too far \
+         apart"
+    )]
+    Numbers,
     /// It went on for long and could not be sure.
     #[error("of {wanted} modes {found} were found for certain")]
     Uncertain {
@@ -76,16 +111,37 @@ impl Modes {
             return Err(ModesError::TooMany { wanted: n_modes, there });
         }
         let flexibility = Flexibility::new(beams);
-        let factor = Factor::new(&flexibility, &mass, 0.0)?;
-        let (lambdas, vectors) = if there <= DENSE_MAX.max(2 * n_modes) {
-            all(&factor, &mass, n_modes)
+        // Statics: only what is no number has no factors.
+        let factor = Factor::new(&flexibility, &mass, 0.0).map_err(|_singular| ModesError::Numbers)?;
+        let (lambdas, vectors) = if there <= DENSE.max(2 * n_modes) {
+            if there > DENSE_MOST {
+                return Err(ModesError::Half { wanted: n_modes, there });
+            }
+            dense::all(&factor, &mass, n_modes)?
         } else {
             few(&flexibility, &factor, &mass, n_modes, seed)?
         };
-        Ok(Self::checked(&factor, &mass, &lambdas, vectors))
+        Self::checked(&factor, &mass, &lambdas, vectors)
     }
 
-    fn checked(factor: &Factor, mass: &TreeMatrix, lambdas: &[f64], shapes: Vec<f64>) -> Self {
+    /// What it takes to find so many modes of beams with so many nodes, bytes, about.
+    #[must_use]
+    pub fn bytes(n_nodes: usize, n_modes: usize) -> usize {
+        let columns = (WIDTH + 1).saturating_mul(n_modes);
+        let column = DOF * size_of::<f64>() * n_nodes;
+        columns.saturating_mul(column).saturating_add(NODE_BYTES * n_nodes)
+    }
+
+    fn checked(
+        factor: &Factor,
+        mass: &TreeMatrix,
+        lambdas: &[f64],
+        shapes: Vec<f64>,
+    ) -> Result<Self, ModesError> {
+        let are_modes = lambdas.iter().all(|lambda| lambda.is_finite() && *lambda > 0.0);
+        if !(are_modes && shapes.iter().all(|v| v.is_finite())) {
+            return Err(ModesError::Numbers);
+        }
         let height = DOF * mass.len();
         let omegas: Vec<f64> = lambdas.iter().map(|lambda| lambda.sqrt()).collect();
         let (mut left, mut product) = (Vec::new(), Vec::new());
@@ -103,7 +159,7 @@ impl Modes {
             let columns = left.chunks(height).zip(product.chunks(height));
             residuals.extend(columns.map(|(left, product)| dot(left, product).max(0.0).sqrt()));
         }
-        Self { omegas, residuals, shapes, n_nodes: mass.len() }
+        Ok(Self { omegas, residuals, shapes, n_nodes: mass.len() })
     }
 
     /// How many.
@@ -158,37 +214,6 @@ impl Modes {
     }
 }
 
-/// The smallest eigenvalues of K x = lambda M x and their vectors, all at once.
-fn all(factor: &Factor, mass: &TreeMatrix, n_modes: usize) -> (Vec<f64>, Vec<f64>) {
-    let height = DOF * mass.len();
-    // M^-1 is not sparse, but M = L L^T has the same eigenvalues in L^T K^-1 L.
-    let column = |of: &dyn Fn(&mut [f64])| {
-        let mut whole = DMatrix::zeros(height, height);
-        for k in 0..height {
-            let mut unit = vec![0.0; height];
-            unit[k] = 1.0;
-            of(&mut unit);
-            whole.column_mut(k).copy_from_slice(&unit);
-        }
-        whole
-    };
-    let flexible = column(&|x| factor.solve(x));
-    let heavy = column(&|x| {
-        let mut product = vec![0.0; x.len()];
-        mass.times(x, &mut product);
-        x.copy_from_slice(&product);
-    });
-    let Some(lower) = heavy.cholesky().map(|cholesky| cholesky.l()) else { return (Vec::new(), Vec::new()) };
-    let both = lower.tr_mul(&flexible) * &lower;
-    let eigen = SymmetricEigen::new((&both + both.transpose()) * 0.5);
-    let order = largest(&eigen, n_modes);
-    let lambdas = order.iter().map(|&k| eigen.eigenvalues[k].recip()).collect();
-    // x = L^-T y.
-    let mut vectors = eigen.eigenvectors.select_columns(&order);
-    lower.tr_solve_lower_triangular_mut(&mut vectors);
-    (lambdas, vectors.as_slice().to_vec())
-}
-
 /// The smallest eigenvalues of K x = lambda M x and their vectors, with the proof that none was missed.
 ///
 /// They are sought about a shift amid them: there the wanted ones are far apart for the iteration, and the factors of
@@ -202,15 +227,15 @@ fn few(
 ) -> Result<(Vec<f64>, Vec<f64>), ModesError> {
     let (shift, shifted) = amid(flexibility, factor, mass, n_modes, seed)?;
     let n_below = shifted.n_negative();
-    let mut lanczos = Lanczos::new(&shifted, shift, mass, seed, WIDTH * n_modes);
+    let mut lanczos = Lanczos::new(&shifted, shift, mass, seed, WIDTH * n_modes)?;
     let width_max = (12 * (n_modes + BEYOND) + 100).min(DOF * mass.len());
     let mut found = 0;
     while lanczos.width() < width_max {
-        lanczos.grow(BLOCKS_A_LOOK);
+        lanczos.grow(BLOCKS_A_LOOK.max(lanczos.width() / COLUMNS_A_BLOCK))?;
         if lanczos.width() < n_modes + found.max(n_modes / 2) {
             continue;
         }
-        let ritz = lanczos.ritz(n_below);
+        let ritz = lanczos.ritz(n_below)?;
         found = ritz.lambdas.len();
         // Below the next that is another; nothing is known yet of what comes after the last.
         let past = |k: usize| ritz.lambdas[k - 1] * (1.0 + GAP);
@@ -219,7 +244,7 @@ fn few(
         let Some(below) = gap else { continue };
         let between = next(below).map_or(past(below), |next| f64::midpoint(ritz.lambdas[below - 1], next));
         if Factor::count(flexibility, mass, between)? == below {
-            return Ok((ritz.lambdas[..n_modes].to_vec(), lanczos.vectors(&ritz, n_modes)));
+            return Ok((ritz.lambdas[..n_modes].to_vec(), lanczos.vectors(&ritz, n_modes)?));
         }
     }
     Err(ModesError::Uncertain { wanted: n_modes, found })
@@ -233,9 +258,9 @@ fn amid(
     n_modes: usize,
     seed: u64,
 ) -> Result<(f64, Factor), ModesError> {
-    let mut lanczos = Lanczos::new(factor, 0.0, mass, seed, 0);
-    lanczos.grow(BLOCKS_FIRST);
-    let first = lanczos.smallest();
+    let mut lanczos = Lanczos::new(factor, 0.0, mass, seed, 0)?;
+    lanczos.grow(BLOCKS_FIRST)?;
+    let first = lanczos.smallest()?;
     let half = n_modes as f64 / 2.0;
     let near = (half / 3.0).max(1.0);
     // A shift that too few lie below, one that too many lie below, and how many.
@@ -259,12 +284,4 @@ fn amid(
         });
     }
     Ok((shift, Factor::new(flexibility, mass, shift)?))
-}
-
-/// Places of the largest eigenvalues, in order.
-fn largest(eigen: &SymmetricEigen<f64, Dyn>, n: usize) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
-    order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
-    order.truncate(n);
-    order
 }

@@ -337,6 +337,22 @@ pub enum WorkbenchError {
         /// Free.
         there: usize,
     },
+    /// Modes for which there is no room.
+    #[error(
+        "to find {modes} modes of {nodes} nodes of beams takes {} MB, and there are {}: fewer modes are wanted, or a plant of \
+         fewer nodes",
+        bytes / 1_000_000, there / 1_000_000
+    )]
+    ModesMemory {
+        /// Asked for.
+        modes: usize,
+        /// Of the beams.
+        nodes: usize,
+        /// Wanted.
+        bytes: usize,
+        /// Free.
+        there: usize,
+    },
     /// The system gives no threads.
     #[error(transparent)]
     Threads(#[from] honami_mechanics::ThreadsError),

@@ -7,6 +7,8 @@ pub mod glb;
 mod grove;
 pub mod mover;
 pub mod sway;
+#[cfg(test)]
+mod tests;
 mod tubes;
 pub mod weather;
 
@@ -104,12 +106,19 @@ pub fn vibrate(wish: &Wish) -> Result<Vibrating, WorkbenchError> {
         "segments are thicker than long, of which beams are a rough model",
     );
     let drag = wish.leaves.hang(&mut beams, &plant)?;
+    room(beams.len(), wish.n_modes, sway::free())?;
     let begun = Instant::now();
     let modes = Modes::new(&beams, wish.n_modes, wish.seed)?;
     let seconds = begun.elapsed().as_secs_f64();
     let basis = WindBasis::new(&beams, &modes, &drag);
     let (n_measured, height) = (plant.nodes().len(), plant.height());
     Ok(Vibrating { n_measured, height, beams, modes, basis, notes, seconds })
+}
+
+/// Whether modes can be sought in so many bytes that are free.
+fn room(nodes: usize, modes: usize, there: usize) -> Result<(), WorkbenchError> {
+    let bytes = Modes::bytes(nodes, modes);
+    if bytes > there { Err(WorkbenchError::ModesMemory { modes, nodes, bytes, there }) } else { Ok(()) }
 }
 
 /// Writes the beams of a plant as a table, for other programs.

@@ -226,3 +226,47 @@ fn more_modes_than_there_are_is_an_error() {
         assert_eq!(error, ModesError::TooMany { wanted, there: 12 });
     }
 }
+
+/// All at once and the slowest by iteration: the same modes, also where nearly half of all are wanted.
+#[test]
+fn many_modes_of_few_nodes_are_the_same_by_both_ways() {
+    let beams = Beams::new(&honami_synth::tree(30, 2).unwrap(), &options(RadiusRule::Mean)).unwrap();
+    // 174 degrees of freedom.
+    let (few, all) = (Modes::new(&beams, 80, 1).unwrap(), Modes::new(&beams, 90, 1).unwrap());
+    for mode in 0..80 {
+        assert_near(few.omegas[mode], all.omegas[mode], 1e-9, &format!("mode {mode}"));
+    }
+}
+
+#[test]
+fn more_than_half_of_the_modes_of_a_large_plant_is_an_error_with_the_figure() {
+    let beams = Beams::new(&honami_synth::tree(300, 1).unwrap(), &Options::default()).unwrap();
+    let error = Modes::new(&beams, 1000, 1).unwrap_err();
+    assert_eq!(error, ModesError::Half { wanted: 1000, there: 1794 });
+    assert!(error.to_string().ends_with("where there are 1500 at most, here 897 can be had"), "{error}");
+}
+
+/// Masses that vanish to the digits that there are, of a plant that is worked out all at once and of one that is not; what
+/// is only far from wood has its modes.
+#[test]
+fn a_plant_whose_masses_vanish_is_an_error_by_both_ways() {
+    for (n, density) in [(8, 1e-318), (40, 1e-318), (8, 1e-100), (40, 1e-100), (8, 1e100), (40, 1e100)] {
+        let options = Options { material: Material { density, ..MATERIAL }, ..Options::default() };
+        match Modes::new(&Beams::new(&rod(n, Vector3::z()), &options).unwrap(), 4, 1) {
+            Ok(modes) if density > 1e-318 => {
+                let wanted = bending_hz(BENDING[0]) * (MATERIAL.density / density).sqrt();
+                assert_near(modes.hz(0), wanted, 1e-4, &format!("{n} segments of {density:e} kg/m3"));
+            }
+            Err(ModesError::Numbers | ModesError::Singular(_)) if density <= 1e-318 => (),
+            other => panic!("{n} segments of {density:e} kg/m3: {:?}", other.map(|modes| modes.omegas)),
+        }
+    }
+}
+
+#[test]
+fn what_modes_take_is_known_before() {
+    // Thrice as many columns as modes, and the modes: 8 bytes a number, 6 numbers a node.
+    let bytes = Modes::bytes(3437, 25);
+    assert!((16_000_000..40_000_000).contains(&bytes), "{bytes}");
+    assert_eq!(Modes::bytes(1 << 40, usize::MAX), usize::MAX);
+}
