@@ -128,10 +128,13 @@ impl Beams {
         self.of_plant[row] = before;
     }
 
-    /// Hangs masses, such as leaves, on nodes of the plant: (row, kilograms).
+    /// Hangs masses, such as leaves, on nodes: (node, kilograms).
+    ///
+    /// # Panics
+    /// When there is no such node.
     pub fn load(&mut self, masses: impl IntoIterator<Item = (usize, f64)>) {
-        for (row, mass) in masses {
-            self.nodes[self.of_plant[row] as usize].load += mass;
+        for (node, mass) in masses {
+            self.nodes[node].load += mass;
         }
     }
 

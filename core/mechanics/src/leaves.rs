@@ -5,7 +5,6 @@ mod tests;
 
 use crate::beams::Beams;
 use crate::wind_basis::Drag;
-use honami_model::plant::Plant;
 
 /// All leaves of a plant, shared alike by the ends of its branches.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -25,23 +24,20 @@ pub struct LeavesError {
 }
 
 impl Leaves {
-    /// Hangs them on the beams that a plant was made into; how hard air presses on both.
+    /// Hangs them on the beams; how hard air presses on both. An end is a node that bears no other: a twig of no length is
+    /// none, whoever measured it, and so a plant has the same ends when its beams are made into beams again.
     ///
     /// # Errors
     /// [`LeavesError`].
-    pub fn hang(&self, beams: &mut Beams, plant: &Plant) -> Result<Drag, LeavesError> {
+    pub fn hang(&self, beams: &mut Beams) -> Result<Drag, LeavesError> {
         let Self { mass, drag } = *self;
         if ![mass, drag].iter().all(|v| v.is_finite() && *v >= 0.0) {
             return Err(LeavesError { mass, drag });
         }
-        let mut is_end = vec![true; plant.nodes().len()];
-        for parent in plant.nodes().iter().filter_map(|node| node.parent) {
-            is_end[parent as usize] = false;
-        }
-        let ends: Vec<usize> = (0..is_end.len()).filter(|row| is_end[*row]).collect();
+        let ends = beams.ends();
         let share = 1.0 / ends.len().max(1) as f64;
-        beams.load(ends.iter().map(|row| (*row, mass * share)));
-        let of_end = |row: &usize| (beams.of_plant()[*row] as usize, drag * share);
+        beams.load(ends.iter().map(|end| (*end as usize, mass * share)));
+        let of_end = |end: &u32| (*end as usize, drag * share);
         let leaves = if drag > 0.0 { ends.iter().map(of_end).collect() } else { Vec::new() };
         Ok(Drag { leaves, ..Drag::default() })
     }

@@ -105,7 +105,7 @@ pub fn vibrate(wish: &Wish) -> Result<Vibrating, WorkbenchError> {
         "segment is thicker than long, of which a beam is a rough model",
         "segments are thicker than long, of which beams are a rough model",
     );
-    let drag = wish.leaves.hang(&mut beams, &plant)?;
+    let drag = wish.leaves.hang(&mut beams)?;
     room(beams.len(), wish.n_modes, sway::free())?;
     let begun = Instant::now();
     let modes = Modes::new(&beams, wish.n_modes, wish.seed)?;

@@ -46,7 +46,7 @@ impl Simulator for Modal {
         let mut beams = Beams::new(&measured, &settings.options()).map_err(unusable)?;
         cx.progress(0.1, "modes")?;
         let leaves = Leaves { mass: settings.leaf_mass, drag: settings.leaf_drag };
-        let drag = leaves.hang(&mut beams, &measured).map_err(unusable)?;
+        let drag = leaves.hang(&mut beams).map_err(unusable)?;
         let n_modes = (settings.modes as usize).min(FREEDOMS * (beams.len() - 1));
         let modes = Modes::new(&beams, n_modes, plant.seed).map_err(unusable)?;
         cx.progress(0.8, "curves")?;

@@ -79,3 +79,52 @@ fn what_is_no_plant_is_refused_in_words() {
         assert!(error.to_string().contains(wanted), "{error}");
     }
 }
+
+/// With leaves, twigs of no length, copies of several sizes and masses, in gusts: the plugin is the forest of the library, to
+/// the bit.
+#[test]
+fn the_plugin_moves_as_the_forest_does() {
+    let mut nodes = rod();
+    nodes.extend([node(Some(5), [0.0, 0.0, 0.4], 0.02), node(Some(5), [0.2, 0.1, 0.5], 0.01)]);
+    nodes.extend([node(Some(13), [0.2, 0.1, 0.5], 0.01), node(Some(11), [0.0, 0.0, 1.0], 0.005)]);
+    let instances: Vec<Instance> = (0..5)
+        .map(|k| Instance { yaw: k as f32, scale: 1.0 + 0.3 * k as f32, mass: 1.0 + 0.1 * k as f32 })
+        .collect();
+    let settings = Settings { leaf_mass: 0.3, leaf_drag: 0.2, modes: 6, pull: 0.05, ..Settings::default() };
+    let mut modal = prepared(&settings, &nodes, &instances).unwrap();
+
+    let measured = plant::Plant::new(
+        nodes
+            .iter()
+            .map(|node| plant::Node {
+                parent: node.parent,
+                position: node.position.map(f64::from),
+                radius: f64::from(node.radius),
+            })
+            .collect(),
+    );
+    let mut beams = Beams::new(&measured.unwrap(), &settings.options()).unwrap();
+    let drag = Leaves { mass: 0.3, drag: 0.2 }.hang(&mut beams).unwrap();
+    assert_eq!(drag.leaves.len(), 2, "the end of the rod, and of its twig");
+    let modes = Modes::new(&beams, 6, 1).unwrap();
+    let basis = WindBasis::new(&beams, &modes, &drag);
+    let stirring = Arc::new(Stirring::new(&beams, &modes, basis, settings.form()));
+    let stands: Vec<Stand> = instances.iter().map(stand).collect();
+    let pace = Pace { step: 0.02, ..settings.pace() };
+    let mut forest = Forest::new(Arc::clone(&stirring), beams.of_plant(), &stands, &pace).unwrap();
+    forest.pull_all(&stirring.pulled(0.05));
+
+    let threads = Threads::new(1).unwrap();
+    let [mut ours, mut theirs] = [0; 2].map(|_| vec![[0.0; 3]; 5 * nodes.len()]);
+    for frame in 0..20 {
+        let velocities: Vec<[f32; 3]> = (0..5).map(|k| [frame as f32, 3.0 - k as f32, 0.5]).collect();
+        let wind = Wind { times_s: &[0.0], velocities: &velocities };
+        modal.step(&Steps { dt: 0.02, n: 1, wind, detail: None }, &mut theirs, &testing::cx()).unwrap();
+        let blowing = |copy: usize| Direction::from(velocities[copy].map(f64::from));
+        let pose = Pose { details: None, motion: &mut ours };
+        forest.step(&blowing, Some(pose), &threads).unwrap();
+        assert!(ours == theirs, "frame {frame}");
+    }
+    assert_eq!(modal.save().unwrap(), forest.save());
+    assert!(ours.as_flattened().iter().any(|v| v.abs() > 1e-3), "they move");
+}
