@@ -276,9 +276,14 @@ fn another_simulator_takes_the_place_of_the_one_that_ships() {
         );
         let n_sensors = motion["sensors"].as_array().unwrap().len();
         assert_eq!(rows(&bench.path("sway.csv")).len(), n_sensors * 25);
+        let is_told = !motion["warnings"].to_string().contains("bad is not told of modes");
+        assert_eq!(is_told, simulator == "org.honami.modal", "{motion}");
     }
-    let ran = bench.line(&format!("{own} --alpha 0.5"));
-    assert!(ran.code == Some(2) && ran.stderr.contains("there is no parameter \"alpha\""), "{ran:?}");
+    // What is typed is told, though it be the default.
+    for alpha in ["0.5", "0.3"] {
+        let ran = bench.line(&format!("{own} --alpha {alpha}"));
+        assert!(ran.code == Some(2) && ran.stderr.contains("there is no parameter \"alpha\""), "{ran:?}");
+    }
     let set = bench.json(&format!("{line} --set alpha=2"));
     assert!(set["motion"]["deviation_m"] != bench.json(line)["motion"]["deviation_m"]);
 }

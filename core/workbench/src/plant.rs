@@ -9,6 +9,7 @@ pub mod mover;
 pub mod sway;
 #[cfg(test)]
 mod tests;
+pub mod told;
 mod tubes;
 pub mod weather;
 

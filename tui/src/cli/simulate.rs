@@ -5,10 +5,11 @@ use std::path::Path;
 use honami_model::plant::RadiusRule;
 use honami_workbench::mechanics::{Damping, Form, Integrator, Leaves, Material, Options};
 use honami_workbench::plant::glb::{self, Made};
-use honami_workbench::plant::mover::{self, Mover};
+use honami_workbench::plant::mover::Mover;
 use honami_workbench::plant::sway::{self, Motion, Moved, Outs};
 use honami_workbench::plant::weather::{self, Ground, Typed};
 use honami_workbench::plant::{self, Vibrating, Wish};
+use honami_workbench::plant::told::{self, Chosen};
 use honami_workbench::plugins::Kind;
 use serde_json::json;
 
@@ -60,18 +61,17 @@ pub(super) fn simulate(args: &Simulate, common: &Common) -> anyhow::Result<Answe
         let options = told_options(common);
         let registry = options.registry();
         let plugin = registry.find(Kind::Simulator, args.plugin.with.as_deref().unwrap_or(DEFAULT))?;
-        let mut values = mover::values(&wish, &motion, plugin)?;
-        for assignment in &args.plugin.set {
-            values.set_text(&plugin.params, assignment)?;
-        }
-        let mover = Mover { host: &options.host, plugin, values: &values };
+        let chosen = Chosen::Only(&args.typed.0);
+        let simulator = told::told(&wish, &motion, plugin, chosen, &args.plugin.set)?;
+        let mover = Mover { host: &options.host, plugin, values: &simulator.values };
         let bar = report::Bar::with(common);
         let wind = wind.over(&Ground::of(&plant, &motion))?;
         // First, because it may be refused.
         let made = args.glb.as_deref().map(|path| glb::glb(&plant, &*wind, &motion, path, &bar));
         let made = made.transpose()?;
         let outs = Outs { table: args.out.as_deref(), cache: args.cache.as_deref() };
-        let moved = sway::sway(&plant, &mover, &*wind, &motion, outs, &bar)?;
+        let mut moved = sway::sway(&plant, &mover, &*wind, &motion, outs, &bar)?;
+        moved.warnings.splice(0..0, simulator.notes);
         let told = told(args, &motion, &moved, made.as_ref());
         text += &format!("\n{}", report::with_warnings(&told, &moved.warnings));
         json["motion"] = entry(&motion, &moved, args, made.as_ref());

@@ -8,8 +8,9 @@ use honami_mechanics::{
     Damping, Direction, Forest, Form, Integrator, Pace, Pose, Roof, Stand, Stirring, Threads,
 };
 
-use super::mover::{Mover, start, values};
+use super::mover::{Mover, start};
 use super::sway::Motion;
+use super::told::{Chosen, told};
 use super::{Wish, sway, vibrate};
 use crate::error::WorkbenchError;
 use crate::progress::{Flow, Progress};
@@ -205,8 +206,8 @@ pub fn boundary(
     let pace = Pace { step: 1.0 / 30.0, integrator: Integrator::Exact, damping: Damping::default() };
     let mut forest = Forest::new(Arc::new(stirring), &plant.beams.coarse_to_fine(), &stands, &pace)?;
     let (mut motion, threads) = (vec![[0.0; 3]; n_copies * n_nodes], Threads::new(runs.n_threads)?);
-    let (cx, values) = (CallContext::silent(), values(&wish, &Motion::default(), plugin)?);
-    let mover = Mover { host, plugin, values: &values };
+    let told = told(&wish, &Motion::default(), plugin, Chosen::All, &[])?;
+    let (cx, mover) = (CallContext::silent(), Mover { host, plugin, values: &told.values });
     let (mut simulator, _) = start(&plant, &mover, &stands, runs.n_threads, 1, &cx)?;
     let winds: Vec<[f32; 3]> = (0..n_copies).map(|k| [5.0 + (k % 7) as f32, 2.0, 0.3]).collect();
     let steps =

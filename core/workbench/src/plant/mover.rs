@@ -2,15 +2,15 @@
 
 use honami_host::draft::Node;
 use honami_host::{
-    CallContext, Host, HostError, PlantInstance, PluginInfo, Simulator, Steps, Value, Values, WindRows,
+    CallContext, Host, HostError, PlantInstance, PluginInfo, Simulator, Steps, Values, WindRows,
 };
 use honami_mechanics::wind::Wind;
-use honami_mechanics::{Direction, Form, Integrator, Stand};
+use honami_mechanics::{Direction, Stand};
 use rayon::prelude::*;
 
 use super::grove::Grove;
 use super::sway::Motion;
-use super::{Vibrating, Wish};
+use super::Vibrating;
 use crate::ear::Ear;
 use crate::error::WorkbenchError;
 
@@ -26,55 +26,6 @@ pub struct Mover<'a> {
     pub plugin: &'a PluginInfo,
     /// Its parameters; the rest take their defaults.
     pub values: &'a Values,
-}
-
-/// Values of a simulator's parameters by what is wanted of a plant and of its motion. What is as usual is left to the
-/// simulator, whose default it may not be; what is not goes by the name of the option, and whoever has no such parameter
-/// refuses it; but for modes, of which not all make use. The nodes that a simulator is given have the radius of the segment
-/// that leads to them: one that can be told so is.
-///
-/// # Errors
-/// What is no motion, and the first value that it has no parameter for or that is out of range.
-pub fn values(wish: &Wish, motion: &Motion, plugin: &PluginInfo) -> Result<Values, WorkbenchError> {
-    motion.check()?;
-    let (plain, usual) = (Wish::of("", 25), Motion::default());
-    let (wood, usual_wood) = (wish.beams.material, plain.beams.material);
-    let numbers = [
-        ("young", wood.young, usual_wood.young),
-        ("poisson", wood.poisson, usual_wood.poisson),
-        ("density", wood.density, usual_wood.density),
-        ("leaf_mass", wish.leaves.mass, plain.leaves.mass),
-        ("leaf_drag", wish.leaves.drag, plain.leaves.drag),
-        ("alpha", motion.damping.alpha, usual.damping.alpha),
-        ("beta", motion.damping.beta, usual.damping.beta),
-        ("air_damping", motion.damping.air, usual.damping.air),
-        ("heavier", motion.damping.mass, usual.damping.mass),
-        ("pull", motion.pull, usual.pull),
-    ];
-    let numbers = numbers.into_iter().filter(|(_, value, usual)| value.to_bits() != usual.to_bits());
-    let numbers = numbers.map(|(id, value, _)| (id, Value::Float(value)));
-    let knows = |id: &str| plugin.params.iter().any(|param| param.id == id);
-    let is_said = wish.n_modes != plain.n_modes && knows("modes");
-    let modes = is_said.then_some(("modes", Value::Int(wish.n_modes as i64)));
-    let method = match motion.integrator {
-        Integrator::Exact => None,
-        Integrator::Symplectic => Some("symplectic"),
-        Integrator::Newmark => Some("newmark"),
-    };
-    let bend = match motion.form {
-        Form::Turn => None,
-        Form::Linear => Some("linear"),
-        Form::Mode(3) => Some("s3"),
-        Form::Node | Form::Mode(_) => Some("s2"),
-    };
-    let radius = knows("radius").then_some("tip");
-    let words = [("method", method), ("bend", bend), ("radius", radius)];
-    let words = words.into_iter().filter_map(|(id, word)| Some((id, Value::Text(word?.to_owned()))));
-    let mut values = Values::defaults(&plugin.params);
-    for (id, value) in numbers.chain(modes).chain(words) {
-        values.set(&plugin.params, id, value).map_err(HostError::from)?;
-    }
-    Ok(values)
 }
 
 /// A plant and its copies on their way.

@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Subcommand, ValueEnum};
+use clap::parser::ValueSource;
+use clap::{ArgMatches, Args, FromArgMatches, Subcommand, ValueEnum};
 
 use super::WithPlugin;
 
@@ -10,6 +11,9 @@ use super::WithPlugin;
 #[derive(Args, Debug)]
 #[command(after_help = honami_workbench::plant::weather::help())]
 pub(in crate::cli) struct Simulate {
+    // The first, since the others take what they read out of the matches.
+    #[command(flatten)]
+    pub(in crate::cli) typed: Typed,
     #[command(flatten)]
     pub(in crate::cli) plant: Plant,
     #[command(flatten)]
@@ -76,6 +80,33 @@ pub(in crate::cli) struct Simulate {
     /// Of where copies stand.
     #[arg(long, value_name = "S", default_value_t = 1)]
     pub(in crate::cli) seed: u64,
+}
+
+/// Which options were typed, though it be what they are anyhow, by the names of their fields.
+#[derive(Debug, Default)]
+pub(in crate::cli) struct Typed(pub(in crate::cli) Vec<String>);
+
+impl FromArgMatches for Typed {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let is_typed = |id: &&str| matches.value_source(id) == Some(ValueSource::CommandLine);
+        let ids = matches.ids().map(clap::Id::as_str);
+        Ok(Self(ids.filter(is_typed).map(str::to_owned).collect()))
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+impl Args for Typed {
+    fn augment_args(command: clap::Command) -> clap::Command {
+        command
+    }
+
+    fn augment_args_for_update(command: clap::Command) -> clap::Command {
+        command
+    }
 }
 
 /// A plant, and what it is made of.
