@@ -19,6 +19,7 @@ mod outlived;
 mod plants;
 mod plants_bending;
 mod plants_glb;
+mod plants_refused;
 mod python;
 mod real_clips;
 mod rebuilt;

@@ -145,8 +145,19 @@ fn is_usage(error: &anyhow::Error) -> bool {
     };
     error.chain().any(|cause| {
         let wrapped = cause.downcast_ref::<WorkbenchError>();
+        // What no plant and no motion can be, whichever it is.
         let of_plant = |error: &WorkbenchError| {
-            matches!(error, WorkbenchError::NoPlant { .. } | WorkbenchError::Weather { .. })
+            use honami_workbench::mechanics::BeamsError::{Longest, Material};
+            matches!(
+                error,
+                WorkbenchError::NoPlant { .. }
+                    | WorkbenchError::Weather { .. }
+                    | WorkbenchError::Units { .. }
+                    | WorkbenchError::Pace { .. }
+                    | WorkbenchError::Pull { .. }
+                    | WorkbenchError::Leaves(_)
+                    | WorkbenchError::Beams(Material(_) | Longest(_))
+            )
         };
         cause.is::<Usage>()
             || cause.is::<ValueError>()

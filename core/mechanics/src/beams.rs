@@ -8,9 +8,14 @@ use crate::material::{Material, MaterialError};
 use crate::tree_matrix::TreeMatrix;
 use honami_model::plant::{Plant, RadiusRule};
 use nalgebra::{Matrix6, Vector3};
+use std::ops::RangeInclusive;
 
 /// Nodes closer than so many metres are one.
 const SAME_PLACE: f64 = 1e-6;
+
+/// Radii that are worked with, and how long a segment is at most, metres: far beyond plants, and nothing overflows.
+const RADII: RangeInclusive<f64> = 1e-9..=1e6;
+const LONGEST: f64 = 1e6;
 
 /// More nodes than that a plant does not have: their matrices alone take thousands of bytes a node.
 pub const MOST_NODES: usize = 4_000_000;
@@ -66,6 +71,19 @@ pub enum BeamsError {
         /// Nodes of the plant, or parts of its segments.
         nodes: f64,
     },
+    /// A segment that no plant has.
+    #[error(
+        "node {node} of the plant has a radius of {radius:e} m and a segment of {length:e} m: radii of 1e-9 to 1e6 m and \
+         segments of up to 1e6 m are wanted; is it the unit?"
+    )]
+    Segment {
+        /// Row.
+        node: usize,
+        /// Metres.
+        radius: f64,
+        /// From its parent, metres.
+        length: f64,
+    },
     /// A length of segments that is none.
     #[error("the longest segment is more than 0 m long, not {0} m")]
     Longest(f64),
@@ -81,6 +99,7 @@ impl Beams {
         if let Some(longest) = options.longest.filter(|longest| !(longest.is_finite() && *longest > 0.0)) {
             return Err(BeamsError::Longest(longest));
         }
+        check(plant)?;
         let nodes = n_nodes(plant, options.longest);
         if nodes > MOST_NODES as f64 {
             return Err(BeamsError::TooMany { nodes });
@@ -261,6 +280,26 @@ impl Beams {
     }
 }
 
+/// Whether all radii and segments are of a size.
+fn check(plant: &Plant) -> Result<(), BeamsError> {
+    for (node, length) in lengths(plant).enumerate() {
+        let radius = plant.nodes()[node].radius;
+        if !(RADII.contains(&radius) && length <= LONGEST) {
+            return Err(BeamsError::Segment { node, radius, length });
+        }
+    }
+    Ok(())
+}
+
+/// From every node to its parent, metres; of the root 0.
+fn lengths(plant: &Plant) -> impl Iterator<Item = f64> {
+    let nodes = plant.nodes();
+    nodes.iter().map(|node| {
+        let parent = node.parent.map_or(node, |parent| &nodes[parent as usize]);
+        (Vector3::from(node.position) - Vector3::from(parent.position)).norm()
+    })
+}
+
 /// Into so many parts a segment is divided.
 fn n_parts(length: f64, longest: Option<f64>) -> f64 {
     longest.map_or(1.0, |longest| (length / longest).ceil().max(1.0))
@@ -268,14 +307,7 @@ fn n_parts(length: f64, longest: Option<f64>) -> f64 {
 
 /// Nodes of the plant, those between parts of its segments included.
 fn n_nodes(plant: &Plant, longest: Option<f64>) -> f64 {
-    let nodes = plant.nodes();
-    let parts = nodes.iter().map(|node| {
-        let length = node.parent.map_or(0.0, |parent| {
-            (Vector3::from(node.position) - Vector3::from(nodes[parent as usize].position)).norm()
-        });
-        n_parts(length, longest)
-    });
-    parts.sum()
+    lengths(plant).map(|length| n_parts(length, longest)).sum()
 }
 
 /// Rows of the plant so that each comes after its parent and a branch's nodes follow one another.

@@ -37,7 +37,7 @@ pub use modes::{Modes, ModesError};
 pub use oscillator::{Damping, Integrator, LimitError, Oscillator, State, Step, symplectic_limit};
 pub use rig::Rig;
 pub use roof::Roof;
-pub use stirring::{Following, Stirring};
+pub use stirring::{Following, PullError, Stirring};
 pub use threads::{Threads, ThreadsError};
 pub use tree_matrix::TreeMatrix;
 pub use turning::Turning;

@@ -15,6 +15,19 @@ const AS_SLOW: f64 = 1e-5;
 /// A ball about half the height holds all nodes in the wind: so many times its radius at rest.
 const SWAY: f64 = 1.3;
 
+/// What moves nodes by so small a share of what their turns would, over the whole of the plant, moves none.
+const TWIST: f64 = 1e-6;
+
+/// A plant that cannot be pulled.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "the slowest mode cannot be pulled by {metres} m: it only twists the plant, as that of a thing thicker than long does, or \
+     moves it too little"
+)]
+pub struct PullError {
+    metres: f64,
+}
+
 /// A plant ready to be moved: at rest, its modes, what wind does to them and how they bend it.
 #[derive(Clone, Debug)]
 pub struct Stirring {
@@ -22,8 +35,8 @@ pub struct Stirring {
     pub(crate) basis: WindBasis,
     pub(crate) following: Following,
     pub(crate) rest: Vec<Vector3<f64>>,
-    /// Amplitudes of the modes that are pulled, a metre.
-    pull: Vec<f64>,
+    /// Amplitudes of the modes that are pulled, a metre; none where they only twist the plant.
+    pull: Option<Vec<f64>>,
     pub(crate) height: f64,
     pub(crate) reach: f64,
 }
@@ -86,7 +99,7 @@ impl Stirring {
         let height = rest.iter().map(|at| at.z).fold(0.0, f64::max);
         let centre = Vector3::z() * (height / 2.0);
         let reach = rest.iter().map(|at| (at - centre).norm()).fold(0.0, f64::max) * SWAY;
-        let pull = pull(modes, rest.len());
+        let pull = pull(modes, rest.len(), reach);
         Self { omegas: modes.omegas.clone(), basis, following, rest, pull, height, reach }
     }
 
@@ -117,13 +130,18 @@ impl Stirring {
     /// Amplitudes with the slowest mode pulled out, so that on straight lines the node it moves most is so many metres from
     /// rest, towards x, or y, or z, along which it moves most. Modes that are as slow are pulled with it, so that equal modes
     /// may be any of their sums.
-    #[must_use]
-    pub fn pulled(&self, metres: f64) -> Vec<f32> {
+    ///
+    /// # Errors
+    /// [`PullError`].
+    pub fn pulled(&self, metres: f64) -> Result<Vec<f32>, PullError> {
         let mut amplitudes = vec![0.0; self.n_modes()];
-        for (amplitude, pull) in amplitudes.iter_mut().zip(&self.pull) {
-            *amplitude = (pull * metres) as f32;
+        if metres.abs() > 0.0 || metres.is_nan() {
+            let pull = self.pull.as_ref().ok_or(PullError { metres })?;
+            for (amplitude, pull) in amplitudes.iter_mut().zip(pull) {
+                *amplitude = (pull * metres) as f32;
+            }
         }
-        amplitudes
+        if amplitudes.iter().all(|q| q.is_finite()) { Ok(amplitudes) } else { Err(PullError { metres }) }
     }
 
     /// From the root to the highest node, metres.
@@ -134,16 +152,20 @@ impl Stirring {
 }
 
 /// Amplitudes of the slowest mode, and of those as slow, that move the node which they move most by a metre.
-fn pull(modes: &Modes, n_nodes: usize) -> Vec<f64> {
+fn pull(modes: &Modes, n_nodes: usize, reach: f64) -> Option<Vec<f64>> {
     let slowest =
         modes.omegas.iter().take_while(|omega| **omega <= modes.omegas[0] * (1.0 + AS_SLOW)).count();
     let moves = |node: usize| (0..slowest).map(move |mode| modes.displacement(mode, node));
     let squares = |node: usize| moves(node).map(|by| by.component_mul(&by)).sum::<Vector3<f64>>();
     let most = (0..n_nodes).map(|node| squares(node).sum()).fold(0.0, f64::max);
+    let turned = (0..n_nodes).map(|node| modes.rotation(0, node).norm()).fold(0.0, f64::max);
+    if most.sqrt() <= TWIST * turned * reach {
+        return None;
+    }
     let node = (0..n_nodes).find(|node| squares(*node).sum() >= (1.0 - AS_SLOW) * most).unwrap_or(0);
     let along = squares(node);
     let axis = (0..3).find(|axis| along[*axis] >= (1.0 - AS_SLOW) * along.max()).unwrap_or(0);
     let shares: Vec<f64> = moves(node).map(|by| by[axis]).collect();
     let moved: Vector3<f64> = moves(node).zip(&shares).map(|(by, share)| by * *share).sum();
-    shares.iter().map(|share| share / moved.norm().max(f64::MIN_POSITIVE)).collect()
+    Some(shares.iter().map(|share| share / moved.norm().max(f64::MIN_POSITIVE)).collect())
 }

@@ -353,6 +353,21 @@ pub enum WorkbenchError {
         /// Free.
         there: usize,
     },
+    /// A clip for which there is no room.
+    #[error(
+        "{frames} frames of a plant of {nodes} nodes take {} MB, and there are {}: fewer frames are wanted",
+        bytes / 1_000_000, there / 1_000_000
+    )]
+    FilmMemory {
+        /// Of the clip.
+        frames: u32,
+        /// Of the beams.
+        nodes: usize,
+        /// Wanted.
+        bytes: usize,
+        /// Free.
+        there: usize,
+    },
     /// The system gives no threads.
     #[error(transparent)]
     Threads(#[from] honami_mechanics::ThreadsError),
@@ -377,7 +392,7 @@ pub enum WorkbenchError {
     Leaves(#[from] honami_mechanics::LeavesError),
     /// Frames that do not follow one another.
     #[error(
-        "a motion has more than 0 frames per second and one step a frame at least, not {fps} and {n_substeps}"
+        "a motion has 0.001 to 1000000 frames per second and 1 to 10000 steps a frame, not {fps:?} and {n_substeps}"
     )]
     Pace {
         /// Asked for.
@@ -391,6 +406,9 @@ pub enum WorkbenchError {
         /// Metres.
         pull: f64,
     },
+    /// Or its slowest mode moves nothing.
+    #[error(transparent)]
+    Unpullable(#[from] honami_mechanics::PullError),
     /// A sensor on no node.
     #[error("there is no node {node}: the beams have nodes 0 to {}, as --beams lists them", there - 1)]
     Sensor {

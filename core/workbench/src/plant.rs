@@ -6,6 +6,7 @@ pub mod forms;
 pub mod glb;
 mod grove;
 pub mod mover;
+pub mod outs;
 pub mod sway;
 #[cfg(test)]
 mod tests;
@@ -17,8 +18,7 @@ use std::fs;
 use std::path::Path;
 use std::time::Instant;
 
-use honami_exchange::Writer;
-use honami_exchange::plant::{BeamRow, Measured, PlantFileError, mtg, qsm, swc};
+use honami_exchange::plant::{Measured, PlantFileError, mtg, qsm, swc};
 use honami_mechanics::{Beams, BeamsError, Leaves, MOST_NODES, Modes, Options, WindBasis};
 use honami_model::plant::RadiusRule;
 
@@ -127,13 +127,7 @@ fn room(nodes: usize, modes: usize, there: usize) -> Result<(), WorkbenchError> 
 /// # Errors
 /// What the disk says; nothing is left behind then.
 pub fn write_beams(plant: &Vibrating, path: &Path) -> Result<(), WorkbenchError> {
-    let mut table = Writer::create(path)?;
-    for node in 0..plant.beams.len() {
-        let at = plant.beams.position(node);
-        let (parent, radius) = (plant.beams.parent(node), plant.beams.radius(node));
-        table.write(&BeamRow { node: node as u32, parent, x: at.x, y: at.y, z: at.z, radius })?;
-    }
-    Ok(table.finish()?)
+    Ok(outs::beams(plant, path)?.finish()?)
 }
 
 /// In words: how thick a segment is.

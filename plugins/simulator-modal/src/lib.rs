@@ -52,7 +52,7 @@ impl Simulator for Modal {
         cx.progress(0.8, "curves")?;
         let basis = WindBasis::new(&beams, &modes, &drag);
         let stirring = Arc::new(Stirring::new(&beams, &modes, basis, settings.form()));
-        let pulled = stirring.pulled(settings.pull);
+        let pulled = stirring.pulled(settings.pull).map_err(unusable)?;
         let stands: Vec<Stand> = plant.instances.iter().map(stand).collect();
         let pace = settings.pace();
         // Whatever a method bears: there is no step yet.

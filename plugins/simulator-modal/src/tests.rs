@@ -112,7 +112,7 @@ fn the_plugin_moves_as_the_forest_does() {
     let stands: Vec<Stand> = instances.iter().map(stand).collect();
     let pace = Pace { step: 0.02, ..settings.pace() };
     let mut forest = Forest::new(Arc::clone(&stirring), beams.of_plant(), &stands, &pace).unwrap();
-    forest.pull_all(&stirring.pulled(0.05));
+    forest.pull_all(&stirring.pulled(0.05).unwrap());
 
     let threads = Threads::new(1).unwrap();
     let [mut ours, mut theirs] = [0; 2].map(|_| vec![[0.0; 3]; 5 * nodes.len()]);

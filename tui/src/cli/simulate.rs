@@ -1,15 +1,16 @@
 //! `simulate`: modes of a plant, and how it moves in the wind.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use honami_model::plant::RadiusRule;
 use honami_workbench::mechanics::{Damping, Form, Integrator, Leaves, Material, Options};
-use honami_workbench::plant::glb::{self, Made};
+use honami_workbench::plant::glb::Made;
 use honami_workbench::plant::mover::Mover;
-use honami_workbench::plant::sway::{self, Motion, Moved, Outs};
+use honami_workbench::plant::outs::Outs;
+use honami_workbench::plant::sway::{self, Motion, Moved};
+use honami_workbench::plant::told::{self, Chosen};
 use honami_workbench::plant::weather::{self, Ground, Typed};
 use honami_workbench::plant::{self, Vibrating, Wish};
-use honami_workbench::plant::told::{self, Chosen};
 use honami_workbench::plugins::Kind;
 use serde_json::json;
 
@@ -27,7 +28,7 @@ pub(super) fn simulate(args: &Simulate, common: &Common) -> anyhow::Result<Answe
     let n_frames = (args.seconds * args.fps).round();
     want((1.0..=1e8).contains(&n_frames), || {
         format!(
-            "a motion has 1 to 100000000 frames, {} s at {} a second are {n_frames}",
+            "a motion has 1 to 100000000 frames, {:?} s at {:?} a second are {n_frames:?}",
             args.seconds, args.fps
         )
     })?;
@@ -44,20 +45,12 @@ pub(super) fn simulate(args: &Simulate, common: &Common) -> anyhow::Result<Answe
     let wind = weather::read(&args.wind)?;
     are_apart(args, &wind)?;
     let wish = wish(&args.plant);
-    let plant = plant::vibrate(&wish)?;
-    if let Some(beams) = &args.beams {
-        plant::write_beams(&plant, beams)?;
-    }
     let damping = Damping { alpha: args.alpha, beta: args.beta, mass: args.heavier, air: args.air_damping };
+    let motion = motion(args, n_frames as u32, damping);
+    motion.check()?;
+    let plant = plant::vibrate(&wish)?;
     let (mut text, mut json) = describe(&wish, &plant, &damping);
-    let is_written = args.out.is_some() || args.cache.is_some() || args.glb.is_some();
-    if args.wind != "still"
-        || args.pull.abs() > 0.0
-        || args.pull.is_nan()
-        || args.forest.is_some()
-        || is_written
-    {
-        let motion = motion(args, n_frames as u32, damping);
+    if is_moved(args) {
         let options = told_options(common);
         let registry = options.registry();
         let plugin = registry.find(Kind::Simulator, args.plugin.with.as_deref().unwrap_or(DEFAULT))?;
@@ -65,24 +58,30 @@ pub(super) fn simulate(args: &Simulate, common: &Common) -> anyhow::Result<Answe
         let simulator = told::told(&wish, &motion, plugin, chosen, &args.plugin.set)?;
         let mover = Mover { host: &options.host, plugin, values: &simulator.values };
         let bar = report::Bar::with(common);
+        let [table, cache, glb, beams] =
+            [&args.out, &args.cache, &args.glb, &args.beams].map(|path| path.as_deref());
+        let outs = Outs { table, cache, glb, beams };
         let wind = wind.over(&Ground::of(&plant, &motion))?;
-        // First, because it may be refused.
-        let made = args.glb.as_deref().map(|path| glb::glb(&plant, &*wind, &motion, path, &bar));
-        let made = made.transpose()?;
-        let outs = Outs { table: args.out.as_deref(), cache: args.cache.as_deref() };
         let mut moved = sway::sway(&plant, &mover, &*wind, &motion, outs, &bar)?;
         moved.warnings.splice(0..0, simulator.notes);
-        let told = told(args, &motion, &moved, made.as_ref());
+        let told = told(args, &motion, &moved);
         text += &format!("\n{}", report::with_warnings(&told, &moved.warnings));
-        json["motion"] = entry(&motion, &moved, args, made.as_ref());
+        json["motion"] = entry(&motion, &moved, args);
         json["motion"]["simulator"] = plugin.id.clone().into();
+    } else if let Some(beams) = &args.beams {
+        plant::write_beams(&plant, beams)?;
     }
     Ok(Answer { json, text, done: true })
 }
 
+/// Whether more than modes is wanted.
+fn is_moved(args: &Simulate) -> bool {
+    let is_written = args.out.is_some() || args.cache.is_some() || args.glb.is_some();
+    args.wind != "still" || args.pull.abs() > 0.0 || args.forest.is_some() || is_written
+}
+
 /// Nothing that is written takes the place of what is read, or of what else is written.
 fn are_apart(args: &Simulate, wind: &Typed) -> anyhow::Result<()> {
-    let place = |path: &Path| path.canonicalize().unwrap_or_else(|_none| path.to_owned());
     let outs = [&args.out, &args.cache, &args.glb, &args.beams].into_iter().flatten();
     let read = std::iter::once(Path::new(&args.plant.source)).chain(wind.files());
     let mut taken: Vec<_> = read.map(place).collect();
@@ -93,6 +92,13 @@ fn are_apart(args: &Simulate, wind: &Typed) -> anyhow::Result<()> {
         taken.push(place(out));
     }
     Ok(())
+}
+
+/// Where a file is, or would be.
+fn place(path: &Path) -> PathBuf {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let beside = || Some(folder.canonicalize().ok()?.join(path.file_name()?));
+    path.canonicalize().ok().or_else(beside).unwrap_or_else(|| path.to_owned())
 }
 
 /// What is asked for of a motion.
@@ -206,7 +212,7 @@ fn describe(wish: &Wish, plant: &Vibrating, damping: &Damping) -> (String, serde
     (text, json)
 }
 
-fn told(args: &Simulate, motion: &Motion, moved: &Moved, made: Option<&Made>) -> String {
+fn told(args: &Simulate, motion: &Motion, moved: &Moved) -> String {
     let copies =
         if motion.n_copies == 1 { "it".to_owned() } else { format!("each of {} copies", motion.n_copies) };
     let who = args.nodes.first().map_or("the highest end".to_owned(), |node| format!("node {node}"));
@@ -230,7 +236,7 @@ fn told(args: &Simulate, motion: &Motion, moved: &Moved, made: Option<&Made>) ->
     if let Some(cache) = &args.cache {
         text += &format!("\n{}: where all nodes of all copies are, metres, z up", cache.display());
     }
-    if let (Some(path), Some(made)) = (&args.glb, made) {
+    if let (Some(path), Some(made)) = (&args.glb, &moved.glb) {
         text += &format!(
             "\n{}: a mesh of {} vertices with {} morph targets, {:.1} MB; at most {:.2} mm from where it moved",
             path.display(),
@@ -243,8 +249,8 @@ fn told(args: &Simulate, motion: &Motion, moved: &Moved, made: Option<&Made>) ->
     text
 }
 
-fn entry(motion: &Motion, moved: &Moved, args: &Simulate, made: Option<&Made>) -> serde_json::Value {
-    let glb = made.map(|made| {
+fn entry(motion: &Motion, moved: &Moved, args: &Simulate) -> serde_json::Value {
+    let glb = moved.glb.map(|made: Made| {
         json!({ "file": args.glb, "vertices": made.n_vertices, "targets": made.n_targets, "bytes": made.bytes, "off_m": made.off })
     });
     json!({

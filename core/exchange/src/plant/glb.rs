@@ -8,7 +8,6 @@ mod layout;
 mod tests;
 
 use std::io::{self, Write as _};
-use std::path::Path;
 
 use crate::atomic::AtomicFile;
 use crate::table::TableError;
@@ -125,11 +124,17 @@ impl Sizes {
     }
 }
 
-/// Writes copies of a mesh that move, and says how many bytes that took.
+/// Writes copies of a mesh that move into a file that was begun, and says how many bytes that took.
 ///
 /// # Errors
 /// [`GlbError`]; nothing is left behind then.
-pub fn write_glb(path: &Path, name: &str, fps: f64, body: &Body, copies: &[Placed]) -> Result<u64, GlbError> {
+pub fn write_glb(
+    mut file: AtomicFile,
+    name: &str,
+    fps: f64,
+    body: &Body,
+    copies: &[Placed],
+) -> Result<u64, GlbError> {
     let n_targets = body.targets.len();
     let n_frames = copies.first().map_or(0, |copy| copy.weights.len() / n_targets.max(1));
     let sizes = Sizes {
@@ -169,9 +174,8 @@ pub fn write_glb(path: &Path, name: &str, fps: f64, body: &Body, copies: &[Place
     // Chunks begin and end at whole words; JSON is filled up with blanks.
     words.resize(words.len().next_multiple_of(4), b' ');
     let whole = 12 + 8 + words.len() as u32 + 8 + n_bytes;
-    let mut file = AtomicFile::create(path)?;
     put(&mut file, &words, whole, n_bytes, body, &times, copies)
-        .map_err(|source| TableError::File { path: path.to_owned(), source })?;
+        .map_err(|source| TableError::File { path: file.path().to_owned(), source })?;
     file.finish()?;
     Ok(u64::from(whole))
 }

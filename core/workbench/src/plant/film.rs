@@ -8,7 +8,7 @@ use honami_synth::Moving;
 
 use super::Vibrating;
 use super::grove::Grove;
-use super::sway::Motion;
+use super::sway::{Motion, free};
 use crate::error::WorkbenchError;
 use crate::progress::{Flow, Progress};
 
@@ -24,6 +24,12 @@ pub fn film(
 ) -> Result<Moving, WorkbenchError> {
     motion.check()?;
     let n_nodes = plant.beams.len();
+    // Where every node is in every frame, in space and in the picture.
+    let (frames, there) = (motion.n_frames, free());
+    let bytes = (frames as usize).saturating_mul(n_nodes * size_of::<[f64; 5]>());
+    if bytes > there {
+        return Err(WorkbenchError::FilmMemory { frames, nodes: n_nodes, bytes, there });
+    }
     let stirring = Arc::new(Stirring::new(&plant.beams, &plant.modes, plant.basis.clone(), motion.form));
     let grove =
         Grove { places: vec![Direction::zeros()], stands: vec![Stand::default()], height: plant.height };

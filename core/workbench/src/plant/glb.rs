@@ -5,9 +5,9 @@
 //! by all modes together, it comes near, and how near is told. Joints would have to be as many as nodes, more than engines
 //! take. A copy costs a weight a target and frame, not a mesh.
 
-use std::path::Path;
 use std::sync::Arc;
 
+use honami_exchange::AtomicFile;
 use honami_exchange::plant::{Body, Placed, Sizes, Target, write_glb};
 use honami_mechanics::wind::Wind;
 use honami_mechanics::{Bending, Detail, Direction, Following, Pose, Stand, Stirring, Threads};
@@ -35,27 +35,35 @@ pub struct Made {
     pub off: f64,
 }
 
-/// Moves a plant as [`sway`](super::sway::sway) does and writes it as a .glb.
+/// A plant with its motion, ready to be written.
+pub(super) struct Scene {
+    body: Body,
+    copies: Vec<Placed>,
+    fps: f64,
+    /// Metres.
+    off: f64,
+}
+
+/// Moves a plant as [`sway`](super::sway::sway) does, by its own modes.
 ///
 /// # Errors
-/// What [`Forest`](honami_mechanics::Forest) refuses, more than readers of such files or this machine can hold, and what the disk says; nothing is
-/// left behind then.
-pub fn glb(
+/// What [`Forest`](honami_mechanics::Forest) refuses, and more than readers of such files or this machine can hold.
+pub(super) fn scene(
     plant: &Vibrating,
     wind: &dyn Wind,
     motion: &Motion,
-    path: &Path,
     progress: &dyn Progress,
-) -> Result<Made, WorkbenchError> {
-    motion.check()?;
+) -> Result<Scene, WorkbenchError> {
     let stirring = Arc::new(Stirring::new(&plant.beams, &plant.modes, plant.basis.clone(), motion.form));
     let bendings = Following::curves(&plant.beams, &plant.modes, motion.form);
     let tubes = Tubes::new(&plant.beams);
-    let n_targets = n_targets(&bendings);
-    let n_vertices = tubes.n_vertices();
-    let n_triangles = tubes.triangles().len();
-    let sizes =
-        Sizes { n_vertices, n_triangles, n_targets, n_copies: motion.n_copies, n_frames: motion.n_frames };
+    let sizes = Sizes {
+        n_vertices: tubes.n_vertices(),
+        n_triangles: tubes.triangles().len(),
+        n_targets: n_targets(&bendings),
+        n_copies: motion.n_copies,
+        n_frames: motion.n_frames,
+    };
     let (bytes, there) = (sizes.bytes()? as usize, free());
     if bytes > there {
         let (copies, nodes) = (motion.n_copies, plant.beams.len());
@@ -63,8 +71,16 @@ pub fn glb(
     }
     let (copies, off) = weights(plant, &stirring, &bendings, wind, motion, progress)?;
     let body = body(plant, &stirring, &bendings, &tubes, motion.damping.mass.sqrt());
-    let bytes = write_glb(path, "plant", motion.fps, &body, &copies)?;
-    Ok(Made { n_vertices, n_targets, bytes, off })
+    Ok(Scene { body, copies, fps: motion.fps, off })
+}
+
+impl Scene {
+    /// Writes it as a .glb.
+    pub(super) fn write(&self, file: AtomicFile) -> Result<Made, WorkbenchError> {
+        let Self { body, copies, fps, off } = self;
+        let bytes = write_glb(file, "plant", *fps, body, copies)?;
+        Ok(Made { n_vertices: body.positions.len(), n_targets: body.targets.len(), bytes, off: *off })
+    }
 }
 
 fn n_targets(bendings: &[Bending]) -> usize {

@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use honami_mechanics::wind::Wind;
-use honami_mechanics::{Direction, Forest, ForestError, Stand, Stirring};
+use honami_mechanics::{Direction, Forest, Stand, Stirring};
 use rand::{RngExt as _, SeedableRng as _};
 
 use super::sway::Motion;
+use crate::error::WorkbenchError;
 
 /// Metres between copies of a plant of height 1, and how far each stands from there by chance.
 const APART: f64 = 0.8;
@@ -45,9 +46,9 @@ impl Grove {
         plant: &Arc<Stirring>,
         nodes: &[u32],
         motion: &Motion,
-    ) -> Result<Forest, ForestError> {
+    ) -> Result<Forest, WorkbenchError> {
         let mut forest = Forest::new(Arc::clone(plant), nodes, &self.stands, &motion.pace())?;
-        forest.pull_all(&plant.pulled(motion.pull));
+        forest.pull_all(&plant.pulled(motion.pull)?);
         Ok(forest)
     }
 

@@ -8,9 +8,9 @@ use honami_mechanics::wind::Wind;
 use honami_mechanics::{Direction, Stand};
 use rayon::prelude::*;
 
+use super::Vibrating;
 use super::grove::Grove;
 use super::sway::Motion;
-use super::Vibrating;
 use crate::ear::Ear;
 use crate::error::WorkbenchError;
 

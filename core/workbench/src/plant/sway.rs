@@ -1,20 +1,24 @@
 //! How a plant, or a forest of it, moves in a wind: positions of sensors over time.
 
-use std::path::Path;
+use std::ops::RangeInclusive;
 use std::time::Instant;
 
-use honami_exchange::Writer;
-use honami_exchange::plant::{PointCache, SwayRow};
+use honami_exchange::plant::SwayRow;
 use honami_mechanics::wind::Wind;
 use honami_mechanics::{Damping, Form, Integrator, Pace};
 
 use super::Vibrating;
+use super::glb::{self, Made};
 use super::grove::Grove;
 use super::mover::{Mover, Moving};
+use super::outs::{Files, Outs};
 use crate::ear::Ear;
 use crate::error::WorkbenchError;
 use crate::progress::Progress;
 
+/// Frames per second, and steps a frame: of anything slower or faster numbers overflow or no frame ever comes.
+const FPS: RangeInclusive<f64> = 1e-3..=1e6;
+const SUBSTEPS: RangeInclusive<u32> = 1..=10_000;
 /// Metres by which a plant may be pulled.
 const FARTHEST_PULL: f64 = 1000.0;
 /// Memory is left to others: so much of what is free.
@@ -73,9 +77,12 @@ impl Default for Motion {
 
 impl Motion {
     /// Whether it can be.
-    pub(super) fn check(&self) -> Result<(), WorkbenchError> {
+    ///
+    /// # Errors
+    /// [`WorkbenchError::Pace`], [`WorkbenchError::Pull`].
+    pub fn check(&self) -> Result<(), WorkbenchError> {
         let Self { fps, n_substeps, n_frames, pull, .. } = *self;
-        if !(fps.is_finite() && fps > 0.0 && n_substeps > 0 && n_frames > 0) {
+        if !(FPS.contains(&fps) && SUBSTEPS.contains(&n_substeps) && n_frames > 0) {
             return Err(WorkbenchError::Pace { fps, n_substeps });
         }
         // Further than any plant bends, and nothing overflows.
@@ -106,18 +113,11 @@ pub struct Moved {
     pub bytes: usize,
     /// What the simulator warned of.
     pub warnings: Vec<String>,
+    /// What became of the plant in a file with its motion.
+    pub glb: Option<Made>,
 }
 
-/// What is written of a motion.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Outs<'a> {
-    /// A table: where its sensors are, a row a sensor and frame.
-    pub table: Option<&'a Path>,
-    /// A point cache: where all nodes of all copies are.
-    pub cache: Option<&'a Path>,
-}
-
-/// Moves a plant by a simulator and writes what is wanted of it.
+/// Moves a plant by a simulator and writes what is wanted of it, where nothing of that is refused.
 ///
 /// # Errors
 /// What the simulator refuses, [`WorkbenchError::Memory`], and what the disk says; nothing is left behind then.
@@ -131,16 +131,15 @@ pub fn sway(
 ) -> Result<Moved, WorkbenchError> {
     motion.check()?;
     let (n_copies, n_nodes) = (motion.n_copies, plant.beams.len());
+    let sensors = sensors(plant, motion)?;
     let bytes = room(n_copies, n_nodes, plant.modes.len())?;
+    let mut files = Files::create(plant, motion, outs)?;
     let grove = Grove::new(plant.height, motion);
     let ear = Ear::new(&mover.plugin.short_name, progress);
     let mut moving = Moving::new(plant, mover, &grove, motion, &ear)?;
     let root = plant.beams.position(0);
     let rest = |node: usize| plant.beams.position(node) - root;
-    let sensors = sensors(plant, motion)?;
-    let mut table = outs.table.map(Writer::create).transpose()?;
-    let create = |path: &Path| PointCache::create(path, n_copies * n_nodes, motion.n_frames);
-    let mut cache = outs.cache.map(create).transpose()?;
+    let scene = outs.glb.map(|_path| glb::scene(plant, wind, motion, progress)).transpose()?;
     let mut first: Vec<[f64; 3]> = Vec::new();
     let mut times = Vec::new();
     for frame in 0..motion.n_frames {
@@ -156,25 +155,24 @@ pub fn sway(
             if sensor == 0 {
                 first.push(at.into());
             }
-            if let Some(table) = &mut table {
+            if let Some(table) = &mut files.table {
                 let time_s = f64::from(frame) / motion.fps;
                 table.write(&SwayRow { sensor, node, frame, time_s, x: at.x, y: at.y, z: at.z })?;
             }
         }
-        if let Some(cache) = &mut cache {
+        if let Some(cache) = &mut files.cache {
             for (copy, node) in (0..n_copies).flat_map(|copy| (0..n_nodes).map(move |node| (copy, node))) {
                 cache.push(place(copy, node).cast::<f32>().into())?;
             }
         }
     }
-    table.map(Writer::finish).transpose()?;
-    cache.map(PointCache::finish).transpose()?;
+    let glb = files.finish(scene.as_ref())?;
     times.sort_by(f64::total_cmp);
     let rest = sensors.first().map_or([0.0; 3], |node| rest(*node as usize).into());
     let (deviation, farthest) = spread(&first, rest);
     let (n_frames, frame_s) = (motion.n_frames, times[times.len() / 2]);
     let warnings = ear.warnings();
-    Ok(Moved { sensors, deviation, farthest, n_frames, frame_s, bytes, warnings })
+    Ok(Moved { sensors, deviation, farthest, n_frames, frame_s, bytes, warnings, glb })
 }
 
 /// Root of the mean square about the mean, and the farthest from rest.

@@ -78,7 +78,9 @@ fn values(
     }
     let tip = Value::Text("tip".to_owned());
     let is_of_tips = |param: &&Param| {
-        param.id == "radius" && matches!(param.kind, ParamKind::Enum { .. }) && param.check(tip.clone()).is_ok()
+        param.id == "radius"
+            && matches!(param.kind, ParamKind::Enum { .. })
+            && param.check(tip.clone()).is_ok()
     };
     if let Some(param) = params.iter().find(is_of_tips) {
         values.set(params, &param.id, tip)?;
@@ -89,7 +91,9 @@ fn values(
         let (id, own) = (&param.id, param.default());
         if own != ours && !is_set(id) {
             let option = id.replace('_', "-");
-            notes.push(format!("{name} goes by its own {id}, {own}, not by {ours}: --{option} tells it otherwise"));
+            notes.push(format!(
+                "{name} goes by its own {id}, {own}, not by {ours}: --{option} tells it otherwise"
+            ));
         }
     }
     Ok(Told { values, notes })

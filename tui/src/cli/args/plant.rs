@@ -32,7 +32,7 @@ pub(in crate::cli) struct Simulate {
     #[arg(long, value_name = "F", allow_negative_numbers = true, default_value_t = 25.0)]
     pub(in crate::cli) fps: f64,
     /// Steps from frame to frame; what blows at the beginning of one blows till its end.
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub(in crate::cli) substeps: u32,
     /// How modes go on in time.
     #[arg(long, value_enum, default_value_t = Method::Exact)]
@@ -53,7 +53,7 @@ pub(in crate::cli) struct Simulate {
     #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 1.0)]
     pub(in crate::cli) heavier: f64,
     /// A forest of so many copies, each at its place in the wind.
-    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    #[arg(long, value_name = "K", value_parser = copies)]
     pub(in crate::cli) forest: Option<u32>,
     /// Ends of branches of the first copy that are followed, all over it, the highest first.
     #[arg(long, value_name = "N", default_value_t = 12)]
@@ -228,6 +228,12 @@ impl std::str::FromStr for Cell {
             }
         }
     }
+}
+
+/// Copies of a forest.
+fn copies(text: &str) -> Result<u32, String> {
+    let copies = text.parse().ok().filter(|n| (1..=10_000_000).contains(n));
+    copies.ok_or_else(|| format!("wanted 1 to 10000000 copies, got {text}"))
 }
 
 /// Threads of work that all of them share.

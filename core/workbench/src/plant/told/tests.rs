@@ -15,7 +15,8 @@ const OWN: &str = r#"[
 ]"#;
 
 fn asked(params: &[Param], chosen: &[&str], set: &[&str]) -> Result<Told, HostError> {
-    let [chosen, set] = [chosen, set].map(|words| words.iter().map(|word| (*word).to_owned()).collect::<Vec<_>>());
+    let [chosen, set] =
+        [chosen, set].map(|words| words.iter().map(|word| (*word).to_owned()).collect::<Vec<_>>());
     values(&Wish::of("", 25), &Motion::default(), ("own", params), Chosen::Only(&chosen), &set)
 }
 
@@ -45,17 +46,17 @@ fn what_was_chosen_is_told_and_what_was_not_is_left_with_a_word() {
 #[test]
 fn what_a_simulator_cannot_take_is_refused_where_it_was_chosen() {
     let own = params(OWN);
-    for (chosen, wanted) in [
-        ("young", "there is no parameter \"young\""),
-        ("bend", "there is no parameter \"bend\""),
-    ] {
+    for (chosen, wanted) in
+        [("young", "there is no parameter \"young\""), ("bend", "there is no parameter \"bend\"")]
+    {
         let error = asked(&own, &[chosen], &[]).unwrap_err().to_string();
         assert!(error.contains(wanted), "{chosen}: {error}");
     }
     let narrow = params(r#"[{"id": "alpha", "type": "float", "default": 0.05, "max": 0.1}]"#);
     let error = asked(&narrow, &["alpha"], &[]).unwrap_err().to_string();
     assert!(error.contains("alpha: wanted a number, at most 0.1, got \"0.3\""), "{error}");
-    let narrow = params(r#"[{"id": "method", "type": "enum", "default": "verlet", "entries": [{"id": "verlet"}]}]"#);
+    let narrow =
+        params(r#"[{"id": "method", "type": "enum", "default": "verlet", "entries": [{"id": "verlet"}]}]"#);
     let error = asked(&narrow, &["method"], &[]).unwrap_err().to_string();
     assert!(error.contains("method: wanted one of verlet, got \"exact\""), "{error}");
     // The modes that are listed need not be those of whoever moves the plant.

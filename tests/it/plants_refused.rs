@@ -1,0 +1,163 @@
+//! What is no plant, no motion or too much: refused with what was wanted, and nothing of it is written.
+
+use std::fs;
+
+use honami_tests::Bench;
+
+/// Everything that a motion can be written as.
+const OUTS: [&str; 4] = ["a.csv", "a.pc2", "a.glb", "b.csv"];
+
+/// Plants and winds, good and bad.
+fn files(bench: &Bench) {
+    let mtg = |n: u32| {
+        let nodes: String = (1..=n).map(|k| format!("\t^<S{k}\t0\t0\t{}\t40\n", 100 * k / n)).collect();
+        let head = "CODE:\tFORM-A\n\nCLASSES:\nSYMBOL\tSCALE\nP\t1\nS\t2\n\nMTG:\nENTITY-CODE\t\tXX\tYY\tZZ\tTopDia\n";
+        format!("{head}/P1\n\t/S0\t0\t0\t0\t40\n{nodes}")
+    };
+    let swc = |height: &str, radius: &str| format!("1 1 0 0 0 {radius} -1\n2 1 0 0 {height} {radius} 1\n");
+    for (name, text) in [
+        ("rod.mtg", mtg(4)),
+        ("two.mtg", mtg(1)),
+        ("none.mtg", "nothing".to_owned()),
+        ("nan.csv", "t,x,y\n0,1,2\n0.1,NaN,2\n".to_owned()),
+        ("fat.swc", swc("1", "1e300")),
+        ("thin.swc", swc("1", "1e-200")),
+        ("tall.swc", swc("1e300", "0.02")),
+        ("stub.swc", swc("0.01", "1")),
+        ("clip.y4m", "YUV4MPEG2 W2 H2 F25:1\n".to_owned()),
+    ] {
+        fs::write(bench.path(name), text).unwrap();
+    }
+}
+
+fn names(bench: &Bench) -> Vec<String> {
+    let entries = fs::read_dir(bench.path("")).unwrap();
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    // The program's own home, which it may make.
+    names.retain(|name| !["HOME", "XDG"].iter().any(|home| name.starts_with(home)));
+    names.sort();
+    names
+}
+
+/// Each with all that can be written, unless it names what is.
+#[test]
+fn what_is_refused_leaves_nothing_and_says_what_is_wanted() {
+    let bench = Bench::new();
+    files(&bench);
+    let before = names(&bench);
+    for (line, code, wanted) in CASES {
+        let is_whole = line.starts_with("simulate")
+            && !["--with", "--set", "--out"].iter().any(|word| line.contains(word));
+        let outs = if is_whole {
+            let [table, cache, glb, beams] = OUTS;
+            format!(" --out {table} --cache {cache} --glb {glb} --beams {beams}")
+        } else {
+            String::new()
+        };
+        let ran = bench.line(&format!("{line}{outs}"));
+        assert!(ran.code == Some(*code) && ran.stderr.contains(wanted), "{line}: {ran:?}");
+        assert_eq!(names(&bench), before, "{line}");
+    }
+}
+
+/// What was typed, the exit status, and what it says.
+const CASES: &[(&str, i32, &str)] = &[
+    ("simulate no.mtg", 1, "no.mtg: No such file"),
+    (
+        "simulate rod.obj",
+        2,
+        "\"rod.obj\" is no plant: a file whose name ends in .mtg, .swc, .csv or .mat is wanted",
+    ),
+    ("simulate synth::tree:1,1", 1, "a plant has two nodes at least"),
+    ("simulate synth::tree:x", 2, "is no plant"),
+    ("simulate none.mtg", 1, "has a table CLASSES"),
+    ("simulate rod.mtg --modes 25", 1, "25 modes were asked for, and the plant has 24 degrees of freedom"),
+    ("simulate two.mtg --modes 2 --young=-1", 2, "a Young's modulus of more than 0 Pa, not of -1"),
+    ("simulate two.mtg --modes 2 --wind gale", 2, "\"gale\" is no wind and no file: there are still"),
+    ("simulate two.mtg --modes 2 --wind nan.csv", 1, "line 3: \"NaN\" is no number"),
+    ("simulate two.mtg --modes 2 --wind calm --method symplectic", 1, "is wanted, or another method"),
+    ("simulate two.mtg --modes 2 --heavier 0", 2, "masses are more than 0"),
+    ("simulate two.mtg --modes 2 --wind calm --heavier 1000", 2, "heavier: wanted a number, 0.01 to 100"),
+    ("simulate two.mtg --modes 2 --wind calm --with klt", 2, "no simulator \"klt\""),
+    ("simulate two.mtg --modes 2 --wind calm --set bent=s2", 2, "there is no parameter \"bent\""),
+    ("simulate synth::tree:3437,1 --modes 2 --forest 10000000", 1, "10000000 copies of 3437 nodes take 41"),
+    (
+        "simulate two.mtg --modes 2 --pull nan",
+        2,
+        "is pulled by a number of metres from -1000 to 1000, not by NaN",
+    ),
+    ("simulate two.mtg --modes 2 --pull inf", 2, "is pulled by a number of metres"),
+    ("synth two.y4m --plant two.mtg --modes 2 --frames 2 --pull 1e30", 2, "not by 1e30"),
+    (
+        "simulate two.mtg --modes 2 --wind steady:speed=1e200",
+        2,
+        "speed of steady is a number from -1000000 to 1000000, not \"1e200\"",
+    ),
+    ("simulate two.mtg --modes 2 --wind calm --threads 100000", 2, "wanted 1 to 1024 threads, got 100000"),
+    (
+        "simulate two.mtg --modes 2 --out two.mtg",
+        2,
+        "two.mtg is read or written already: choose another name",
+    ),
+    (
+        "simulate two.mtg --modes 2 --sensor 9 --out a.csv",
+        1,
+        "there is no node 9: the beams have nodes 0 to 1",
+    ),
+    ("simulate two.mtg --modes 2 --longest 1e-9", 1, "nodes of beams, and 4000000 are the most"),
+    ("simulate synth::tree:100000000,1", 1, "100000000 nodes of beams, and 4000000 are the most"),
+    ("spectrum two.mtg --fps 4 --above=-1", 2, "wanted hertz, a number of 0 or more"),
+    ("simulate two.mtg --modes 2 --wind calm --seconds 0", 2, "a motion has 1 to 100000000 frames"),
+    // Sizes.
+    ("simulate fat.swc --modes 2", 1, "has a radius of 1e300 m and a segment of"),
+    ("simulate thin.swc --modes 2", 1, "radii of 1e-9 to 1e6 m and segments of up to 1e6 m are wanted"),
+    ("simulate tall.swc --modes 2", 1, "segments of up to 1e6 m are wanted; is it the unit?"),
+    ("simulate two.mtg --modes 2 --unit 0", 2, "units are more than 0"),
+    ("simulate two.mtg --modes 2 --longest 0", 2, "the longest segment is more than 0 m long, not 0 m"),
+    // Wood and leaves.
+    ("simulate two.mtg --modes 2 --young nan", 2, "a Young's modulus of more than 0 Pa, not of NaN"),
+    ("simulate two.mtg --modes 2 --density=-1", 2, "a density of more than 0 kg/m3, not of -1"),
+    ("simulate two.mtg --modes 2 --poisson 2", 2, "a Poisson's ratio of -1 to 0.5, not of 2"),
+    ("simulate two.mtg --modes 2 --density 1e-318", 1, "too small, too large or too far apart"),
+    ("simulate two.mtg --modes 2 --leaf-mass=-1", 2, "leaves weigh 0 kg or more"),
+    ("simulate two.mtg --modes 2 --leaf-drag nan", 2, "have a drag area of 0 m2 or more"),
+    ("simulate two.mtg --modes 2 --alpha nan", 2, "damping is not negative"),
+    // Motions.
+    (
+        "simulate two.mtg --modes 2 --seconds 1e300",
+        2,
+        "a motion has 1 to 100000000 frames, 1e300 s at 25.0 a second",
+    ),
+    ("simulate two.mtg --modes 2 --fps 1e-300", 2, "a motion has 1 to 100000000 frames"),
+    ("simulate two.mtg --modes 2 --fps nan", 2, "a motion has 1 to 100000000 frames"),
+    (
+        "simulate two.mtg --modes 2 --seconds 1e300 --fps 1e-300",
+        2,
+        "a motion has 0.001 to 1000000 frames per second",
+    ),
+    ("simulate two.mtg --modes 2 --substeps 100000", 2, "100000 is not in 1..=10000"),
+    (
+        "simulate stub.swc --modes 2 --pull 0.1",
+        1,
+        "the slowest mode cannot be pulled by 0.1 m: it only twists the plant",
+    ),
+    ("synth a.y4m --plant two.mtg --modes 2 --pull nan", 2, "is pulled by a number of metres"),
+    // Too much.
+    ("simulate two.mtg --modes 2 --forest 1e12", 2, "wanted 1 to 10000000 copies, got 1e12"),
+    ("simulate two.mtg --modes 2 --forest 0", 2, "wanted 1 to 10000000 copies, got 0"),
+    (
+        "simulate synth::tree:900,1 --modes 5000",
+        1,
+        "5000 modes of 5394 were asked for: more than half of them",
+    ),
+    ("simulate synth::tree:300,1 --forest 100000 --seconds 100", 1, "its readers hold 2147 MB at most"),
+    // Places.
+    (
+        "simulate two.mtg --modes 2 --out a.csv --cache clip.y4m",
+        1,
+        "clip.y4m is a clip, and honami does not write over it",
+    ),
+    ("simulate two.mtg --modes 2 --out a.csv --beams b.csv --glb no/a.glb", 1, "there is no folder no"),
+    ("simulate two.mtg --modes 2 --out a.csv --glb ./a.csv", 2, "is read or written already"),
+];
