@@ -21,6 +21,10 @@ pub(super) fn forest(args: &BenchForest, common: &Common) -> anyhow::Result<Answ
     let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     let n_threads = args.threads.unwrap_or(cores);
     let runs = Runs { n_runs: args.runs as usize, seconds: args.seconds, n_threads };
+    // Before a minute is spent on what needs none.
+    let options = told_options(common);
+    let registry = options.registry();
+    let plugin = registry.find(Kind::Simulator, simulate::DEFAULT)?;
     let roof = bench::roof(n_threads)?;
     let given: Vec<Cell> = args.cells.iter().map(|cell| named(cell.0)).collect();
     let tables: Vec<(&str, &str, &[Cell])> = if given.is_empty() {
@@ -46,9 +50,6 @@ pub(super) fn forest(args: &BenchForest, common: &Common) -> anyhow::Result<Answ
         json[key] = speeds.iter().map(|speed| entry(speed, &roof)).collect();
     }
     let cell = given.first().copied().unwrap_or(BOUNDARY);
-    let options = told_options(common);
-    let registry = options.registry();
-    let plugin = registry.find(Kind::Simulator, simulate::DEFAULT)?;
     let boundary = bench::boundary(&cell, &runs, &options.host, plugin)?;
     text += &format!("\n\n{}", across(&cell, &boundary));
     json["boundary"] = json!({
