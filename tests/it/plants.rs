@@ -232,6 +232,15 @@ fn a_benchmark_of_a_forest_prints_its_cell_beside_the_thesis() {
     assert!(answer["boundary"]["ratio"][1].as_f64().unwrap() > 0.0, "{answer}");
     let text = bench.text("bench forest --cell 10x20x3 --runs 1 --seconds 0");
     assert!(text.contains("GFLOP/s") && text.contains("ms through the plugin"), "{text}");
+    assert!(!text.contains("in view"), "{text}");
+    // The eye stands at the edge: it sees most of a square of trees, and of those far away a few nodes.
+    let cell = &bench.json("bench forest --cell 900x100x5 --in-view --runs 1 --seconds 0")["in_view"][0];
+    let (trees, nodes) =
+        (cell["linear"]["in_view"].as_u64().unwrap(), cell["linear"]["nodes_moved"].as_u64().unwrap());
+    assert!((300..900).contains(&trees) && (trees * 3..trees * 20).contains(&nodes), "{cell}");
+    assert!(cell["corrected_fps"].as_f64().unwrap() > 0.0, "{cell}");
+    let text = bench.text("bench forest --cell 10x20x3 --in-view --runs 1 --seconds 0");
+    assert!(text.contains("of 10 trees ") && text.contains(" of 200 nodes are moved"), "{text}");
     assert_eq!(bench.line("bench forest --cell 10x20").code, Some(2));
 }
 

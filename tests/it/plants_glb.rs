@@ -72,8 +72,9 @@ impl Filed {
         let targets = targets.iter().map(|target| glb.floats(&target["POSITION"])).collect();
         let samplers = glb.words["animations"][0]["samplers"].as_array().unwrap();
         let weights = samplers.iter().map(|sampler| glb.floats(&sampler["output"])).collect();
-        let ring =
-            |place: &[f64; 3]| (0..rest.len() / 3 / SIDES).find(|ring| near(middle(&rest, *ring), *place, 1e-4));
+        let ring = |place: &[f64; 3]| {
+            (0..rest.len() / 3 / SIDES).find(|ring| near(middle(&rest, *ring), *place, 1e-4))
+        };
         let rings = nodes.iter().map(|place| ring(place).unwrap()).collect();
         Self { glb, rest, targets, weights, rings }
     }
@@ -88,7 +89,8 @@ impl Filed {
         }
         let of = |name: &str, k: usize| self.glb.words["nodes"][copy][name][k].as_f64().unwrap();
         let (sin, cos) = (2.0 * of("rotation", 1).atan2(of("rotation", 3))).sin_cos();
-        let turned = [cos * own[0] - sin * own[1], sin * own[0] + cos * own[1], own[2]];
+        let size = of("scale", 0);
+        let turned = [cos * own[0] - sin * own[1], sin * own[0] + cos * own[1], own[2]].map(|v| v * size);
         let foot = [of("translation", 0), -of("translation", 2), of("translation", 1)];
         [0, 1, 2].map(|axis| foot[axis] + turned[axis])
     }
@@ -106,6 +108,7 @@ fn a_glb_has_its_nodes_where_the_simulation_has_them() {
     for (bend, n_targets) in [("linear", 4), ("s2", 8), ("s3", 12), ("turn", 8)] {
         for begun in [
             "synth::tree:30,1 --wind calm",
+            "synth::tree:30,1 --wind calm --size-spread 0.5 --mass-spread 2",
             "synth::tree:30,1 --pull 0.3",
             "budded.swc --pull=-0.3 --leaf-mass 20",
             "budded.swc --wind calm --leaf-mass 20 --leaf-drag 3",
@@ -118,6 +121,12 @@ fn a_glb_has_its_nodes_where_the_simulation_has_them() {
             ));
             let nodes: Vec<[f64; 3]> = rows(&bench.path("beams.csv")).iter().map(at).collect();
             let filed = Filed::read(&fs::read(bench.path("sway.glb")).unwrap(), &nodes);
+            let sizes = filed.glb.words["nodes"].as_array().unwrap().iter().map(|node| &node["scale"][0]);
+            let sizes: Vec<f64> = sizes.map(|size| size.as_f64().unwrap()).collect();
+            let is_spread = begun.contains("spread");
+            let is_own = |copy: usize| (sizes[copy] - 1.0).abs() < 1e-6;
+            assert!(is_own(0) && (is_own(1) && is_own(2)) != is_spread, "{sizes:?}");
+            assert!(sizes.iter().all(|size| (0.66..1.51).contains(size)), "{sizes:?}");
             let mesh = &filed.glb.words["meshes"][0];
             let n_named = mesh["extras"]["targetNames"].as_array().unwrap().len();
             assert_eq!((&made["motion"]["glb"]["targets"], n_named), (&n_targets.into(), n_targets));

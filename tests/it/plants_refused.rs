@@ -143,6 +143,12 @@ const CASES: &[(&str, i32, &str)] = &[
         "the slowest mode cannot be pulled by 0.1 m: it only twists the plant",
     ),
     ("synth a.y4m --plant two.mtg --modes 2 --pull nan", 2, "is pulled by a number of metres"),
+    (
+        "simulate two.mtg --modes 2 --forest 3 --size-spread=-1",
+        2,
+        "sizes and masses of copies are spread by 0 to 4, by which they are up to 5 times as much, not by -1.0 and 0.0",
+    ),
+    ("simulate two.mtg --modes 2 --forest 3 --mass-spread nan", 2, "not by 0.0 and NaN"),
     // Too much.
     ("simulate two.mtg --modes 2 --forest 1e12", 2, "wanted 1 to 10000000 copies, got 1e12"),
     ("simulate two.mtg --modes 2 --forest 0", 2, "wanted 1 to 10000000 copies, got 0"),

@@ -155,6 +155,7 @@ fn is_usage(error: &anyhow::Error) -> bool {
                     | WorkbenchError::Units { .. }
                     | WorkbenchError::Pace { .. }
                     | WorkbenchError::Pull { .. }
+                    | WorkbenchError::Spread { .. }
                     | WorkbenchError::Leaves(_)
                     | WorkbenchError::Beams(Material(_) | Longest(_))
             )

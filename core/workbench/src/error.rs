@@ -325,6 +325,9 @@ pub enum WorkbenchError {
     /// A forest cannot be, or does not go on.
     #[error(transparent)]
     Forest(#[from] honami_mechanics::ForestError),
+    /// Or not in such details.
+    #[error(transparent)]
+    Detail(#[from] honami_mechanics::DetailError),
     /// A forest for which there is no room.
     #[error("{copies} copies of {nodes} nodes take {} MB, and there are {}", bytes / 1_000_000, there / 1_000_000)]
     Memory {
@@ -399,6 +402,16 @@ pub enum WorkbenchError {
         fps: f64,
         /// Steps a frame.
         n_substeps: u32,
+    },
+    /// Sizes or masses out of all proportion.
+    #[error(
+        "sizes and masses of copies are spread by 0 to 4, by which they are up to 5 times as much, not by {size:?} and {mass:?}"
+    )]
+    Spread {
+        /// Of sizes.
+        size: f64,
+        /// Of masses.
+        mass: f64,
     },
     /// Pulled out of all proportion.
     #[error("a plant is pulled by a number of metres from -1000 to 1000, not by {pull:e}")]

@@ -10,6 +10,8 @@ use super::args::Common;
 use super::args::plant::{BenchBending, BenchForest};
 use super::{Answer, report, simulate, told_options, want};
 
+/// Forests of which less is moved where it is farther away.
+const IN_VIEW: &str = "in_view";
 /// The cell in which what a plugin costs is measured, unless others are asked for.
 const BOUNDARY: Cell = (1000, 1000, 25, None);
 
@@ -26,15 +28,26 @@ pub(super) fn forest(args: &BenchForest, common: &Common) -> anyhow::Result<Answ
     let registry = options.registry();
     let plugin = registry.find(Kind::Simulator, simulate::DEFAULT)?;
     let roof = bench::roof(n_threads)?;
-    let given: Vec<Cell> = args.cells.iter().map(|cell| named(cell.0)).collect();
-    let tables: Vec<(&str, &str, &[Cell])> = if given.is_empty() {
+    let known = [&TABLE_6_1[..], &TABLE_6_2].concat();
+    let given: Vec<Cell> = args.cells.iter().map(|cell| bench::of_thesis(&known, cell.0)).collect();
+    let mut tables: Vec<(&str, &str, &[Cell])> = if given.is_empty() {
         vec![
             ("table_6_1", "table 6.1: 25 modes", &TABLE_6_1),
             ("table_6_2", "table 6.2: 3437 nodes", &TABLE_6_2),
+            (IN_VIEW, "less of what is farther away, nothing of what is out of view", &bench::IN_VIEW),
         ]
     } else {
         vec![("cells", "cells", &given)]
     };
+    let seen: Vec<Cell> =
+        given.iter().map(|&(k, n, m, _)| bench::of_thesis(&bench::IN_VIEW, [k, n, m])).collect();
+    if args.in_view {
+        tables.push((
+            IN_VIEW,
+            "the same, with less of what is farther away, nothing of what is out of view",
+            &seen,
+        ));
+    }
     let mut text = format!(
         "{n_threads} threads: {:.0} GFLOP/s at most, {:.1} GB/s written at most",
         roof.flops / 1e9,
@@ -45,8 +58,12 @@ pub(super) fn forest(args: &BenchForest, common: &Common) -> anyhow::Result<Answ
         "roof": { "gflops": roof.flops / 1e9, "gb_per_s": roof.written / 1e9 },
     });
     for (key, title, cells) in tables {
-        let speeds = bench::speeds(cells, &runs, &report::Bar::new())?;
+        let measure = if key == IN_VIEW { bench::seen } else { bench::speeds };
+        let speeds = measure(cells, &runs, &report::Bar::new())?;
         text += &format!("\n\n{title}\n{}", report::table(&rows(&speeds, &roof)));
+        if key == IN_VIEW {
+            speeds.iter().for_each(|speed| text += &format!("\n{}", made_out(speed)));
+        }
         json[key] = speeds.iter().map(|speed| entry(speed, &roof)).collect();
     }
     let cell = given.first().copied().unwrap_or(BOUNDARY);
@@ -105,6 +122,17 @@ fn percent(share: f64) -> String {
     }
 }
 
+/// What of a forest is moved, in a line.
+fn made_out(speed: &Speed) -> String {
+    let Rate { n_in_view, n_moved, .. } = speed.linear;
+    let all = speed.n_copies * speed.n_nodes;
+    let share = 100.0 * n_moved as f64 / all as f64;
+    format!(
+        "of {} trees {n_in_view} are in view: {n_moved} of {all} nodes are moved ({share:.1} %)",
+        speed.n_copies
+    )
+}
+
 /// What a plugin costs, in a line.
 fn across(cell: &Cell, Boundary { direct_s, plugin_s, ratio }: &Boundary) -> String {
     let [least, median, most] = ratio.map(|ratio| 100.0 * (ratio - 1.0));
@@ -117,12 +145,6 @@ fn across(cell: &Cell, Boundary { direct_s, plugin_s, ratio }: &Boundary) -> Str
         direct_s * 1e3,
         plugin_s * 1e3
     )
-}
-
-/// A cell with what the thesis has of it.
-fn named([k, n, m]: [usize; 3]) -> Cell {
-    let known = TABLE_6_1.iter().chain(&TABLE_6_2).find(|cell| (cell.0, cell.1, cell.2) == (k, n, m));
-    known.copied().unwrap_or((k, n, m, None))
 }
 
 /// How near a rate is to the most that the machine can do.
@@ -168,6 +190,8 @@ fn entry(speed: &Speed, roof: &Roof) -> Value {
             "of_flops": rate.flops / roof.flops,
             "of_writing": rate.written / roof.written,
             "state_share": rate.state_share,
+            "in_view": rate.n_in_view,
+            "nodes_moved": rate.n_moved,
         })
     };
     json!({

@@ -124,6 +124,8 @@ fn motion(args: &Simulate, n_frames: u32, damping: Damping) -> Motion {
         pull: args.pull,
         n_sensors: args.sensors as usize,
         sensors: args.nodes.clone(),
+        size_spread: args.size_spread,
+        mass_spread: args.mass_spread,
         seed: args.seed,
         n_threads: args.threads.unwrap_or(cores),
     }

@@ -55,6 +55,8 @@ pub struct Placed {
     pub place: [f32; 3],
     /// About the upright, anticlockwise from above, radians.
     pub turn: f32,
+    /// So many times as large as the mesh.
+    pub scale: f32,
     /// `(n_frames, n_targets)`.
     pub weights: Vec<f32>,
 }
@@ -260,6 +262,7 @@ fn node(k: usize, copy: &Placed) -> Value {
         "mesh": 0,
         "translation": upright(copy.place),
         "rotation": [0.0, sin, 0.0, cos],
+        "scale": vec![copy.scale; 3],
     })
 }
 

@@ -60,7 +60,9 @@ impl Details {
 }
 
 impl Detail {
-    pub(super) fn at_most(self, whole: Self) -> Self {
+    /// No more than there is.
+    #[must_use]
+    pub fn at_most(self, whole: Self) -> Self {
         Self { n_nodes: self.n_nodes.min(whole.n_nodes), n_modes: self.n_modes.min(whole.n_modes) }
     }
 }

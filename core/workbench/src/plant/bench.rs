@@ -1,13 +1,16 @@
 //! The tables 6.1 and 6.2 of the thesis, cell by cell, on this machine.
 
+mod crowd;
+
 use std::sync::Arc;
 use std::time::Instant;
 
 use honami_host::{CallContext, Host, PluginInfo, Steps, WindRows};
 use honami_mechanics::{
-    Damping, Direction, Forest, Form, Integrator, Pace, Pose, Roof, Stand, Stirring, Threads,
+    Damping, Detail, Direction, Forest, Form, Integrator, Pace, Pose, Roof, Stand, Stirring, Threads,
 };
 
+use self::crowd::Crowd;
 use super::mover::{Mover, start};
 use super::sway::Motion;
 use super::told::{Chosen, told};
@@ -52,6 +55,17 @@ pub const TABLE_6_2: [Cell; 12] = [
     (4000, 3437, 25, Some(6.0)),
 ];
 
+/// The thesis's forest with less of what is farther away: more than 4000 trees at 30 frames per second at least, with
+/// rendering (6.6).
+pub const IN_VIEW: [Cell; 1] = [(4000, 3437, 25, Some(30.0))];
+
+/// Copies, nodes and modes with what the thesis has of them in some table.
+#[must_use]
+pub fn of_thesis(table: &[Cell], [copies, nodes, modes]: [usize; 3]) -> Cell {
+    let known = table.iter().find(|cell| (cell.0, cell.1, cell.2) == (copies, nodes, modes));
+    known.copied().unwrap_or((copies, nodes, modes, None))
+}
+
 /// How fast a cell is here, frames per second; the median of the runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Speed {
@@ -84,6 +98,10 @@ pub struct Rate {
     pub written: f64,
     /// Multiplications with addition, twice their number per second.
     pub flops: f64,
+    /// Copies of which any node is moved.
+    pub n_in_view: usize,
+    /// Nodes that are moved in a frame, of all copies.
+    pub n_moved: usize,
 }
 
 /// How it is measured.
@@ -105,11 +123,28 @@ pub fn roof(n_threads: usize) -> Result<Roof, WorkbenchError> {
     Ok(Roof::measured(&Threads::new(n_threads)?, n_threads))
 }
 
-/// Measures cells one after the other.
+/// Measures cells one after the other, with all nodes of all copies moved.
 ///
 /// # Errors
 /// [`WorkbenchError::Stopped`], and what the system refuses.
 pub fn speeds(cells: &[Cell], runs: &Runs, progress: &dyn Progress) -> Result<Vec<Speed>, WorkbenchError> {
+    measured(cells, runs, progress, |_, n_copies| Ok(Crowd::whole(n_copies)))
+}
+
+/// The same, with as much of every copy moved as an eye at the edge of the forest makes out.
+///
+/// # Errors
+/// As [`speeds`].
+pub fn seen(cells: &[Cell], runs: &Runs, progress: &dyn Progress) -> Result<Vec<Speed>, WorkbenchError> {
+    measured(cells, runs, progress, |plant, n_copies| Ok(Crowd::seen(plant, n_copies)?))
+}
+
+fn measured(
+    cells: &[Cell],
+    runs: &Runs,
+    progress: &dyn Progress,
+    crowd: impl Fn(&Stirring, usize) -> Result<Crowd, WorkbenchError>,
+) -> Result<Vec<Speed>, WorkbenchError> {
     let threads = Threads::new(runs.n_threads)?;
     let mut speeds = Vec::new();
     for (k, &(n_copies, n_nodes, n_modes, thesis_fps)) in cells.iter().enumerate() {
@@ -117,9 +152,11 @@ pub fn speeds(cells: &[Cell], runs: &Runs, progress: &dyn Progress) -> Result<Ve
             return Err(WorkbenchError::Stopped);
         }
         let plant = vibrate(&Wish::of(&format!("synth::tree:{n_nodes},1"), n_modes))?;
+        let nodes = plant.beams.coarse_to_fine();
         let rate = |form: Form| {
             let stirring = Stirring::new(&plant.beams, &plant.modes, plant.basis.clone(), form);
-            rate(&Arc::new(stirring), n_copies, runs, &threads)
+            let crowd = crowd(&stirring, n_copies)?;
+            rate(&Arc::new(stirring), &nodes, &crowd, runs, &threads)
         };
         let (linear, squared, cubed) = (rate(Form::Linear)?, rate(Form::Mode(2))?, rate(Form::Mode(3))?);
         let turned = rate(Form::Turn)?;
@@ -130,51 +167,57 @@ pub fn speeds(cells: &[Cell], runs: &Runs, progress: &dyn Progress) -> Result<Ve
 
 fn rate(
     plant: &Arc<Stirring>,
-    n_copies: usize,
+    nodes: &[u32],
+    crowd: &Crowd,
     runs: &Runs,
     threads: &Threads,
 ) -> Result<Rate, WorkbenchError> {
-    let n_nodes = plant.n_nodes();
-    sway::room(n_copies, n_nodes, plant.n_modes())?;
-    let stands: Vec<Stand> = (0..n_copies).map(|k| Stand { turn: k as f32, ..Stand::default() }).collect();
+    let n_copies = crowd.stands.len();
+    sway::room(n_copies, nodes.len(), plant.n_modes())?;
     let damping = Damping::default();
     let pace = Pace { step: 1.0 / 30.0, integrator: Integrator::Exact, damping };
-    let nodes: Vec<u32> = (0..n_nodes as u32).collect();
-    let mut forest = Forest::new(Arc::clone(plant), &nodes, &stands, &pace)?;
-    let mut motion = vec![[0.0; 3]; n_copies * n_nodes];
+    let mut forest = Forest::new(Arc::clone(plant), nodes, &crowd.stands, &pace)?;
+    let whole = Detail { n_nodes: nodes.len() as u32, n_modes: plant.n_modes() as u32 };
+    let details = crowd.details(plant).unwrap_or_else(|| vec![whole; n_copies]);
+    let n_moved: usize = details.iter().map(|detail| detail.n_nodes as usize).sum();
+    let n_terms: f64 =
+        details.iter().map(|detail| f64::from(detail.n_nodes) * f64::from(detail.n_modes)).sum();
+    let n_in_view = details.iter().filter(|detail| detail.n_nodes > 0).count();
+    let mut motion = vec![[0.0; 3]; n_moved];
+    let mut frame = |motion: Option<&mut [[f32; 3]]>| {
+        let begun = Instant::now();
+        // Whoever looks has moved: what it sees is asked in every frame.
+        let details = motion.is_some().then(|| crowd.details(plant)).flatten();
+        step(&mut forest, motion.map(|motion| Pose { details: details.as_deref(), motion }), threads)?;
+        Ok::<_, WorkbenchError>(begun.elapsed().as_secs_f64())
+    };
     // The memory is touched, and threads are awake.
-    step(&mut forest, Some(&mut motion), threads)?;
+    frame(Some(&mut motion))?;
     let (mut fps, mut share) = (Vec::new(), Vec::new());
     for _ in 0..runs.n_runs {
         let (mut n, mut whole_s, mut state_s) = (0, 0.0, 0.0);
         while n < 2 || whole_s < runs.seconds {
-            whole_s += step(&mut forest, Some(&mut motion), threads)?;
+            whole_s += frame(Some(&mut motion))?;
             // Beside a frame, what takes no part in it: the same step without positions.
-            state_s += step(&mut forest, None, threads)?;
+            state_s += frame(None)?;
             n += 1;
         }
         fps.push(f64::from(n) / whole_s);
         share.push(state_s / whole_s);
     }
     let [fps, state_share] = [fps, share].map(median);
-    let numbers = (3 * n_copies * n_nodes) as f64;
-    let rows = (plant.n_modes() * plant.following().n_powers()) as f64;
-    Ok(Rate { fps, state_share, written: 4.0 * numbers * fps, flops: 2.0 * rows * numbers * fps })
+    let written = 12.0 * n_moved as f64 * fps;
+    let flops = 6.0 * n_terms * plant.following().n_powers() as f64 * fps;
+    Ok(Rate { fps, state_share, written, flops, n_in_view, n_moved })
 }
 
-/// A frame, or what goes on of it where no node is wanted, in a wind that is another at every copy and time and costs next
-/// to nothing: what a wind costs is no part of a cell. Seconds.
-fn step(
-    forest: &mut Forest,
-    motion: Option<&mut [[f32; 3]]>,
-    threads: &Threads,
-) -> Result<f64, WorkbenchError> {
-    let begun = Instant::now();
+/// Goes on in a wind that is another at every copy and time and costs next to nothing: what a wind costs is no part of a
+/// cell.
+fn step(forest: &mut Forest, pose: Option<Pose<'_>>, threads: &Threads) -> Result<(), WorkbenchError> {
     let phase = forest.time() * 7.0;
     let wind =
         |copy: usize| Direction::new(5.0, 2.0, 0.3) * (1.0 + 0.3 * (phase + copy as f64 * 0.37).fract());
-    forest.step(&wind, motion.map(|motion| Pose { details: None, motion }), threads)?;
-    Ok(begun.elapsed().as_secs_f64())
+    Ok(forest.step(&wind, pose, threads)?)
 }
 
 /// A frame of a forest through a simulator plugin beside the same frame without one.

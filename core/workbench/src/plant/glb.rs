@@ -101,6 +101,7 @@ fn weights(
     let copy = |(place, stand): (&Direction, &Stand)| Placed {
         place: single(place),
         turn: stand.turn,
+        scale: stand.scale,
         weights: Vec::with_capacity(n_weights),
     };
     let mut copies: Vec<Placed> = grove.places.iter().zip(&grove.stands).map(copy).collect();

@@ -11,6 +11,9 @@ use crate::error::WorkbenchError;
 
 /// Metres between copies of a plant of height 1, and how far each stands from there by chance.
 const APART: f64 = 0.8;
+/// Sizes, and masses, are so many larger ones and so many smaller: copies of one size and mass go on by the same numbers,
+/// which are few.
+const STEPS: i32 = 8;
 /// Where on a copy's height its wind is measured, from the ground.
 const CROWN: f64 = 2.0 / 3.0;
 
@@ -24,8 +27,10 @@ pub(super) struct Grove {
 }
 
 impl Grove {
-    /// In rows, each a little off and turned by chance; the first as it was measured.
+    /// In rows, each a little off, turned, larger or smaller and heavier or lighter by chance; the first as it was measured.
     pub(super) fn new(height: f64, motion: &Motion) -> Self {
+        // Apart from the other: copies stand where they do whatever their sizes.
+        let mut sizes = rand_pcg::Pcg64Mcg::seed_from_u64(!motion.seed);
         let mut chance = rand_pcg::Pcg64Mcg::seed_from_u64(motion.seed);
         let (side, apart) = ((motion.n_copies as f64).sqrt().ceil() as usize, APART * height);
         let mut stand = |k: usize| {
@@ -33,8 +38,12 @@ impl Grove {
             let (row, column) = (k / side, k % side);
             let place = Direction::new((column as f64 + off()) * apart, (row as f64 + off()) * apart, 0.0);
             let turn = chance.random_range(0.0..std::f32::consts::TAU);
+            let [scale, mass] = [motion.size_spread, motion.mass_spread].map(|spread| {
+                let step = sizes.random_range(-STEPS..=STEPS);
+                (1.0 + spread).powf(f64::from(step) / f64::from(STEPS)) as f32
+            });
             let first = (Direction::zeros(), Stand::default());
-            if k == 0 { first } else { (place, Stand { turn, ..Stand::default() }) }
+            if k == 0 { first } else { (place, Stand { turn, scale, mass }) }
         };
         let (places, stands) = (0..motion.n_copies).map(&mut stand).unzip();
         Self { places, stands, height }

@@ -19,6 +19,8 @@ use crate::progress::Progress;
 /// Frames per second, and steps a frame: of anything slower or faster numbers overflow or no frame ever comes.
 const FPS: RangeInclusive<f64> = 1e-3..=1e6;
 const SUBSTEPS: RangeInclusive<u32> = 1..=10_000;
+/// Copies are up to five times as large or heavy.
+const SPREADS: RangeInclusive<f64> = 0.0..=4.0;
 /// Metres by which a plant may be pulled.
 const FARTHEST_PULL: f64 = 1000.0;
 /// Memory is left to others: so much of what is free.
@@ -49,7 +51,11 @@ pub struct Motion {
     pub n_sensors: usize,
     /// Nodes of the beams that are followed on the first copy.
     pub sensors: Vec<u32>,
-    /// Of where copies stand and how they are turned.
+    /// Copies are up to 1 + so much times larger or smaller than the plant; the first is as it was measured.
+    pub size_spread: f64,
+    /// And heavier or lighter than one of their size.
+    pub mass_spread: f64,
+    /// Of where copies stand, how they are turned, and their sizes and masses.
     pub seed: u64,
     /// Threads.
     pub n_threads: usize,
@@ -69,6 +75,8 @@ impl Default for Motion {
             pull: 0.0,
             n_sensors: 1,
             sensors: Vec::new(),
+            size_spread: 0.0,
+            mass_spread: 0.0,
             seed: 1,
             n_threads: 1,
         }
@@ -79,9 +87,12 @@ impl Motion {
     /// Whether it can be.
     ///
     /// # Errors
-    /// [`WorkbenchError::Pace`], [`WorkbenchError::Pull`].
+    /// [`WorkbenchError::Pace`], [`WorkbenchError::Spread`], [`WorkbenchError::Pull`].
     pub fn check(&self) -> Result<(), WorkbenchError> {
-        let Self { fps, n_substeps, n_frames, pull, .. } = *self;
+        let Self { fps, n_substeps, n_frames, pull, size_spread: size, mass_spread: mass, .. } = *self;
+        if ![size, mass].iter().all(|spread| SPREADS.contains(spread)) {
+            return Err(WorkbenchError::Spread { size, mass });
+        }
         if !(FPS.contains(&fps) && SUBSTEPS.contains(&n_substeps) && n_frames > 0) {
             return Err(WorkbenchError::Pace { fps, n_substeps });
         }

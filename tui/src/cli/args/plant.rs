@@ -55,6 +55,12 @@ pub(in crate::cli) struct Simulate {
     /// A forest of so many copies, each at its place in the wind.
     #[arg(long, value_name = "K", value_parser = copies)]
     pub(in crate::cli) forest: Option<u32>,
+    /// Copies are up to 1 + X times as large or as small as the plant; the first is as it was measured.
+    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 0.0, requires = "forest")]
+    pub(in crate::cli) size_spread: f64,
+    /// Copies are up to 1 + X times as heavy or as light as one of their size.
+    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 0.0, requires = "forest")]
+    pub(in crate::cli) mass_spread: f64,
     /// Ends of branches of the first copy that are followed, all over it, the highest first.
     #[arg(long, value_name = "N", default_value_t = 12)]
     pub(in crate::cli) sensors: u32,
@@ -77,7 +83,7 @@ pub(in crate::cli) struct Simulate {
     /// Threads (default: as many as there are cores).
     #[arg(long, value_name = "N", value_parser = threads)]
     pub(in crate::cli) threads: Option<usize>,
-    /// Of where copies stand.
+    /// Of where copies stand, how they are turned, and their sizes and masses.
     #[arg(long, value_name = "S", default_value_t = 1)]
     pub(in crate::cli) seed: u64,
 }
@@ -211,6 +217,9 @@ pub(in crate::cli) struct BenchForest {
     /// Only cells of so many copies, nodes and modes, such as 1000x1000x25; give it once for each.
     #[arg(long = "cell", value_name = "KxNxM")]
     pub(in crate::cli) cells: Vec<Cell>,
+    /// These cells also with less of what is farther away and nothing of what is out of view.
+    #[arg(long, requires = "cells")]
+    pub(in crate::cli) in_view: bool,
 }
 
 /// `KxNxM`: copies, nodes, modes.

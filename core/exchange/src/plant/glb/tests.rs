@@ -20,6 +20,7 @@ fn copies() -> Vec<Placed> {
     let copy = |x: f32, turn: f32| Placed {
         place: [x, 10.0, 0.0],
         turn,
+        scale: 1.0 + x / 10.0,
         weights: (0..6).map(|k| x + 0.1 * k as f32).collect(),
     };
     vec![copy(0.0, 0.0), copy(5.0, std::f32::consts::FRAC_PI_2)]
