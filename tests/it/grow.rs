@@ -34,6 +34,15 @@ fn a_skeleton_moves_as_the_plant_does_and_its_bones_keep_their_length() {
     // What is at rest is a plant, and swings.
     let plant = bench.json("simulate rest.swc --unit 0.01 --modes 3");
     assert_eq!(plant["nodes"].as_u64().unwrap() as usize, n_joints);
+    bench.json("grow p.honami grown.swc");
+    let [grown, same] = ["grown.swc", "p.honami"]
+        .map(|source| bench.json(&format!("simulate {source} --unit 0.01 --modes 3 --leaf-mass 0.1")));
+    assert_eq!(grown["modes"], same["modes"], "a project stands for its skeleton");
+    assert!(
+        same["notes"].to_string().contains("`honami grow` makes of 6 groups, a pixel taken as 0.01 m"),
+        "{same}"
+    );
+    assert!(same["notes"].to_string().contains("pipe model"), "{same}");
     let deep = bench.json("grow p.honami deep.bvh --root 80,115 --groups 4 --loop");
     assert_eq!((&deep["groups"], &deep["root"]), (&4.into(), &serde_json::json!([80.0, 115.0])));
     let frames = deep["frames"].as_array().unwrap();

@@ -67,7 +67,7 @@ const CASES: &[(&str, i32, &str)] = &[
     (
         "simulate rod.obj",
         2,
-        "\"rod.obj\" is no plant: a file whose name ends in .mtg, .swc, .csv or .mat is wanted",
+        "\"rod.obj\" is no plant: a file whose name ends in .mtg, .swc, .csv, .mat or .honami is wanted",
     ),
     ("simulate synth::tree:1,1", 1, "a plant has two nodes at least"),
     ("simulate synth::tree:x", 2, "is no plant"),
@@ -115,6 +115,12 @@ const CASES: &[(&str, i32, &str)] = &[
     ("simulate tall.swc --modes 2", 1, "segments of up to 1e6 m are wanted; is it the unit?"),
     ("simulate two.mtg --modes 2 --unit 0", 2, "units are more than 0"),
     ("simulate two.mtg --modes 2 --longest 0", 2, "the longest segment is more than 0 m long, not 0 m"),
+    (
+        "simulate no.honami --modes 2",
+        2,
+        "is in pixels: `honami simulate --unit M` says how many metres one of them is",
+    ),
+    ("simulate no.honami --modes 2 --unit 0.01", 1, "cannot open the project"),
     // Wood and leaves.
     ("simulate two.mtg --modes 2 --young nan", 2, "a Young's modulus of more than 0 Pa, not of NaN"),
     ("simulate two.mtg --modes 2 --density=-1", 2, "a density of more than 0 kg/m3, not of -1"),

@@ -153,6 +153,7 @@ fn is_usage(error: &anyhow::Error) -> bool {
                 WorkbenchError::NoPlant { .. }
                     | WorkbenchError::Weather { .. }
                     | WorkbenchError::Units { .. }
+                    | WorkbenchError::Pixels
                     | WorkbenchError::Pace { .. }
                     | WorkbenchError::Pull { .. }
                     | WorkbenchError::Spread { .. }

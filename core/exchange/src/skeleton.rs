@@ -64,6 +64,12 @@ pub fn write(path: &Path, format: SkeletonFormat, skeleton: &Skeleton) -> Result
     file.finish()
 }
 
+/// A skeleton at rest as the text of a `.swc`, which [`swc`](crate::plant::swc) reads.
+#[must_use]
+pub fn at_rest(skeleton: &Skeleton) -> String {
+    swc::text(skeleton)
+}
+
 /// Writes where leaves are in every frame; returns how many rows.
 ///
 /// # Errors

@@ -309,13 +309,18 @@ pub enum WorkbenchError {
     Glb(#[from] honami_exchange::plant::GlbError),
     /// Neither a file of a plant nor the name of one.
     #[error(
-        "{source_name:?} is no plant: a file whose name ends in .mtg, .swc, .csv or .mat is wanted, or \
+        "{source_name:?} is no plant: a file whose name ends in .mtg, .swc, .csv, .mat or .honami is wanted, or \
          synth::tree:NODES,SEED"
     )]
     NoPlant {
         /// As given.
         source_name: String,
     },
+    /// A skeleton of a size that nobody has said.
+    #[error(
+        "the skeleton of a project is in pixels: `honami simulate --unit M` says how many metres one of them is"
+    )]
+    Pixels,
     /// A plant cannot become beams.
     #[error(transparent)]
     Beams(#[from] honami_mechanics::BeamsError),

@@ -19,10 +19,13 @@ use std::path::Path;
 use std::time::Instant;
 
 use honami_exchange::plant::{Measured, PlantFileError, mtg, qsm, swc};
+use honami_exchange::skeleton::at_rest;
 use honami_mechanics::{Beams, BeamsError, Leaves, MOST_NODES, Modes, Options, WindBasis};
 use honami_model::plant::RadiusRule;
+use honami_store::{Access, Project};
 
 use crate::error::WorkbenchError;
+use crate::grow::{self, GrowRequest};
 
 /// What makes a tree to calculate with, in place of a file: `synth::tree:NODES,SEED`.
 const GENERATED: &str = "synth::tree:";
@@ -30,7 +33,7 @@ const GENERATED: &str = "synth::tree:";
 /// What is wanted of a plant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wish {
-    /// A file, or `synth::tree:NODES,SEED`.
+    /// A file, or a project, or `synth::tree:NODES,SEED`.
     pub source: String,
     /// Metres of a unit of length, where a file does not say; `None`: as usual in files of its kind.
     pub unit: Option<f64>,
@@ -139,6 +142,19 @@ pub fn words(rule: RadiusRule) -> &'static str {
     }
 }
 
+/// The skeleton of a project, as [`grow`] makes it unless told otherwise, at rest; a pixel is so many metres.
+fn skeleton(path: &Path, unit: Option<f64>) -> Result<Measured, WorkbenchError> {
+    let unit = unit.ok_or(WorkbenchError::Pixels)?;
+    let grown = grow::grow(&Project::open(path, Access::Read)?, &GrowRequest::default())?;
+    let mut measured = swc::parse(&at_rest(&grown.skeleton), unit)?;
+    let whose = format!(
+        "the skeleton that `honami grow` makes of {} groups, a pixel taken as {unit} m",
+        grown.n_groups
+    );
+    measured.notes.extend(std::iter::once(whose).chain(grown.notes));
+    Ok(measured)
+}
+
 /// Reads a plant from a file by its ending, or makes one.
 ///
 /// # Errors
@@ -181,6 +197,7 @@ pub fn read(wish: &Wish) -> Result<Measured, WorkbenchError> {
             measured.notes.push(format!("the file names no units: lengths taken in {unit} m"));
             Ok(measured)
         }
+        Some("honami") => skeleton(path, wish.unit),
         Some("csv") => Ok(qsm::parse_table(&text()?)?),
         Some("mat") => Ok(qsm::parse_mat(&bytes()?)?),
         _ => Err(unknown()),

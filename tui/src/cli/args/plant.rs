@@ -118,8 +118,8 @@ impl Args for Typed {
 /// A plant, and what it is made of.
 #[derive(Args, Debug)]
 pub(in crate::cli) struct Plant {
-    /// A digitised plant (.mtg), a skeleton (.swc), a tree of cylinders (.csv, or .mat of MATLAB), or
-    /// synth::tree:NODES,SEED, a tree to calculate with.
+    /// A digitised plant (.mtg), a skeleton (.swc), a tree of cylinders (.csv, or .mat of MATLAB), the skeleton of a project
+    /// (.honami), as `grow` makes it, or synth::tree:NODES,SEED, a tree to calculate with.
     #[arg(value_name = "PLANT")]
     pub(in crate::cli) source: String,
     /// How many modes, the slowest first.
@@ -129,7 +129,7 @@ pub(in crate::cli) struct Plant {
     #[arg(long, value_name = "C,…", value_delimiter = ',')]
     pub(in crate::cli) classes: Vec<String>,
     /// Metres of the unit of length of a .mtg or .swc file, which do not say (default: of .mtg a centimetre, of .swc a
-    /// metre).
+    /// metre), or of a pixel of a project.
     #[arg(long, value_name = "M", allow_negative_numbers = true)]
     pub(in crate::cli) unit: Option<f64>,
     /// Of a multiscale tree graph: so many units of diameter are one of length.
