@@ -75,11 +75,19 @@ fn another_program_finds_the_same_modes_of_the_same_beams() {
     }
     let script = root().join("tests/peers/beams_opensees.py");
     let program = program().to_str().unwrap();
-    let plants: [&[&str]; 2] =
-        [&["synth::tree:40,1", "--modes", "10"], &["synth::tree:300,2", "--modes", "25", "--longest", "0.2"]];
-    for plant in plants {
-        let output = python(&[&[script.to_str().unwrap(), program], plant].concat()).unwrap();
+    let walnut = data("trees/openalea_mtg/noylum2.mtg");
+    let mut plants = vec![
+        (vec!["synth::tree:40,1", "--modes", "10"], 40),
+        (vec!["synth::tree:300,2", "--modes", "25", "--longest", "0.2"], 0),
+    ];
+    if let Some(walnut) = &walnut {
+        plants.push((vec![walnut.to_str().unwrap(), "--classes", "S", "--modes", "25"], 2740));
+    }
+    for (plant, n_nodes) in plants {
+        let output = python(&[vec![script.to_str().unwrap(), program], plant.clone()].concat()).unwrap();
         assert!(output.status.success(), "{plant:?}: {output:?}");
+        let answer: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert!(n_nodes == 0 || answer["nodes"] == n_nodes, "{plant:?}: {answer}");
     }
 }
 
