@@ -30,6 +30,8 @@ pub mod spectra;
 mod stamp;
 pub mod sways;
 pub mod track;
+#[cfg(test)]
+mod tried;
 pub mod used;
 pub mod versus;
 

@@ -5,7 +5,6 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use honami_model::document::Key;
 use honami_model::edit::{Edit, Transaction};
 use honami_model::judgement::{Effort, Verdict};
-use honami_model::provenance::Provenance;
 use honami_model::track::{Quality, Sample, Source, Status};
 use honami_store::RunHead;
 use honami_synth::Settings;
@@ -15,6 +14,7 @@ use super::crew::ANCHORED;
 use super::*;
 use crate::generate::{generate, truth_beside};
 use crate::session::Session;
+use crate::tried::provenance;
 
 const N_FRAMES: u32 = 24;
 /// From this frame on the straying track is where nothing is.
@@ -47,31 +47,12 @@ fn project() -> (TempDir, Session, TrackId) {
         .collect();
     let tracks: honami_model::track::TrackSet = seen.iter().map(|(id, _)| *id).collect();
     session.project.claim_tracks(&tracks).unwrap();
-    let head = RunHead { provenance: provenance(), tracks: tracks.clone(), frames: 0..N_FRAMES };
+    let head = RunHead { provenance: provenance("test"), tracks: tracks.clone(), frames: 0..N_FRAMES };
     let mut writer = session.project.begin_run(&head).unwrap();
     writer.append(0, &rows).unwrap();
     let run = writer.finish().unwrap();
     session.project.commit(Transaction::show_run(run, tracks)).unwrap();
     (folder, session, astray)
-}
-
-fn provenance() -> Provenance {
-    let word = || "test".to_owned();
-    let (params, date) = Default::default();
-    Provenance {
-        what: word(),
-        plugin_id: word(),
-        plugin_version: word(),
-        plugin_sha256: word(),
-        abi: (1, 0),
-        params,
-        seed: 0,
-        input_revision: 0,
-        sandbox: word(),
-        simd: word(),
-        date,
-        honami_version: word(),
-    }
 }
 
 fn judged(session: &Session, item: &Item, verdict: Verdict) -> Transaction {
@@ -132,7 +113,7 @@ fn a_run_that_sees_the_feature_elsewhere_is_named() {
         Sample { x: x as f32, y: y as f32, status, source, quality }
     };
     let span = Span { first_frame: 0, samples: path.positions.iter().map(sample).collect() };
-    let provenance = Provenance { plugin_id: ANCHORED[0].to_owned(), ..provenance() };
+    let provenance = provenance(ANCHORED[0]);
     let head = RunHead { provenance, tracks: astray.into(), frames: 0..N_FRAMES };
     let project = &mut session.project;
     let shown = project.document().runs()[0].clone();

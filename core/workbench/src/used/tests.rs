@@ -9,26 +9,14 @@ use honami_synth::Settings;
 use super::*;
 use crate::generate::generate;
 use crate::session::Session;
+use crate::tried::provenance;
 
 const SNAIL: &str = "org.lab.snail";
 
 /// Keeps a run of a plugin that was told this, and shows it.
 fn run(session: &mut Session, plugin: &str, told: &[(&str, Value)]) {
-    let word = || "test".to_owned();
-    let provenance = Provenance {
-        what: "track".to_owned(),
-        plugin_id: plugin.to_owned(),
-        plugin_version: word(),
-        plugin_sha256: word(),
-        abi: (1, 0),
-        params: told.iter().map(|(id, value)| ((*id).to_owned(), value.clone())).collect(),
-        seed: 0,
-        input_revision: 0,
-        sandbox: word(),
-        simd: word(),
-        date: word(),
-        honami_version: word(),
-    };
+    let params = told.iter().map(|(id, value)| ((*id).to_owned(), value.clone())).collect();
+    let provenance = Provenance { params, ..provenance(plugin) };
     let (source, quality) = (Source::Tracked, Quality { fb_px: None, ncc: None });
     let sample = Sample { x: 1.0, y: 2.0, status: Status::Tracked, source, quality };
     let tracks: TrackSet = [TrackId(1)].into_iter().collect();

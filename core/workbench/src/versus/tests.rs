@@ -3,48 +3,29 @@
 use honami_model::edit::Transaction;
 use honami_model::track::Source;
 use honami_store::RunHead;
-use honami_synth::Settings;
-use tempfile::TempDir;
 
 use super::*;
 use crate::correct::{Step, prepare};
-use crate::generate::generate;
 use crate::session::Session;
+use crate::tried::{project, provenance};
 
 const N_FRAMES: u32 = 12;
-
-fn project() -> (TempDir, Session) {
-    let folder = tempfile::tempdir().unwrap();
-    let clip = folder.path().join("clip.y4m");
-    let settings = Settings { width: 64, height: 48, n_frames: N_FRAMES, n_leaves: 2, ..Settings::default() };
-    generate(&settings, &clip, &()).unwrap();
-    let session = Session::create(&folder.path().join("clip.honami"), &clip, None, &Default::default());
-    (folder, session.unwrap())
-}
 
 /// A run of some tracks by a plugin, or a build of it (`klt@4d5e`), each `off` pixels below where it is without; every
 /// third sample of the last track is lost.
 fn run(session: &mut Session, plugin: &str, radius: i64, tracks: Range<u32>, off: f32) -> RunId {
-    let word = || "test".to_owned();
     let (plugin, build) = plugin.split_once('@').unwrap_or((plugin, "test"));
+    let what = match plugin {
+        "pass" => "retrack",
+        "mine" => REBUILT,
+        _ => "track",
+    };
+    let id = if plugin.contains('.') { plugin.to_owned() } else { format!("org.honami.{plugin}") };
     let provenance = Provenance {
-        what: match plugin {
-            "pass" => "retrack",
-            "mine" => REBUILT,
-            _ => "track",
-        }
-        .to_owned(),
-        plugin_id: if plugin.contains('.') { plugin.to_owned() } else { format!("org.honami.{plugin}") },
-        plugin_version: "0.1.0".to_owned(),
+        what: what.to_owned(),
         plugin_sha256: build.to_owned(),
-        abi: (1, 0),
         params: [("radius", radius), ("levels", 4)].map(|(id, n)| (id.to_owned(), Value::Int(n))).into(),
-        seed: 0,
-        input_revision: 0,
-        sandbox: word(),
-        simd: word(),
-        date: "2026-11-22T18:20:33Z".to_owned(),
-        honami_version: word(),
+        ..provenance(&id)
     };
     let last = tracks.end - 1;
     let sample = |track: u32, frame: u32| Sample {
@@ -76,7 +57,7 @@ fn usual_of(session: &Session) -> Option<[String; 2]> {
 
 #[test]
 fn the_newest_runs_of_different_trackers_are_compared() {
-    let (_folder, mut session) = project();
+    let (_folder, mut session) = project(N_FRAMES);
     let named = |a: &str, b: &str| Some([a.to_owned(), b.to_owned()]);
     assert_eq!(usual_of(&session), None, "no run");
     run(&mut session, "klt", 10, 1..4, 0.0);
@@ -109,7 +90,7 @@ fn the_newest_runs_of_different_trackers_are_compared() {
 
 #[test]
 fn builds_of_a_plugin_are_told_apart_and_the_last_two_are_offered() {
-    let (_folder, mut session) = project();
+    let (_folder, mut session) = project(N_FRAMES);
     let last_two = |session: &Session| {
         last_builds(&entrants(&session.project).unwrap()).map(|two| two.map(|one| one.name()))
     };
@@ -130,7 +111,7 @@ fn builds_of_a_plugin_are_told_apart_and_the_last_two_are_offered() {
 
 #[test]
 fn two_runs_are_compared_where_both_have_tracks_that_are_asked_for() {
-    let (_folder, mut session) = project();
+    let (_folder, mut session) = project(N_FRAMES);
     let [a, b] = [run(&mut session, "klt", 10, 1..4, 0.0), run(&mut session, "flow", 1, 2..6, 3.0)];
     let path = session.project.path();
     let all: TrackSet = (1..6).map(TrackId).collect();
@@ -148,7 +129,7 @@ fn two_runs_are_compared_where_both_have_tracks_that_are_asked_for() {
 
 #[test]
 fn what_a_hidden_run_found_is_taken_and_given_back() {
-    let (_folder, mut session) = project();
+    let (_folder, mut session) = project(N_FRAMES);
     let [a, _] = [run(&mut session, "klt", 10, 1..4, 0.0), run(&mut session, "flow", 1, 1..4, 3.0)];
     session.project.commit(Transaction::hide_run(a)).unwrap();
     let y = |session: &Session| session.project.shown(TrackId(2)).unwrap().unwrap().get(5).unwrap().y as u32;

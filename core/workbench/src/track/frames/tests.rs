@@ -1,40 +1,18 @@
 //! When frames are written, and what is told of those that are not. No test waits: what is due is told by the test's clock.
 
-use honami_model::provenance::Provenance;
 use honami_model::track::{Quality, Sample, Source, TrackId};
 use honami_store::RunHead;
-use honami_synth::Settings;
 use tempfile::TempDir;
 
 use super::*;
-use crate::generate::generate;
 use crate::session::Session;
+use crate::tried::{project, provenance};
 
 fn kept(hidden: TrackSet) -> (TempDir, Session, Kept) {
-    let folder = tempfile::tempdir().unwrap();
-    let clip = folder.path().join("clip.y4m");
-    let settings = Settings { width: 64, height: 48, n_frames: 4, n_leaves: 2, ..Settings::default() };
-    generate(&settings, &clip, &()).unwrap();
-    let session = Session::create(&folder.path().join("clip.honami"), &clip, None, &Default::default());
-    let mut session = session.unwrap();
-    let word = || "test".to_owned();
-    let provenance = Provenance {
-        what: "track".to_owned(),
-        plugin_id: word(),
-        plugin_version: word(),
-        plugin_sha256: word(),
-        abi: (1, 0),
-        params: std::iter::empty().collect(),
-        seed: 0,
-        input_revision: 0,
-        sandbox: word(),
-        simd: word(),
-        date: word(),
-        honami_version: word(),
-    };
+    let (folder, mut session) = project(4);
     let tracks: TrackSet = [TrackId(1), TrackId(2)].into_iter().collect();
     session.project.claim_tracks(&tracks).unwrap();
-    let head = RunHead { provenance, tracks, frames: 0..400 };
+    let head = RunHead { provenance: provenance("org.honami.klt"), tracks, frames: 0..400 };
     let writer = session.project.begin_run(&head).unwrap();
     (folder, session, Kept::new(writer, 0, hidden))
 }

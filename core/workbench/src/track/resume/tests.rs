@@ -3,25 +3,13 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use honami_model::provenance::Provenance;
 use honami_model::track::{Quality, Sample, Source};
 use honami_store::RunHead;
-use honami_synth::Settings;
-use tempfile::TempDir;
 
 use super::*;
-use crate::generate::generate;
+use crate::tried::{project, provenance};
 
 const N_FRAMES: u32 = 8;
-
-fn project() -> (TempDir, Session) {
-    let folder = tempfile::tempdir().unwrap();
-    let clip = folder.path().join("clip.y4m");
-    let settings = Settings { width: 64, height: 48, n_frames: N_FRAMES, n_leaves: 2, ..Settings::default() };
-    generate(&settings, &clip, &()).unwrap();
-    let session = Session::create(&folder.path().join("clip.honami"), &clip, None, &Default::default());
-    (folder, session.unwrap())
-}
 
 fn sample(track: u32, frame: u32, status: Status) -> Sample {
     let (source, quality) = (Source::Tracked, Quality::default());
@@ -36,21 +24,7 @@ fn run(
     status: impl Fn(u32, u32) -> Status,
     asked: &str,
 ) -> RunId {
-    let word = || "test".to_owned();
-    let provenance = Provenance {
-        what: "track".to_owned(),
-        plugin_id: "org.honami.klt".to_owned(),
-        plugin_version: "0.1.0".to_owned(),
-        plugin_sha256: word(),
-        abi: (1, 0),
-        params: std::iter::empty().collect(),
-        seed: 0,
-        input_revision: 0,
-        sandbox: word(),
-        simd: word(),
-        date: word(),
-        honami_version: word(),
-    };
+    let provenance = provenance("org.honami.klt");
     let set: TrackSet = tracks.clone().map(TrackId).collect();
     let document = session.project.document();
     let new: TrackSet = set.iter().filter(|&track| document.track(track).is_none()).collect();
@@ -71,7 +45,7 @@ fn run(
 
 #[test]
 fn the_newest_early_run_that_nothing_newer_has_replaced_is_gone_on_with() {
-    let (_folder, mut session) = project();
+    let (_folder, mut session) = project(N_FRAMES);
     let seen = |_, _| Status::Tracked;
     let asked = Asked::default().text();
     assert_eq!(unfinished(&session.project).unwrap(), None);
@@ -91,7 +65,7 @@ fn the_newest_early_run_that_nothing_newer_has_replaced_is_gone_on_with() {
 
 #[test]
 fn hidden_features_are_gone_on_with_and_those_that_are_lost_or_outside_are_not() {
-    let (_folder, mut session) = project();
+    let (_folder, mut session) = project(N_FRAMES);
     let status = |track, frame| match (track, frame) {
         (_, 4) | (2, 3) => Status::Occluded,
         (3, 2..) => Status::Lost,
@@ -108,7 +82,7 @@ fn hidden_features_are_gone_on_with_and_those_that_are_lost_or_outside_are_not()
 
 #[test]
 fn why_a_run_cannot_be_gone_on_with_is_told_as_it_is() {
-    let (_folder, mut session) = project();
+    let (_folder, mut session) = project(N_FRAMES);
     let seen = |_, _| Status::Tracked;
     let through = run(&mut session, 1..2, N_FRAMES, seen, &Asked::default().text());
     let bare = run(&mut session, 2..3, 5, seen, "");
