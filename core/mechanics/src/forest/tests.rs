@@ -100,7 +100,7 @@ fn equal_modes_are_pulled_to_the_same_place_whichever_were_found() {
         let basis = WindBasis::new(&beams, &modes, &Drag::default());
         let plant = Arc::new(Stirring::new(&beams, &modes, basis, Form::Linear));
         let mut forest = forest(&plant, &[Stand::default()], &PACE);
-        forest.pull(0, &plant.pulled(0.25));
+        forest.pull(0, &plant.pulled(0.25).unwrap());
         let [x, y, z] = posed(&mut forest, None, &threads(1))[5];
         assert!((x - 0.25).abs() < 1e-5 && y.abs() < 1e-5 && z.abs() < 1e-5, "{seed}: {x} {y} {z}");
     }
@@ -398,7 +398,7 @@ fn a_pull_pulls_every_copy() {
     let plant = plant(30, 4, Form::Linear);
     let mut forest = forest(&plant, &stands(3), &PACE);
     go(&mut forest, 5, &blowing(Vector3::x()), &threads(1));
-    let pulled = plant.pulled(0.3);
+    let pulled = plant.pulled(0.3).unwrap();
     forest.pull_all(&pulled);
     assert!((0..3).all(|copy| forest.amplitudes(copy) == pulled) && pulled[0].abs() > 0.0, "{pulled:?}");
     assert!(forest.speeds.iter().all(|speed| speed.to_bits() == 0));

@@ -41,7 +41,7 @@ fn still_air_takes_nothing() {
     let end = |air: f64, wind: f64| {
         let pace = Pace { damping: Damping { air, ..PACE.damping }, ..PACE };
         let mut forest = forest(&plant, &[Stand { turn: 0.4, ..Stand::default() }], &pace);
-        forest.pull(0, &plant.pulled(0.3));
+        forest.pull(0, &plant.pulled(0.3).unwrap());
         go(&mut forest, 50, &blowing(Vector3::new(wind, 0.0, 0.0)), &threads(1));
         forest.save()
     };
@@ -60,7 +60,7 @@ fn in_a_steady_wind_swings_die_as_the_closed_form_says() {
         let mut forest = forest(&plant, &[stand], &Pace { step, damping, ..PACE });
         let (sin, cos) = f64::from(turn).sin_cos();
         let turned = Vector3::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y, v.z);
-        let begun = plant.pulled(0.5)[0];
+        let begun = plant.pulled(0.5).unwrap()[0];
         forest.pull(0, &[begun; 4]);
         go(&mut forest, 300, &blowing(turned), &threads(1));
         for (mode, q) in forest.amplitudes(0).iter().enumerate() {
@@ -87,7 +87,7 @@ fn in_long_steps_too_a_swing_dies_as_fast_as_it_should_and_rests_where_it_should
     let (damping, v) = (DAMPING, Vector3::new(11.0, 3.0, 0.0));
     for step in [0.02, 0.1, 0.25] {
         let mut pair = forest(&plant, &[Stand::default(); 2], &Pace { step, damping, ..PACE });
-        pair.pull(0, &[plant.pulled(2.0)[0]; 3]);
+        pair.pull(0, &[plant.pulled(2.0).unwrap()[0]; 3]);
         let mut apart = Vec::new();
         for _ in 0..8 {
             let [a, b] = [0, 1].map(|copy| pair.amplitudes(copy).to_vec());
@@ -187,7 +187,7 @@ fn the_thesiss_method_has_another_limit_in_the_air() {
     let error = of(1.01, 1000.0).unwrap_err().to_string();
     assert!(error.contains(&format!("less than {limit:.6} s is wanted")), "{error}");
     let mut storm = of(0.99, 1000.0).unwrap();
-    storm.pull(0, &plant.pulled(0.1));
+    storm.pull(0, &plant.pulled(0.1).unwrap());
     go(&mut storm, 2000, &blowing(Vector3::new(1e3, 0.0, 0.0)), &threads(1));
     let rest = plant.basis.force(0, &Vector3::new(1e3, 0.0, 0.0)) / plant.omegas[0].powi(2);
     let q = f64::from(storm.amplitudes(0)[0]);
