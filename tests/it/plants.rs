@@ -252,15 +252,6 @@ fn a_benchmark_of_a_forest_prints_its_cell_beside_the_thesis() {
     assert_eq!(bench.line("bench forest --cell 10x20").code, Some(2));
 }
 
-/// Before any cell is measured: this one would be refused for want of memory.
-#[test]
-fn a_benchmark_that_needs_a_plugin_looks_for_it_first() {
-    let bench = Bench::new();
-    let _said = bench.text("plugin deny modal");
-    let ran = bench.line("bench forest --cell 10000000x3437x2");
-    assert!(ran.code == Some(2) && ran.stderr.contains("\"modal\""), "{ran:?}");
-}
-
 #[test]
 fn a_forest_in_the_wind_is_the_same_on_any_number_of_threads() {
     let bench = Bench::new();

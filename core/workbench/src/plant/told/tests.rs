@@ -29,7 +29,7 @@ fn what_was_chosen_is_told_and_what_was_not_is_left_with_a_word() {
     let (alpha, leaves) = (note("alpha", "0.05", "0.3", "alpha"), note("leaf_mass", "2", "0", "leaf-mass"));
     let method = note("method", "verlet", "exact", "method");
     for (chosen, set, wanted, notes) in [
-        (&[][..], &[][..], ("0.05", "2", "verlet"), vec![&alpha, &leaves, &method]),
+        (&[][..], &[][..], ("0.05", "2", "verlet"), vec![&leaves, &alpha, &method]),
         // Though it is as usual here.
         (&["alpha"], &[], ("0.3", "2", "verlet"), vec![&leaves, &method]),
         (&["alpha", "leaf_mass", "method"], &[], ("0.3", "0", "exact"), vec![]),
