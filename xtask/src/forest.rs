@@ -97,7 +97,7 @@ fn line(cell: &str, row: &Value) -> String {
         number(&row["cubed"]["fps"]),
         share("cubed"),
         number(&row["turned"]["fps"]),
-        100.0 * row["squared"]["state_share"].as_f64().unwrap_or_default(),
+        100.0 * row["turned"]["state_share"].as_f64().unwrap_or_default(),
         100.0 * (row["boundary"]["ratio"][1].as_f64().unwrap_or_default() - 1.0),
     )
 }

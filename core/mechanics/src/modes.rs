@@ -19,10 +19,8 @@ use std::f64::consts::TAU;
 const DENSE: usize = 96;
 /// And of a plant with up to so many where more than half of them are wanted: that takes seconds, and grows with the cube.
 const DENSE_MOST: usize = 1500;
-/// Eigenvalues closer than this are one for the proof, which needs a gap to count below.
+/// Eigenvalues closer than this, relatively, are equal for the proof.
 const GAP: f64 = 1e-7;
-/// Vibrations beyond the wanted ones that are looked at to find a gap.
-const BEYOND: usize = 3;
 /// Columns that it mostly takes to find so many vibrations, each.
 const WIDTH: usize = 3;
 /// Blocks that tell about where the first eigenvalue lies.
@@ -89,7 +87,10 @@ pub enum ModesError {
     )]
     Numbers,
     /// It went on for long and could not be sure.
-    #[error("of {wanted} modes {found} were found for certain")]
+    #[error(
+        "{wanted} modes were asked for, {found} were found, and it is not proved that these are the slowest: more of them, or \
+         fewer, may be"
+    )]
     Uncertain {
         /// Asked for.
         wanted: usize,
@@ -117,7 +118,11 @@ impl Modes {
             if there > DENSE_MOST {
                 return Err(ModesError::Half { wanted: n_modes, there });
             }
-            dense::all(&factor, &mass, n_modes)?
+            let found = dense::all(&factor, &mass, n_modes)?;
+            if !is_proved(&flexibility, &mass, &found.0)? {
+                return Err(ModesError::Uncertain { wanted: n_modes, found: n_modes });
+            }
+            found
         } else {
             few(&flexibility, &factor, &mass, n_modes, seed)?
         };
@@ -228,7 +233,7 @@ fn few(
     let (shift, shifted) = amid(flexibility, factor, mass, n_modes, seed)?;
     let n_below = shifted.n_negative();
     let mut lanczos = Lanczos::new(&shifted, shift, mass, seed, WIDTH * n_modes)?;
-    let width_max = (12 * (n_modes + BEYOND) + 100).min(DOF * mass.len());
+    let width_max = (12 * n_modes + 136).min(DOF * mass.len());
     let mut found = 0;
     while lanczos.width() < width_max {
         lanczos.grow(BLOCKS_A_LOOK.max(lanczos.width() / COLUMNS_A_BLOCK))?;
@@ -237,17 +242,21 @@ fn few(
         }
         let ritz = lanczos.ritz(n_below)?;
         found = ritz.lambdas.len();
-        // Below the next that is another; nothing is known yet of what comes after the last.
-        let past = |k: usize| ritz.lambdas[k - 1] * (1.0 + GAP);
-        let next = |k: usize| ritz.lambdas.get(k).copied();
-        let gap = (n_modes..=found).find(|&k| next(k).is_none_or(|next| next > past(k)));
-        let Some(below) = gap else { continue };
-        let between = next(below).map_or(past(below), |next| f64::midpoint(ritz.lambdas[below - 1], next));
-        if Factor::count(flexibility, mass, between)? == below {
-            return Ok((ritz.lambdas[..n_modes].to_vec(), lanczos.vectors(&ritz, n_modes)?));
+        let Some(wanted) = ritz.lambdas.get(..n_modes) else { continue };
+        if is_proved(flexibility, mass, wanted)? {
+            return Ok((wanted.to_vec(), lanczos.vectors(&ritz, n_modes)?));
         }
     }
     Err(ModesError::Uncertain { wanted: n_modes, found })
+}
+
+/// Whether these eigenvalues, in order, are the smallest: as many lie below the last, and below those that are equal to
+/// it, as are known to. Of equal ones any will do.
+fn is_proved(flexibility: &Flexibility, mass: &TreeMatrix, lambdas: &[f64]) -> Result<bool, ModesError> {
+    let Some(last) = lambdas.last() else { return Ok(false) };
+    let below = last * (1.0 - GAP);
+    let known = lambdas.partition_point(|lambda| *lambda < below);
+    Ok(Factor::count(flexibility, mass, below)? == known)
 }
 
 /// A shift that about half of the wanted eigenvalues lie below, and the factors of K - s M there.

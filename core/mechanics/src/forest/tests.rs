@@ -147,11 +147,14 @@ fn a_turned_copy_in_a_turned_wind_moves_as_before() {
 /// In one call or in many, on any number of threads, posed or not on the way.
 #[test]
 fn a_forest_moves_to_the_same_bits_on_any_number_of_threads() {
-    let plant = plant(70, 8, Form::Mode(3));
     let wind = Noise { speed: 8.0, cell: 20.0, second: 2.0, seed: 5 };
     let details: Vec<Detail> =
         (0..700).map(|k| Detail { n_nodes: [70, 20, 0][k / 5 % 3], n_modes: [8, 3][k / 7 % 2] }).collect();
-    for details in [None, Some(details.as_slice())] {
+    let details = [None, Some(details.as_slice())];
+    for (form, details) in
+        [Form::Mode(3), Form::Turn].into_iter().flat_map(|form| details.map(|some| (form, some)))
+    {
+        let plant = plant(70, 8, form);
         let bits = |n_threads: usize| {
             let mut forest = forest(&plant, &stands(700), &PACE);
             go(&mut forest, 5, &wind, &threads(n_threads));
@@ -173,30 +176,33 @@ fn a_forest_moves_to_the_same_bits_on_any_number_of_threads() {
 
 #[test]
 fn what_is_left_out_changes_nothing_of_what_is_wanted() {
-    let plant = plant(60, 8, Form::Mode(3));
-    let mut forest = forest(&plant, &stands(100), &PACE);
-    go(&mut forest, 9, &Noise { speed: 12.0, cell: 30.0, second: 2.0, seed: 5 }, &threads(1));
-    let all = posed(&mut forest, None, &threads(1));
-    let details: Vec<Detail> =
-        (0..100).map(|k| Detail { n_nodes: [60, 22, 0, 1][k / 3 % 4], n_modes: [8, 8, 2][k % 3] }).collect();
-    let some = posed(&mut forest, Some(&details), &threads(1));
-    let mut some = some.as_slice();
-    for (k, Detail { n_nodes, n_modes }) in details.into_iter().enumerate() {
-        let n_nodes = n_nodes as usize;
-        let (own, others) = some.split_at(n_nodes);
-        some = others;
-        if n_modes == 8 {
-            assert!(own == &all[60 * k..][..n_nodes], "{k}");
-        } else {
-            // As if only the first modes were out.
-            let mut few = [0.0; 8];
-            few[..2].copy_from_slice(&forest.amplitudes(k)[..2]);
-            let mut alone = self::forest(&plant, &[Stand::default()], &PACE);
-            alone.pull(0, &few);
-            let wanted = posed(&mut alone, None, &threads(1));
-            let off =
-                own.iter().zip(&wanted).all(|(a, b)| (0..3).all(|axis| (a[axis] - b[axis]).abs() < 1e-6));
-            assert!(off, "{k}");
+    for form in [Form::Mode(3), Form::Turn] {
+        let plant = plant(60, 8, form);
+        let mut forest = forest(&plant, &stands(100), &PACE);
+        go(&mut forest, 9, &Noise { speed: 12.0, cell: 30.0, second: 2.0, seed: 5 }, &threads(1));
+        let all = posed(&mut forest, None, &threads(1));
+        let details: Vec<Detail> = (0..100)
+            .map(|k| Detail { n_nodes: [60, 22, 0, 1][k / 3 % 4], n_modes: [8, 8, 2][k % 3] })
+            .collect();
+        let some = posed(&mut forest, Some(&details), &threads(1));
+        let mut some = some.as_slice();
+        for (k, Detail { n_nodes, n_modes }) in details.into_iter().enumerate() {
+            let n_nodes = n_nodes as usize;
+            let (own, others) = some.split_at(n_nodes);
+            some = others;
+            if n_modes == 8 {
+                assert!(own == &all[60 * k..][..n_nodes], "{k}");
+            } else {
+                // As if only the first modes were out.
+                let mut few = [0.0; 8];
+                few[..2].copy_from_slice(&forest.amplitudes(k)[..2]);
+                let mut alone = self::forest(&plant, &[Stand::default()], &PACE);
+                alone.pull(0, &few);
+                let wanted = posed(&mut alone, None, &threads(1));
+                let off =
+                    own.iter().zip(&wanted).all(|(a, b)| (0..3).all(|axis| (a[axis] - b[axis]).abs() < 1e-6));
+                assert!(off, "{k}");
+            }
         }
     }
 }
@@ -271,6 +277,8 @@ fn a_forest_takes_little_more_memory_than_its_positions() {
         (3000, 20, 10, Form::Mode(3)),
         (2000, 100, 25, Form::Mode(3)),
         (300, 800, 25, Form::Mode(2)),
+        (3000, 20, 10, Form::Turn),
+        (2000, 100, 25, Form::Turn),
         (1000, 100, 25, Form::Linear),
     ] {
         let bytes = forest(&plant(n, m, form), &stands(k), &PACE).bytes() + 12 * k * n;

@@ -202,6 +202,28 @@ fn arms_that_swing_against_one_another_leave_the_trunk_at_rest() {
     assert_near(modes.hz(nearest.unwrap()), clamped, 3e-6, "an arm");
 }
 
+/// Many equal arms have many equal modes, of which only some are wanted: they are those that all at once gives.
+#[test]
+fn of_many_equal_modes_as_many_are_found_as_are_wanted() {
+    for (n_arms, n_modes) in [(16, 12), (40, 12), (40, 25), (100, 25)] {
+        let mut nodes: Vec<Node> = rod(1, Vector3::z()).nodes().to_vec();
+        for arm in 0..n_arms {
+            let turned =
+                Rotation3::from_axis_angle(&Vector3::z_axis(), 2.0 * PI * f64::from(arm) / f64::from(n_arms));
+            let position = Vector3::z() * LENGTH + turned * Vector3::x() * LENGTH;
+            nodes.push(Node { parent: Some(1), position: position.into(), radius: RADIUS });
+        }
+        let beams = Beams::new(&Plant::new(nodes).unwrap(), &options(RadiusRule::Mean)).unwrap();
+        let few = Modes::new(&beams, n_modes, 1).unwrap();
+        let all = Modes::new(&beams, 3 * n_arms as usize + 4, 1).unwrap();
+        for mode in 0..n_modes {
+            assert_near(few.omegas[mode], all.omegas[mode], 1e-7, &format!("{n_arms} arms, mode {mode}"));
+        }
+        let equal = few.omegas.windows(2).filter(|pair| pair[1] / pair[0] - 1.0 < 1e-7).count();
+        assert!(equal >= n_modes / 2, "{n_arms} arms: {equal} are equal to the one before");
+    }
+}
+
 #[test]
 fn modes_are_of_mass_one_and_solve_their_equation() {
     let plant = honami_synth::tree(300, 7).unwrap();
