@@ -51,6 +51,7 @@ pub(super) const SDK: [Package; 2] = [
             "state/tests.rs",
             "testing.rs",
             "testing/clip.rs",
+            "testing/samples.rs",
             "testing/suite.rs",
             "testing/suite/state.rs",
             "testing/suite/tests.rs",
