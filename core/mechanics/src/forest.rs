@@ -8,12 +8,14 @@
 
 mod air;
 mod detail;
+mod round;
 mod state;
 #[cfg(test)]
 mod tests;
 mod view;
 
 pub use detail::{Detail, DetailError, Details};
+pub use round::{Round, Winds};
 pub use state::StateError;
 pub use view::View;
 
@@ -117,6 +119,14 @@ pub enum ForestError {
         modes: usize,
         /// Wanted.
         bytes: usize,
+    },
+    /// What swings for ever has no motion that goes round.
+    #[error(
+        "a mode of {hz:.3} Hz that nothing damps has no motion by the spectrum: its answer to its own frequency has no end"
+    )]
+    Undamped {
+        /// Of the mode.
+        hz: f64,
     },
     /// Air that moves at no speed.
     #[error("the wind at copy {copy} at {time} s is no number")]
@@ -265,8 +275,7 @@ impl Forest {
         let steps = steps.collect::<Result<Vec<_>, _>>()?;
         for (kind, steps) in self.kinds.iter_mut().zip(steps) {
             kind.steps = steps;
-            // Of s times the size the drag on a mode is s^3 times as much, the mass s^4 times (lengths of both included).
-            kind.air = air * pace.step / (2.0 * mass * kind.mass * kind.scale);
+            kind.air = kind.by_air(&pace.damping) * pace.step / 2.0;
         }
         self.pace = *pace;
         Ok(())
@@ -420,15 +429,28 @@ fn pressed(v: &Vector3<f64>) -> [f32; 3] {
     (v * v.norm()).map(|v| v as f32).into()
 }
 
+impl Kind {
+    /// The modes of a plant in copies of this kind, but for what the air takes.
+    fn oscillators(&self, plant: &Stirring, damping: &Damping) -> impl Iterator<Item = Oscillator> {
+        let damping = Damping { mass: damping.mass * self.mass, ..*damping };
+        // Of an amplitude in the plant's own size: m s^3 of mass, s^2 of wind, and s of length.
+        let mass = damping.mass * self.scale.powi(2);
+        let of = move |omega: &f64| Oscillator { mass, ..Oscillator::new(omega / self.scale, &damping) };
+        plant.omegas.iter().map(of)
+    }
+
+    /// What the air takes from a mode, per second, by the damping of a mode of the plant: of s times the size the drag on
+    /// a mode is s^3 times as much, the mass s^4 times (lengths of both included).
+    fn by_air(&self, damping: &Damping) -> f64 {
+        damping.air / (damping.mass * self.mass * self.scale)
+    }
+}
+
 /// The step of every mode of a kind.
 fn steps(plant: &Stirring, kind: &Kind, pace: &Pace) -> Result<Vec<f32>, LimitError> {
-    let damping = Damping { mass: pace.damping.mass * kind.mass, ..pace.damping };
     let n_modes = plant.omegas.len();
     let mut rows = vec![0.0; 6 * n_modes];
-    for (mode, omega) in plant.omegas.iter().enumerate() {
-        // Of an amplitude in the plant's own size: m s^3 of mass, s^2 of wind, and s of length.
-        let mut oscillator = Oscillator::new(omega / kind.scale, &damping);
-        oscillator.mass = damping.mass * kind.scale.powi(2);
+    for (mode, oscillator) in kind.oscillators(plant, &pace.damping).enumerate() {
         let step = oscillator.step_by(pace.integrator, pace.step)?;
         // Where the air takes all speed, every step, symplectic Euler bears less: of its trace 1 - (omega dt)^2 is left.
         let limit = SQRT_2 / oscillator.omega;

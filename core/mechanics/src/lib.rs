@@ -29,7 +29,8 @@ pub use bending::{Bending, Form};
 pub use element::{Section, frame, shape};
 pub use factor::Factor;
 pub use forest::{
-    Blowing, Detail, DetailError, Details, Forest, ForestError, Pace, Pose, Stand, StateError, View,
+    Blowing, Detail, DetailError, Details, Forest, ForestError, Pace, Pose, Round, Stand, StateError, View,
+    Winds,
 };
 pub use leaves::{Leaves, LeavesError};
 pub use material::{Material, MaterialError};

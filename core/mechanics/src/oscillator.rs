@@ -3,6 +3,7 @@
 #[cfg(test)]
 mod tests;
 
+use rustfft::num_complex::Complex;
 use std::f64::consts::TAU;
 
 /// Rayleigh's damping (6.11), the air's, and what scales the mass (6.36): chosen while it runs.
@@ -162,6 +163,14 @@ impl Oscillator {
         let next = (after / self.mass - gamma * speed - square * q)
             / (1.0 + dt / 2.0 * gamma + dt.powi(2) / 4.0 * square);
         State { q: q + dt.powi(2) / 4.0 * next, speed: speed + dt / 2.0 * next }
+    }
+
+    /// What it makes of a wave of force at a frequency, hertz: the amplitude that goes on, complex (5.39; errata E34: the
+    /// signs of the printed difference are the wrong way round, and without damping there is no answer at its own frequency).
+    #[must_use]
+    pub fn response(&self, hz: f64) -> Complex<f64> {
+        let drive = TAU * hz;
+        (self.mass * Complex::new(self.omega.powi(2) - drive.powi(2), self.gamma * drive)).inv()
     }
 
     /// Where it stays under a constant force.

@@ -25,11 +25,20 @@ use std::f64::consts::TAU;
 pub trait Wind: Send + Sync {
     /// Velocity at a place, metres, and a time, seconds.
     fn sample(&self, place: &Vector3<f64>, time: f64) -> Vector3<f64>;
+
+    /// Whether so many seconds later it is everywhere and always what it was: as good as never, but where a wind says so.
+    fn repeats(&self, _seconds: f64) -> bool {
+        false
+    }
 }
 
 impl Wind for Box<dyn Wind> {
     fn sample(&self, place: &Vector3<f64>, time: f64) -> Vector3<f64> {
         (**self).sample(place, time)
+    }
+
+    fn repeats(&self, seconds: f64) -> bool {
+        (**self).repeats(seconds)
     }
 }
 
@@ -41,6 +50,15 @@ impl Wind for Constant {
     fn sample(&self, _place: &Vector3<f64>, _time: f64) -> Vector3<f64> {
         self.0
     }
+
+    fn repeats(&self, _seconds: f64) -> bool {
+        true
+    }
+}
+
+/// Whether there are so many of something, but for rounding, that none is left over.
+fn is_whole(n: f64) -> bool {
+    (n - n.round()).abs() < 1e-9 * n.abs().max(1.0)
 }
 
 /// Several winds at once: solutions of the simplified equations of Wejchert and Haumann (1991) add up.
@@ -50,6 +68,10 @@ pub struct Sum(pub Vec<Box<dyn Wind>>);
 impl Wind for Sum {
     fn sample(&self, place: &Vector3<f64>, time: f64) -> Vector3<f64> {
         self.0.iter().map(|wind| wind.sample(place, time)).sum()
+    }
+
+    fn repeats(&self, seconds: f64) -> bool {
+        self.0.iter().all(|wind| wind.repeats(seconds))
     }
 }
 
@@ -69,5 +91,9 @@ pub struct Sine {
 impl Wind for Sine {
     fn sample(&self, place: &Vector3<f64>, time: f64) -> Vector3<f64> {
         self.amplitude * (TAU * (self.hz * time - self.waves.dot(place)) + self.phase).sin()
+    }
+
+    fn repeats(&self, seconds: f64) -> bool {
+        is_whole(self.hz * seconds)
     }
 }

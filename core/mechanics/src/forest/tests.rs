@@ -119,7 +119,12 @@ fn a_larger_copy_is_the_larger_plant() {
     let motion = |plant: &honami_model::plant::Plant, scale: f32| {
         let mut forest =
             forest(&stirring(plant, 4, Form::Linear), &[Stand { scale, ..Stand::default() }], &PACE);
-        go(&mut forest, 200, &Noise { speed: 9.0, cell: 1e9, second: 0.7, seed: 3 }, &threads(1));
+        go(
+            &mut forest,
+            200,
+            &Noise { speed: 9.0, cell: 1e9, second: 0.7, seed: 3, n_cells: None },
+            &threads(1),
+        );
         posed(&mut forest, None, &threads(1))
     };
     let (scaled, real) = (motion(&small, 2.0), motion(&grown, 1.0));
@@ -147,7 +152,7 @@ fn a_turned_copy_in_a_turned_wind_moves_as_before() {
 /// In one call or in many, on any number of threads, posed or not on the way.
 #[test]
 fn a_forest_moves_to_the_same_bits_on_any_number_of_threads() {
-    let wind = Noise { speed: 8.0, cell: 20.0, second: 2.0, seed: 5 };
+    let wind = Noise { speed: 8.0, cell: 20.0, second: 2.0, seed: 5, n_cells: None };
     let details: Vec<Detail> =
         (0..700).map(|k| Detail { n_nodes: [70, 20, 0][k / 5 % 3], n_modes: [8, 3][k / 7 % 2] }).collect();
     let details = [None, Some(details.as_slice())];
@@ -179,7 +184,12 @@ fn what_is_left_out_changes_nothing_of_what_is_wanted() {
     for form in [Form::Mode(3), Form::Turn] {
         let plant = plant(60, 8, form);
         let mut forest = forest(&plant, &stands(100), &PACE);
-        go(&mut forest, 9, &Noise { speed: 12.0, cell: 30.0, second: 2.0, seed: 5 }, &threads(1));
+        go(
+            &mut forest,
+            9,
+            &Noise { speed: 12.0, cell: 30.0, second: 2.0, seed: 5, n_cells: None },
+            &threads(1),
+        );
         let all = posed(&mut forest, None, &threads(1));
         let details: Vec<Detail> = (0..100)
             .map(|k| Detail { n_nodes: [60, 22, 0, 1][k / 3 % 4], n_modes: [8, 8, 2][k % 3] })

@@ -124,4 +124,8 @@ impl Wind for Field {
         let at = |k: usize| self.stations[k.min(last)].at(time);
         at(first).lerp(&at(first + 1), share)
     }
+
+    fn repeats(&self, seconds: f64) -> bool {
+        self.stations.iter().all(|station| station.repeats(seconds))
+    }
 }

@@ -39,4 +39,8 @@ impl Wind for Primitive {
             Shape::Vortex => Vector3::new(-out.y, out.x, 0.0),
         }
     }
+
+    fn repeats(&self, _seconds: f64) -> bool {
+        true
+    }
 }

@@ -1,6 +1,6 @@
 //! Wind that was drawn or recorded once and is carried over the land.
 
-use super::Wind;
+use super::{Wind, is_whole};
 use nalgebra::Vector3;
 
 /// A wind at one place over time, evenly sampled, read between samples along a line; it begins again after its end.
@@ -25,11 +25,20 @@ impl Series {
         let at = |k: usize| self.samples[k % n];
         at(first as usize).lerp(&at(first as usize + 1), share)
     }
+
+    /// Seconds after which it begins again.
+    fn period(&self) -> f64 {
+        self.step * self.samples.len() as f64
+    }
 }
 
 impl Wind for Series {
     fn sample(&self, _place: &Vector3<f64>, time: f64) -> Vector3<f64> {
         self.at(time)
+    }
+
+    fn repeats(&self, seconds: f64) -> bool {
+        is_whole(seconds / self.period())
     }
 }
 
@@ -68,5 +77,9 @@ impl<W: Wind> Wind for Mask<W> {
         let away = |axis: usize| place[axis] - self.centre[axis] - self.velocity[axis] * time;
         let square = (away(0).powi(2) + away(1).powi(2)) / self.radius.powi(2);
         self.wind.sample(place, time) * (-square).exp()
+    }
+
+    fn repeats(&self, seconds: f64) -> bool {
+        self.velocity.iter().all(|v| *v == 0.0) && self.wind.repeats(seconds)
     }
 }

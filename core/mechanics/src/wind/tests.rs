@@ -67,7 +67,7 @@ fn the_axis_itself_is_calm() {
 /// w(x + mean d, t + d) = w(x, t), and at t* it is what was given (errata E25).
 #[test]
 fn frozen_flow_is_the_same_air_further_on() {
-    let turbulence = Noise { speed: 2.0, cell: 3.0, second: 1.5, seed: 7 };
+    let turbulence = Noise { speed: 2.0, cell: 3.0, second: 1.5, seed: 7, n_cells: None };
     let wind = Frozen { mean: Vector3::new(4.0, -1.0, 0.0), turbulence, time: 11.0 };
     for place in PLACES.map(Vector3::from) {
         let given = wind.mean + turbulence.sample(&place, 11.0);
@@ -81,7 +81,7 @@ fn frozen_flow_is_the_same_air_further_on() {
 
 #[test]
 fn noise_is_smooth_bounded_and_the_same_for_the_same_seed() {
-    let noise = Noise { speed: 3.0, cell: 2.0, second: 1.0, seed: 1 };
+    let noise = Noise { speed: 3.0, cell: 2.0, second: 1.0, seed: 1, n_cells: None };
     let other = Noise { seed: 2, ..noise };
     let (mut sum, mut squares, n) = (0.0, 0.0, 4000);
     // At whole numbers it is 0.
@@ -163,6 +163,45 @@ fn winds_add_up_and_a_mask_travels() {
     assert!((squall.sample(&Vector3::new(8.0, 5.0, 1.0), 4.0).y - 9.0 / std::f64::consts::E).abs() < 1e-12);
     let sum = Sum(vec![Box::new(Constant(Vector3::z())), Box::new(wave)]);
     assert!((sum.sample(&crest(0.0), 0.0) - Vector3::new(1.0, 0.0, 1.0)).norm() < 1e-12);
+}
+
+/// Those that say so are after that time what they were, and no others say so.
+#[test]
+fn winds_that_repeat_say_after_how_long() {
+    let noise = Noise { speed: 3.0, cell: 5.0, second: 0.5, seed: 1, n_cells: Some(12) };
+    let wave = Sine { amplitude: Vector3::x(), hz: 0.3, waves: Vector3::y(), phase: 1.0 };
+    let recorded = Series { step: 0.75, samples: PLACES.map(Vector3::from).to_vec() };
+    let kaimal = Kaimal::along(1.0, 5.0, 30.0);
+    let mean = Vector3::new(3.0, 4.0, 0.0);
+    let draw = Draw { mean, decay: 10.0, n_stations: 4, spacing: 6.0, n_samples: 20, step: 0.1, seed: 1 };
+    let vortex = Primitive { shape: Shape::Vortex, centre: [0.5, -0.5], strength: 30.0, core: 0.1 };
+    let mask = |pace| Mask { wind: Constant(mean), centre: [0.0; 2], velocity: [pace, 0.0], radius: 9.0 };
+    type Case = (Box<dyn Wind>, &'static [f64], &'static [f64]);
+    let cases: Vec<Case> = vec![
+        (Box::new(Constant(mean)), &[0.1, 7.0], &[]),
+        (Box::new(vortex), &[0.1, 7.0], &[]),
+        (Box::new(wave), &[10.0, 20.0, 10.0 / 3.0], &[1.0, 5.0]),
+        (Box::new(recorded.clone()), &[3.0, 9.0], &[1.5, 4.0]),
+        (Box::new(Series { step: 1.0, samples: Vec::new() }), &[], &[1.0]),
+        (Box::new(Field::new(&draw, [&kaimal; 3])), &[2.0, 8.0], &[1.0, 3.0]),
+        (Box::new(noise), &[6.0, 12.0], &[3.0, 9.0]),
+        (Box::new(Noise { n_cells: None, ..noise }), &[], &[6.0]),
+        (Box::new(mask(0.0)), &[1.0], &[]),
+        (Box::new(mask(2.0)), &[], &[1.0]),
+        (Box::new(Frozen { mean, turbulence: noise, time: 0.0 }), &[], &[6.0]),
+        (Box::new(Sum(vec![Box::new(recorded), Box::new(wave)])), &[30.0], &[3.0, 10.0]),
+    ];
+    for (which, (wind, repeats, others)) in cases.iter().enumerate() {
+        for seconds in *repeats {
+            assert!(wind.repeats(*seconds), "{which} {seconds}");
+            for (k, place) in (0..).zip(PLACES.map(Vector3::from)) {
+                let time = f64::from(k) * 1.37 - 2.0;
+                let off = (wind.sample(&place, time + seconds) - wind.sample(&place, time)).norm();
+                assert!(off < 1e-9, "{which} {seconds}: {off}");
+            }
+        }
+        others.iter().for_each(|seconds| assert!(!wind.repeats(*seconds), "{which} {seconds}"));
+    }
 }
 
 /// Coherence of stations is exp(-c f d / U), the spectrum of each is what was asked for, and it is carried by the mean.

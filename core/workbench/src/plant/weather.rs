@@ -121,7 +121,7 @@ pub const WEATHERS: &[Weather] = &[
         ],
         make: Make::Alone(|v| {
             let (speed, cell, second) = (v.of("swing"), v.of("cell"), v.of("second"));
-            let noise = Noise { speed, cell, second, seed: v.of("seed") as u64 };
+            let noise = Noise { speed, cell, second, seed: v.of("seed") as u64, n_cells: None };
             Box::new(Sum(vec![Box::new(Constant(v.blowing())), Box::new(noise)]))
         }),
     },

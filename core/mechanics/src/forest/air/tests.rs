@@ -115,7 +115,7 @@ fn gusts_are_answered_as_by_a_fine_reference() {
     const PIECE: f64 = 0.08;
     let plant = plant(40, 1, Form::Linear);
     let (damping, stand) = (DAMPING, Stand::default());
-    let noise = Noise { speed: 14.0, cell: 50.0, second: 0.5, seed: 2 };
+    let noise = Noise { speed: 14.0, cell: 50.0, second: 0.5, seed: 2, n_cells: None };
     let gust = |piece: usize| {
         Vector3::new(7.0, 0.0, 0.0) + noise.sample(&Vector3::new(3.3, 1.7, 0.2), PIECE * piece as f64)
     };
