@@ -177,6 +177,31 @@ fn a_point_cache_has_every_node_of_every_copy() {
     }
 }
 
+/// Files of the same kind take the place of one another, and that is told.
+#[test]
+fn what_was_written_before_is_replaced_and_told() {
+    let bench = Bench::new();
+    let line = |pull: &str| {
+        format!(
+            "simulate synth::tree:20,1 --modes 2 --seconds 1 --pull {pull} --out sway.csv --cache sway.pc2 --glb sway.glb \
+             --beams beams.csv"
+        )
+    };
+    let files =
+        || ["sway.csv", "sway.pc2", "sway.glb", "beams.csv"].map(|name| fs::read(bench.path(name)).unwrap());
+    let first = bench.text(&line("0.1"));
+    assert!(!first.contains("in place of"), "{first}");
+    let before = files();
+    let second = bench.text(&line("0.2"));
+    assert!(
+        second.ends_with("in place of what had this name: sway.csv, sway.pc2, sway.glb, beams.csv\n"),
+        "{second}"
+    );
+    let are_other: Vec<bool> = files().iter().zip(&before).map(|(now, before)| now != before).collect();
+    assert_eq!(are_other, [true, true, true, false]);
+    assert_eq!(bench.json(&line("0.2"))["replaced"].as_array().unwrap().len(), 4);
+}
+
 /// What simulate writes, spectrum reads: frequency and damping come back.
 #[test]
 fn a_swing_has_its_frequency_and_damping_back_from_its_sensors() {

@@ -24,6 +24,8 @@ fn files(bench: &Bench) {
         ("thin.swc", swc("1", "1e-200")),
         ("tall.swc", swc("1e300", "0.02")),
         ("stub.swc", swc("0.01", "1")),
+        ("wind.csv", "t,x,y\n0,1,2\n0.1,1,2\n".to_owned()),
+        ("clip.pc2", "YUV4MPEG2 W2 H2 F25:1\n".to_owned()),
         ("clip.y4m", "YUV4MPEG2 W2 H2 F25:1\n".to_owned()),
     ] {
         fs::write(bench.path(name), text).unwrap();
@@ -69,10 +71,10 @@ const CASES: &[(&str, i32, &str)] = &[
         2,
         "\"rod.obj\" is no plant: a file whose name ends in .mtg, .swc, .csv, .mat or .honami is wanted",
     ),
-    ("simulate synth::tree:1,1", 1, "a plant has two nodes at least"),
+    ("simulate synth::tree:1,1", 2, "synth::tree:NODES,SEED of two nodes or more"),
     ("simulate synth::tree:x", 2, "is no plant"),
     ("simulate none.mtg", 1, "has a table CLASSES"),
-    ("simulate rod.mtg --modes 25", 1, "25 modes were asked for, and the plant has 24 degrees of freedom"),
+    ("simulate rod.mtg --modes 25", 2, "25 modes were asked for, and the plant has 24 degrees of freedom"),
     ("simulate two.mtg --modes 2 --young=-1", 2, "a Young's modulus of more than 0 Pa, not of -1"),
     ("simulate two.mtg --modes 2 --wind gale", 2, "\"gale\" is no wind and no file: there are still"),
     ("simulate two.mtg --modes 2 --wind nan.csv", 1, "line 3: \"NaN\" is no number"),
@@ -96,13 +98,13 @@ const CASES: &[(&str, i32, &str)] = &[
     ),
     ("simulate two.mtg --modes 2 --wind calm --threads 100000", 2, "wanted 1 to 1024 threads, got 100000"),
     (
-        "simulate two.mtg --modes 2 --out two.mtg",
+        "simulate two.mtg --modes 2 --wind wind.csv --out wind.csv",
         2,
-        "two.mtg is read or written already: choose another name",
+        "wind.csv is read or written already: choose another name",
     ),
     (
         "simulate two.mtg --modes 2 --sensor 9 --out a.csv",
-        1,
+        2,
         "there is no node 9: the beams have nodes 0 to 1",
     ),
     ("simulate two.mtg --modes 2 --longest 1e-9", 1, "nodes of beams, and 4000000 are the most"),
@@ -160,16 +162,26 @@ const CASES: &[(&str, i32, &str)] = &[
     ("simulate two.mtg --modes 2 --forest 0", 2, "wanted 1 to 10000000 copies, got 0"),
     (
         "simulate synth::tree:900,1 --modes 5000",
-        1,
+        2,
         "5000 modes of 5394 were asked for: more than half of them",
     ),
     ("simulate synth::tree:300,1 --forest 100000 --seconds 100", 1, "its readers hold 2147 MB at most"),
     // Places.
     (
-        "simulate two.mtg --modes 2 --out a.csv --cache clip.y4m",
+        "simulate two.mtg --modes 2 --out a.csv --cache clip.pc2",
         1,
-        "clip.y4m is a clip, and honami does not write over it",
+        "clip.pc2 is a clip, and honami does not write over it",
     ),
+    ("simulate two.mtg --modes 2 --cache clip.y4m", 2, "a point cache is written as .pc2, not as clip.y4m"),
+    (
+        "simulate two.mtg --modes 2 --beams rod.mtg --out a.csv",
+        2,
+        "a table of beams is written as .csv, not as rod.mtg",
+    ),
+    ("simulate two.mtg --modes 2 --glb a.gltf --out a.csv", 2, "is written as .glb, not as a.gltf"),
+    ("simulate two.mtg --modes 2 --out -", 2, "is written as .csv, not as -"),
+    ("simulate two.mtg --modes 2 --out nan.csv", 1, "nan.csv is there already and is another kind of file"),
+    ("simulate two.mtg --modes 2 --beams nan.csv --out a.csv", 1, "is another kind of file"),
     ("simulate two.mtg --modes 2 --out a.csv --beams b.csv --glb no/a.glb", 1, "there is no folder no"),
     ("simulate two.mtg --modes 2 --out a.csv --glb ./a.csv", 2, "is read or written already"),
 ];

@@ -204,6 +204,38 @@ fn what_ends_a_command_is_not_blamed_on_the_plugin_that_is_inside() {
 }
 
 #[test]
+fn a_command_that_a_signal_ends_leaves_no_part_of_what_it_writes() {
+    for line in [
+        "simulate synth::tree:30,1 --forest 50 --seconds 1000 --cache sway.pc2 --out sway.csv --beams beams.csv",
+        "synth clip.y4m --frames 5000",
+    ] {
+        for signal in [Signal::TERM, Signal::HUP, Signal::INT] {
+            if signal == Signal::HUP && is_ignored(signal) {
+                continue;
+            }
+            let bench = Bench::new();
+            let mut command = bench.command(line.split(' '));
+            let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+            let names = || {
+                let entries = std::fs::read_dir(bench.path("")).unwrap();
+                entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect::<Vec<_>>()
+            };
+            let parts = || names().into_iter().filter(|name| name.ends_with(".part")).count();
+            while parts() == 0 {
+                assert_eq!(child.try_wait().unwrap(), None, "it has ended before it could be stopped");
+                std::thread::yield_now();
+            }
+            kill_process(Pid::from_child(&child), signal).unwrap();
+            let status = child.wait().unwrap();
+            let by_name = if signal == Signal::INT { None } else { Some(signal.as_raw()) };
+            assert!(status.signal() == by_name && !status.success(), "{signal:?}: {status}");
+            let left: Vec<String> = names().into_iter().filter(|name| name.contains('.')).collect();
+            assert_eq!(left, [""; 0], "{line}, {signal:?}");
+        }
+    }
+}
+
+#[test]
 fn a_killed_run_is_kept_though_its_clip_is_missing_at_first() {
     let (bench, mut child) = at_work(NEW);
     child.kill().unwrap();

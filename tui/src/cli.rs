@@ -145,27 +145,12 @@ fn is_usage(error: &anyhow::Error) -> bool {
     };
     error.chain().any(|cause| {
         let wrapped = cause.downcast_ref::<WorkbenchError>();
-        // What no plant and no motion can be, whichever it is.
-        let of_plant = |error: &WorkbenchError| {
-            use honami_workbench::mechanics::BeamsError::{Longest, Material};
-            matches!(
-                error,
-                WorkbenchError::NoPlant { .. }
-                    | WorkbenchError::Weather { .. }
-                    | WorkbenchError::Units { .. }
-                    | WorkbenchError::Pixels
-                    | WorkbenchError::Pace { .. }
-                    | WorkbenchError::Pull { .. }
-                    | WorkbenchError::Spread { .. }
-                    | WorkbenchError::Leaves(_)
-                    | WorkbenchError::Beams(Material(_) | Longest(_))
-            )
-        };
         cause.is::<Usage>()
             || cause.is::<ValueError>()
             || cause.downcast_ref::<HostError>().is_some_and(by_plugin)
             || wrapped.is_some_and(|error| {
-                of_plant(error) || matches!(error, WorkbenchError::Plugin(error) if by_plugin(error))
+                error.is_of_plant_as_typed()
+                    || matches!(error, WorkbenchError::Plugin(error) if by_plugin(error))
             })
     })
 }

@@ -3,10 +3,14 @@
 #[cfg(test)]
 mod tests;
 
-use std::io::{BufWriter, Seek, SeekFrom, Write};
+use std::io::{BufWriter, Read as _, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use crate::table::TableError;
+use honami_model::unfinished::Unfinished;
+
+/// So many bytes tell what a file is.
+const HEAD: u64 = 4096;
 
 /// A file being written; it takes its name in [`finish`](Self::finish) and leaves nothing behind before that.
 #[derive(Debug)]
@@ -15,17 +19,23 @@ pub struct AtomicFile {
     /// Where that is, links followed.
     place: PathBuf,
     file: BufWriter<tempfile::NamedTempFile>,
+    unfinished: Unfinished,
 }
 
 impl AtomicFile {
-    /// Starts the file `path`, or that to which it is a link.
+    /// Starts the file `path`, or that to which it is a link, in place of one that is alike by its first bytes, or empty.
     ///
     /// # Errors
     /// [`TableError::File`] when the folder cannot be written to, [`TableError::Precious`] when a project, a clip or a
-    /// library stands there, or what is no file, such as a device: nobody means to lose it.
-    pub fn create(path: &Path) -> Result<Self, TableError> {
-        if let Some(what) = precious(path) {
+    /// library stands there, or what is no file, such as a device, [`TableError::Unlike`] for any other file that would not
+    /// have been written so: nobody means to lose it.
+    pub fn create(path: &Path, is_alike: impl FnOnce(&[u8]) -> bool) -> Result<Self, TableError> {
+        let head = head(path);
+        if let Some(what) = precious(path, &head) {
             return Err(TableError::Precious { path: path.into(), what });
+        }
+        if !(head.is_empty() || is_alike(&head)) {
+            return Err(TableError::Unlike { path: path.into() });
         }
         let place = std::fs::canonicalize(path).unwrap_or_else(|_none| path.to_owned());
         let folder = place.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -39,8 +49,16 @@ impl AtomicFile {
             let source = if folder.exists() { e.kind().into() } else { missing() };
             TableError::File { path: path.into(), source }
         };
-        let file = builder.prefix(".honami-").suffix(".part").tempfile_in(folder).map_err(plain)?;
-        Ok(Self { path: path.into(), place: place.clone(), file: BufWriter::with_capacity(1 << 16, file) })
+        builder.prefix(".honami-").suffix(".part");
+        let begun = Unfinished::begin(|| {
+            builder.tempfile_in(folder).map(|file| {
+                let name = file.path().to_owned();
+                (file, name)
+            })
+        });
+        let (file, unfinished) = begun.map_err(plain)?;
+        let file = BufWriter::with_capacity(1 << 16, file);
+        Ok(Self { path: path.into(), place: place.clone(), file, unfinished })
     }
 
     /// The name it will have.
@@ -54,20 +72,37 @@ impl AtomicFile {
     /// # Errors
     /// [`TableError::File`] on a full disk; what stood there before then still does.
     pub fn finish(self) -> Result<(), TableError> {
-        let Self { path, place, file } = self;
+        let Self { path, place, file, unfinished } = self;
         file.into_inner()
             .map_err(std::io::IntoInnerError::into_error)
             .and_then(|file| {
                 file.as_file().sync_all()?;
-                file.persist(&place).map_err(|failed| failed.error)
+                unfinished.settle(|_name| file.persist(&place)).map_err(|failed| failed.error)
             })
             .map_err(|source| TableError::File { path: path.clone(), source })?;
         Ok(())
     }
 }
 
-/// What a file is that no table may take the place of, by its first bytes.
-fn precious(path: &Path) -> Option<&'static str> {
+/// Whether a file is of the kind of a text: they begin with the same two words.
+#[must_use]
+pub fn is_begun_alike(head: &[u8], text: &str) -> bool {
+    let head = String::from_utf8_lossy(head);
+    head.split_whitespace().take(2).eq(text.split_whitespace().take(2))
+}
+
+/// The first bytes of a file; none where there is none. What cannot be read is told when it is written.
+fn head(path: &Path) -> Vec<u8> {
+    let mut head = Vec::new();
+    if path.is_file() {
+        let read = std::fs::File::open(path).and_then(|file| file.take(HEAD).read_to_end(&mut head));
+        read.unwrap_or_default();
+    }
+    head
+}
+
+/// What a file is that nothing may take the place of, by its first bytes.
+fn precious(path: &Path, head: &[u8]) -> Option<&'static str> {
     const KNOWN: [(usize, &[u8], &str); 9] = [
         (0, b"SQLite format 3", "a project"),
         (0, b"YUV4MPEG2", "a clip"),
@@ -85,13 +120,8 @@ fn precious(path: &Path) -> Option<&'static str> {
         Ok(kind) if !kind.is_file() => return Some("a device or a pipe"),
         _ => {}
     }
-    let mut head = [0; 16];
-    // What cannot be read is told when it is written.
-    let n =
-        std::fs::File::open(path).and_then(|mut file| std::io::Read::read(&mut file, &mut head)).unwrap_or(0);
-    let is_it = |(at, magic, _): &&(usize, &[u8], &str)| {
-        head[..n].get(*at..).is_some_and(|rest| rest.starts_with(magic))
-    };
+    let is_it =
+        |(at, magic, _): &&(usize, &[u8], &str)| head.get(*at..).is_some_and(|rest| rest.starts_with(magic));
     KNOWN.iter().find(is_it).map(|(.., what)| *what)
 }
 

@@ -124,7 +124,7 @@ fn vector(&[a, b, c, d, e, f, g, h]: &[u8; 8]) -> Option<[f32; 2]> {
 /// # Errors
 /// [`TableError::File`] when the folder cannot be written to or is full.
 pub fn write(path: &Path, flow: &Flow) -> Result<(), TableError> {
-    let mut file = AtomicFile::create(path)?;
+    let mut file = AtomicFile::create(path, |head| head.starts_with(&MAGIC))?;
     let full = |source| TableError::File { path: path.into(), source };
     let head = [MAGIC, flow.width.to_le_bytes(), flow.height.to_le_bytes()];
     file.write_all(head.as_flattened()).map_err(full)?;

@@ -32,7 +32,7 @@ mod track_table;
 pub mod verdicts;
 mod watch;
 
-pub use atomic::AtomicFile;
+pub use atomic::{AtomicFile, is_begun_alike};
 pub use parquet::ParquetWriter;
 pub use rows::{GroupRow, PointRow, TrackRow, TruthRow, trust};
 pub use spans::spans;

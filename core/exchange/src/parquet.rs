@@ -65,7 +65,11 @@ impl ParquetWriter {
             .set_compression(Compression::SNAPPY)
             .set_created_by(concat!("honami ", env!("CARGO_PKG_VERSION")).to_owned())
             .build();
-        let file = SerializedFileWriter::new(AtomicFile::create(path)?, schema, Arc::new(properties));
+        let file = SerializedFileWriter::new(
+            AtomicFile::create(path, |head| head.starts_with(b"PAR1"))?,
+            schema,
+            Arc::new(properties),
+        );
         Ok(Self { file: file.map_err(fail)?, rows: Vec::new(), n_rows: 0 })
     }
 

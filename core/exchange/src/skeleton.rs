@@ -16,7 +16,7 @@ use std::path::Path;
 
 use honami_model::skeleton::Skeleton;
 
-use crate::atomic::AtomicFile;
+use crate::atomic::{AtomicFile, is_begun_alike};
 use crate::table::{TableError, Writer};
 
 /// Kinds of files that a skeleton can be written as.
@@ -58,7 +58,7 @@ pub fn write(path: &Path, format: SkeletonFormat, skeleton: &Skeleton) -> Result
             return table.finish();
         }
     };
-    let mut file = AtomicFile::create(path)?;
+    let mut file = AtomicFile::create(path, |head| is_begun_alike(head, &text))?;
     let full = |source| TableError::File { path: path.into(), source };
     file.write_all(text.as_bytes()).map_err(full)?;
     file.finish()

@@ -28,6 +28,15 @@ pub enum TableError {
         /// What it is.
         what: &'static str,
     },
+    /// A file stands there that would not have been written so.
+    #[error(
+        "{path} is there already and is another kind of file: honami writes over its own only; choose another name",
+        path = path.display()
+    )]
+    Unlike {
+        /// The file.
+        path: PathBuf,
+    },
     /// The text is not CSV: uneven rows, or not UTF-8.
     #[error("{path}: not a CSV table: {source}", path = path.display())]
     Csv {
@@ -287,12 +296,17 @@ pub struct Writer<R> {
 }
 
 impl<R: Row> Writer<R> {
-    /// Starts the table `path` and writes its header.
+    /// Starts the table `path` and writes its header; in place of a table of the same columns.
     ///
     /// # Errors
-    /// [`TableError::File`] when the folder cannot be written to.
+    /// As [`AtomicFile::create`].
     pub fn create(path: &Path) -> Result<Self, TableError> {
-        let file = AtomicFile::create(path)?;
+        let columns = R::COLUMNS.join(",");
+        let is_alike = |head: &[u8]| {
+            let line = head.split(|byte| *byte == b'\n').next().unwrap_or_default();
+            line.trim_ascii_end() == columns.as_bytes()
+        };
+        let file = AtomicFile::create(path, is_alike)?;
         let mut writer = Self { file, line: Line::default(), n_lines: 0, rows: PhantomData };
         R::COLUMNS.iter().for_each(|name| writer.line.put(name));
         writer.end_line()?;

@@ -159,6 +159,7 @@ mod tests {
         let back: Vec<VerdictRow> = read(&path).unwrap().collect::<Result<_, _>>().unwrap();
         assert_eq!(back, rows);
 
+        let path = folder.path().join("effort.csv");
         let rows = [EffortRow { track: TrackId(3), segments: 2, effort }];
         let mut table = Writer::create(&path).unwrap();
         rows.iter().for_each(|row| table.write(row).unwrap());

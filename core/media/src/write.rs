@@ -6,6 +6,7 @@
 use std::path::{Path, PathBuf};
 
 use honami_model::picture::{Planes, Range};
+use honami_model::unfinished::Unfinished as Listed;
 
 use crate::error::MediaError;
 
@@ -89,7 +90,7 @@ impl Format {
 /// A file or folder under its temporary name; removed unless it got its own.
 #[derive(Debug)]
 struct Unfinished {
-    temporary: PathBuf,
+    temporary: Listed,
     path: PathBuf,
 }
 
@@ -98,11 +99,12 @@ impl Unfinished {
         let mut name = std::ffi::OsString::from(".");
         name.push(path.file_name().unwrap_or_default());
         name.push(format!(".{}.part", std::process::id()));
-        Self { temporary: path.with_file_name(name), path: path.to_path_buf() }
+        let temporary = Listed::new(path.with_file_name(name));
+        Self { temporary, path: path.to_path_buf() }
     }
 
     fn finish(&self) -> Result<(), MediaError> {
-        std::fs::rename(&self.temporary, &self.path).map_err(|e| self.fail("write", e))
+        self.temporary.settle(|name| std::fs::rename(name, &self.path)).map_err(|e| self.fail("write", e))
     }
 
     /// A missing folder is an error of writing here, not a missing clip.
@@ -113,10 +115,7 @@ impl Unfinished {
 
 impl Drop for Unfinished {
     fn drop(&mut self) {
-        if self.temporary.is_dir() {
-            std::fs::remove_dir_all(&self.temporary).unwrap_or_default();
-        } else {
-            std::fs::remove_file(&self.temporary).unwrap_or_default();
-        }
+        let name = self.temporary.name();
+        std::fs::remove_file(name).or_else(|_| std::fs::remove_dir_all(name)).unwrap_or_default();
     }
 }

@@ -18,3 +18,4 @@ pub mod plant;
 pub mod provenance;
 pub mod skeleton;
 pub mod track;
+pub mod unfinished;

@@ -310,7 +310,7 @@ pub enum WorkbenchError {
     /// Neither a file of a plant nor the name of one.
     #[error(
         "{source_name:?} is no plant: a file whose name ends in .mtg, .swc, .csv, .mat or .honami is wanted, or \
-         synth::tree:NODES,SEED"
+         synth::tree:NODES,SEED of two nodes or more"
     )]
     NoPlant {
         /// As given.
@@ -461,4 +461,28 @@ pub enum WorkbenchError {
     /// The caller stopped a job that keeps nothing.
     #[error("stopped")]
     Stopped,
+}
+
+impl WorkbenchError {
+    /// Whether other options or names are wanted for a plant, its motion or its wind: not another file, nor more room.
+    #[must_use]
+    pub fn is_of_plant_as_typed(&self) -> bool {
+        use honami_mechanics::wind::FlowingError::{Cells, Numbers};
+        use honami_mechanics::{BeamsError, ModesError};
+        matches!(
+            self,
+            Self::NoPlant { .. }
+                | Self::Weather { .. }
+                | Self::Units { .. }
+                | Self::Pixels
+                | Self::Pace { .. }
+                | Self::Pull { .. }
+                | Self::Spread { .. }
+                | Self::Sensor { .. }
+                | Self::Leaves(_)
+                | Self::Beams(BeamsError::Material(_) | BeamsError::Longest(_))
+                | Self::Modes(ModesError::TooMany { .. } | ModesError::Half { .. })
+                | Self::Air(Numbers { .. } | Cells { .. })
+        )
+    }
 }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use honami_exchange::foreign::{self, ForeignError, ForeignTrack, Format, Loss, Outgoing};
 use honami_exchange::origin::Origin;
-use honami_exchange::{AtomicFile, GroupRow, TrackRow, TrackTable, Writer};
+use honami_exchange::{AtomicFile, GroupRow, TrackRow, TrackTable, Writer, is_begun_alike};
 use honami_model::track::{Span, TrackId, TrackSet};
 use honami_store::Project;
 
@@ -57,7 +57,7 @@ pub struct Exported {
 /// # Errors
 /// What the disk met.
 pub fn text(out: &Path, text: &str) -> Result<(), WorkbenchError> {
-    let mut file = AtomicFile::create(out)?;
+    let mut file = AtomicFile::create(out, |head| is_begun_alike(head, text))?;
     let full = |source| WorkbenchError::Io { what: "cannot write", source, path: out.to_owned() };
     file.write_all(text.as_bytes()).map_err(full)?;
     Ok(file.finish()?)
@@ -89,7 +89,8 @@ pub fn tracks(project: &Project, out: &Path, request: &ExportRequest) -> Result<
     match TrackTable::create(out, request.format)? {
         Some(table) => own(project, table, &foreign)?,
         None => {
-            let mut file = AtomicFile::create(out)?;
+            let is_alike = |head: &[u8]| Format::of_content(head) == Some(request.format);
+            let mut file = AtomicFile::create(out, is_alike)?;
             let written = foreign::write(&mut file, request.format, &what);
             written.map_err(|source| ForeignError::File { path: out.to_owned(), source })?;
             file.finish()?;

@@ -164,7 +164,12 @@ pub fn read(wish: &Wish) -> Result<Measured, WorkbenchError> {
     let unknown = || WorkbenchError::NoPlant { source_name: source.clone() };
     if let Some(numbers) = source.strip_prefix(GENERATED) {
         let (n, seed) = numbers.split_once(',').unwrap_or((numbers, "1"));
-        let (Ok(n), Ok(seed)) = (n.trim().parse(), seed.trim().parse()) else { return Err(unknown()) };
+        let (Ok(n), Ok(seed)) = (n.trim().parse::<usize>(), seed.trim().parse()) else {
+            return Err(unknown());
+        };
+        if n < 2 {
+            return Err(unknown());
+        }
         // Before it grows.
         if n > MOST_NODES {
             return Err(BeamsError::TooMany { nodes: n as f64 }.into());

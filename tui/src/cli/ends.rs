@@ -1,4 +1,5 @@
-//! Signals that end a command: what works in its process has not brought it down, and is not to be blamed for it.
+//! Signals that end a command: what works in its process has not brought it down, and is not to be blamed for it; and what
+//! it has not finished is removed.
 
 use std::fs;
 use std::io;
@@ -6,6 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use std::thread::Builder;
 
+use honami_model::unfinished::names;
 use honami_workbench::plugins::ended_well;
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::iterator::{Handle, Signals};
@@ -49,6 +51,11 @@ fn take(signal: i32) {
         return;
     }
     ended_well();
+    // Held until the end: nothing is begun any more, and nothing takes its name.
+    let unfinished = names();
+    for name in &*unfinished {
+        fs::remove_file(name).or_else(|_| fs::remove_dir_all(name)).unwrap_or_default();
+    }
     // The second Ctrl-C ends the program at once: whoever presses twice means it.
     if job.is_some() {
         exit(INTERRUPTED);

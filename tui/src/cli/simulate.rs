@@ -43,7 +43,7 @@ pub(super) fn simulate(args: &Simulate, common: &Common) -> anyhow::Result<Answe
     })?;
     want(args.sensors > 0, || "one sensor at least is wanted".to_owned())?;
     let wind = weather::read(&args.wind)?;
-    are_apart(args, &wind)?;
+    let replaced = replaced(args, &wind)?;
     let wish = wish(&args.plant);
     let damping = Damping { alpha: args.alpha, beta: args.beta, mass: args.heavier, air: args.air_damping };
     let motion = motion(args, n_frames as u32, damping);
@@ -71,6 +71,11 @@ pub(super) fn simulate(args: &Simulate, common: &Common) -> anyhow::Result<Answe
     } else if let Some(beams) = &args.beams {
         plant::write_beams(&plant, beams)?;
     }
+    if !replaced.is_empty() {
+        let shown: Vec<String> = replaced.iter().map(|path| path.display().to_string()).collect();
+        text += &format!("\nin place of what had this name: {}", shown.join(", "));
+        json["replaced"] = json!(replaced);
+    }
     Ok(Answer { json, text, done: true })
 }
 
@@ -80,18 +85,33 @@ fn is_moved(args: &Simulate) -> bool {
     args.wind != "still" || args.pull.abs() > 0.0 || args.forest.is_some() || is_written
 }
 
-/// Nothing that is written takes the place of what is read, or of what else is written.
-fn are_apart(args: &Simulate, wind: &Typed) -> anyhow::Result<()> {
-    let outs = [&args.out, &args.cache, &args.glb, &args.beams].into_iter().flatten();
+/// Files that are wanted, with what each is and how its name ends.
+fn outs(args: &Simulate) -> impl Iterator<Item = (&Path, &'static str, &'static str)> {
+    let known = [
+        (&args.out, "a table of where sensors are", "csv"),
+        (&args.cache, "a point cache", "pc2"),
+        (&args.glb, "a plant with its motion", "glb"),
+        (&args.beams, "a table of beams", "csv"),
+    ];
+    known.into_iter().filter_map(|(path, what, ending)| Some((path.as_deref()?, what, ending)))
+}
+
+/// Nothing that is written takes the place of what is read, or of what else is written; all say by their names what they are.
+/// Those that take the place of what was written before.
+fn replaced(args: &Simulate, wind: &Typed) -> anyhow::Result<Vec<PathBuf>> {
     let read = std::iter::once(Path::new(&args.plant.source)).chain(wind.files());
     let mut taken: Vec<_> = read.map(place).collect();
-    for out in outs {
+    for (out, what, ending) in outs(args) {
+        let shown = out.display();
+        want(out.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending)), || {
+            format!("{what} is written as .{ending}, not as {shown}")
+        })?;
         want(!taken.contains(&place(out)), || {
-            format!("{} is read or written already: choose another name", out.display())
+            format!("{shown} is read or written already: choose another name")
         })?;
         taken.push(place(out));
     }
-    Ok(())
+    Ok(outs(args).map(|(out, ..)| out.to_owned()).filter(|out| out.exists()).collect())
 }
 
 /// Where a file is, or would be.

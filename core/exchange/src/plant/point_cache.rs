@@ -12,6 +12,7 @@ use std::path::Path;
 use crate::atomic::AtomicFile;
 use crate::table::TableError;
 
+const MAGIC: &[u8] = b"POINTCACHE2\0";
 /// Bytes of samples that are handed on at a time.
 const CHUNK: usize = 1 << 16;
 
@@ -40,13 +41,13 @@ impl PointCache {
     /// [`PointCacheError`].
     pub fn create(path: &Path, n_points: usize, n_frames: u32) -> Result<Self, PointCacheError> {
         let points = i32::try_from(n_points).map_err(|_too_many| PointCacheError::Points(n_points))?;
-        let mut chunk = b"POINTCACHE2\0".to_vec();
+        let mut chunk = MAGIC.to_vec();
         chunk.extend(1_i32.to_le_bytes());
         chunk.extend(points.to_le_bytes());
         chunk.extend(0_f32.to_le_bytes());
         chunk.extend(1_f32.to_le_bytes());
         chunk.extend(n_frames.to_le_bytes());
-        Ok(Self { file: AtomicFile::create(path)?, chunk })
+        Ok(Self { file: AtomicFile::create(path, |head| head.starts_with(MAGIC))?, chunk })
     }
 
     /// Where a point is: one call a point, frame by frame.

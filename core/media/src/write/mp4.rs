@@ -52,7 +52,7 @@ impl Mp4 {
         ]);
         command.args(["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-c:v", "libx264", "-crf", "17"]);
         command.args(["-pix_fmt", pixels, "-color_range", range, "-movflags", "+faststart", "-f", "mp4"]);
-        command.arg(programs::file_url(&unfinished.temporary));
+        command.arg(programs::file_url(unfinished.temporary.name()));
         command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped());
         let mut child = command.spawn().map_err(|e| unfinished.fail("start ffmpeg for", e))?;
         let stdin = child.stdin.take().unwrap_or_else(|| unreachable!("it was asked for"));

@@ -38,7 +38,7 @@ impl PngFolder {
             );
             return Err(unfinished.fail("write images", exists));
         }
-        std::fs::create_dir_all(&unfinished.temporary).map_err(|e| unfinished.fail("create", e))?;
+        std::fs::create_dir_all(unfinished.temporary.name()).map_err(|e| unfinished.fail("create", e))?;
         Ok(Self { format: *format, n_frames: 0, unfinished })
     }
 }
@@ -46,7 +46,7 @@ impl PngFolder {
 impl Movie for PngFolder {
     fn push(&mut self, frame: &Planes<'_>) -> Result<(), MediaError> {
         self.format.admit(frame)?;
-        let path = self.unfinished.temporary.join(format!("frame_{:05}.png", self.n_frames));
+        let path = self.unfinished.temporary.name().join(format!("frame_{:05}.png", self.n_frames));
         let file = File::create(path).map_err(|e| self.unfinished.fail("write", e))?;
         let encoder =
             PngEncoder::new_with_quality(BufWriter::new(file), CompressionType::Fast, FilterType::Adaptive);

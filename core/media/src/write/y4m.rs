@@ -25,7 +25,7 @@ impl Y4m {
     pub fn create(path: &Path, format: &Format) -> Result<Self, MediaError> {
         format.check()?;
         let unfinished = Unfinished::beside(path);
-        let file = File::create(&unfinished.temporary).map_err(|e| unfinished.fail("create", e))?;
+        let file = File::create(unfinished.temporary.name()).map_err(|e| unfinished.fail("create", e))?;
         let mut out = BufWriter::with_capacity(1 << 20, file);
         write_head(&mut out, format).map_err(|e| unfinished.fail("write", e))?;
         Ok(Self { format: *format, out, unfinished })

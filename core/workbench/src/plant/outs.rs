@@ -39,7 +39,10 @@ impl Files {
         Ok(Self {
             table: outs.table.map(Writer::create).transpose()?,
             cache: outs.cache.map(cache).transpose()?,
-            glb: outs.glb.map(AtomicFile::create).transpose()?,
+            glb: outs
+                .glb
+                .map(|path| AtomicFile::create(path, |head| head.starts_with(b"glTF")))
+                .transpose()?,
             beams: outs.beams.map(|path| beams(plant, path)).transpose()?,
         })
     }

@@ -34,7 +34,8 @@ fn close(a: &[f32], b: &[f32]) -> bool {
 fn another_reader_finds_the_mesh_its_targets_and_the_motion_of_every_copy() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("two.glb");
-    let n_bytes = write_glb(AtomicFile::create(&path).unwrap(), "plant", 10.0, &body(), &copies()).unwrap();
+    let n_bytes =
+        write_glb(AtomicFile::create(&path, |_| true).unwrap(), "plant", 10.0, &body(), &copies()).unwrap();
     let bytes = std::fs::read(&path).unwrap();
     assert_eq!(n_bytes, bytes.len() as u64);
     let sizes = Sizes { n_vertices: 4, n_triangles: 2, n_targets: 2, n_copies: 2, n_frames: 3 };
@@ -85,7 +86,8 @@ fn numbers_that_are_missing_or_none_are_refused_and_leave_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("no.glb");
     let wrong = |body: &Body, copies: &[Placed]| {
-        let error = write_glb(AtomicFile::create(&path).unwrap(), "plant", 10.0, body, copies).unwrap_err();
+        let error =
+            write_glb(AtomicFile::create(&path, |_| true).unwrap(), "plant", 10.0, body, copies).unwrap_err();
         assert!(matches!(error, GlbError::Uneven { .. }), "{error}");
         assert!(!Path::new(&path).exists());
     };
