@@ -140,7 +140,8 @@ fn root(places: &[Direction], per_metre: f64) -> Vec<f64> {
 /// From the side, the picture as high as the tree; motion of 2 px (root of the mean square).
 fn seen(beams: &Beams, modes: &Modes, tips: &[u32], swings: &[Vec<f64>], azimuth: f64) -> Filmed {
     let project = |at: Direction| [at.x * azimuth.cos() + at.y * azimuth.sin(), -at.z];
-    let height = (0..beams.len()).map(|node| beams.position(node).z).fold(0.0, f64::max);
+    let ground = beams.position(0).z;
+    let height = (0..beams.len()).map(|node| beams.position(node).z - ground).fold(0.0, f64::max);
     let scale = HEIGHT_PX / height;
     let rest = tips.iter().map(|tip| project(beams.position(*tip as usize)).map(|v| scale * v)).collect();
     let mut moved = vec![vec![[0.0; 2]; N_FRAMES]; tips.len()];

@@ -1,11 +1,13 @@
 //! Trees whose branches are known, and their groups of tips.
 
-use honami_mechanics::{Beams, Options};
+use honami_exchange::plant::{mtg, qsm};
+use honami_mechanics::{Beams, Material, Options};
 use honami_model::plant::{Node, Plant};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::error::Error;
 use std::f64::consts::TAU;
+use std::path::PathBuf;
 
 /// How a tree is built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,8 +18,21 @@ pub(crate) enum Habit {
     Conifer,
     /// Many stems from the ground.
     Shrub,
+    /// A walnut that was digitised (Sinoquet and others 1997).
+    Walnut,
+    /// An ash, a maple or an oak that was scanned (Jackson and others 2019), by its number.
+    Wytham(&'static str),
 }
 
+impl Habit {
+    /// Whether it is grown, or measured and the folder of measured ones is named.
+    pub(crate) fn is_there(self) -> bool {
+        !matches!(self, Self::Walnut | Self::Wytham(_)) || std::env::var_os(DATA).is_some()
+    }
+}
+
+/// Names the folder of trees that were measured.
+const DATA: &str = "HONAMI_DATA";
 /// Radius of a twig, metres; towards the root areas add up.
 const TWIG: f64 = 0.0025;
 /// Groups of fewer tips are not scored.
@@ -31,6 +46,7 @@ pub(crate) fn grow(habit: Habit, n_tips: usize, seed: u64) -> Result<Beams, Box<
             Habit::Forking => honami_synth::tree(n_nodes, seed)?,
             Habit::Conifer => conifer(n_nodes, seed)?,
             Habit::Shrub => shrub(n_nodes, seed)?,
+            Habit::Walnut | Habit::Wytham(_) => return measured(habit),
         };
         let beams = Beams::new(&plant, &Options::default())?;
         if beams.ends().len() >= n_tips {
@@ -38,6 +54,19 @@ pub(crate) fn grow(habit: Habit, n_tips: usize, seed: u64) -> Result<Beams, Box<
         }
         n_nodes += n_nodes / 8;
     }
+}
+
+/// A tree from the folder that `HONAMI_DATA` names.
+fn measured(habit: Habit) -> Result<Beams, Box<dyn Error>> {
+    let data = PathBuf::from(std::env::var_os(DATA).ok_or("HONAMI_DATA is not set")?);
+    if let Habit::Wytham(number) = habit {
+        let file = data.join(format!("trees/wytham_qsm/cyl_data_{number}_Validation_1_1.mat"));
+        let plant = qsm::parse_mat(&std::fs::read(file)?)?.plant;
+        let material = Material { young: 7e9, density: 800.0, ..Material::default() };
+        return Ok(Beams::new(&plant, &Options { material, ..Default::default() })?);
+    }
+    let text = std::fs::read_to_string(data.join("trees/openalea_mtg/noylum2.mtg"))?;
+    Ok(Beams::new(&mtg::parse(&text, &mtg::Options::default())?.plant, &Options::default())?)
 }
 
 /// Whorls on a stem of 12 m; the lower they are the longer their branches, with twigs of twigs to both sides.
@@ -123,9 +152,9 @@ fn thicken(nodes: &mut [Node]) {
     }
 }
 
-/// Which of so many groups each tip is in: the most populous subtree is split until there are so many of 5 tips or more;
-/// `None` for tips of smaller ones.
-pub(crate) fn groups(beams: &Beams, tips: &[u32], n_groups: usize) -> Vec<Option<u32>> {
+/// Which group each tip is in: the most populous subtree is split until there are so many of 5 tips or more, or a few more;
+/// `None` for tips of smaller ones, or where the tree has too few branches of 5 tips.
+pub(crate) fn groups(beams: &Beams, tips: &[u32], n_groups: usize) -> Option<Vec<Option<u32>>> {
     let n = beams.len();
     let mut children = vec![Vec::new(); n];
     let mut n_below = vec![0_usize; n];
@@ -138,9 +167,9 @@ pub(crate) fn groups(beams: &Beams, tips: &[u32], n_groups: usize) -> Vec<Option
     }
     let mut tops = vec![0_usize];
     while tops.iter().filter(|top| n_below[**top] >= FEWEST).count() < n_groups {
-        let Some(most) = (0..tops.len()).max_by_key(|k| n_below[tops[*k]]) else { break };
-        if n_below[tops[most]] < 2 {
-            break;
+        let most = (0..tops.len()).max_by_key(|k| n_below[tops[*k]])?;
+        if n_below[tops[most]] < FEWEST {
+            return None;
         }
         let top = tops.swap_remove(most);
         tops.extend(children[top].iter().filter(|child| n_below[**child] > 0));
@@ -153,5 +182,5 @@ pub(crate) fn groups(beams: &Beams, tips: &[u32], n_groups: usize) -> Vec<Option
             open.extend(&children[node]);
         }
     }
-    tips.iter().map(|tip| group_of[*tip as usize]).collect()
+    Some(tips.iter().map(|tip| group_of[*tip as usize]).collect())
 }
