@@ -50,6 +50,35 @@ fn a_skeleton_moves_as_the_plant_does_and_its_bones_keep_their_length() {
     assert!(bench.text("grow p.honami").contains("in depth, with a mirror image behind"));
 }
 
+#[test]
+fn siblings_turn_otherwise_on_bones_of_the_same_length() {
+    let bench = grouped();
+    let line = "grow p.honami m.bvh j.csv --flat --groups 9 --siblings 2 --seed 5 --level 1 --leaves l.csv";
+    let answer = bench.json(line);
+    let siblings = &answer["siblings"];
+    let files = ["m-1.bvh", "j-1.csv", "l-1.csv", "m-2.bvh", "j-2.csv", "l-2.csv"];
+    assert_eq!(siblings["files"], serde_json::json!(files));
+    let [source, first, second] = ["j.csv", "j-1.csv", "j-2.csv"].map(|name| rows(&bench.path(name)));
+    assert_eq!((source.len(), first.len()), (second.len(), second.len()));
+    let mut n_turned = 0;
+    for ((was, is), other) in source.iter().zip(&first).zip(&second) {
+        assert_eq!(
+            [&was["joint"], &was["parent"], &was["groups"], &was["length_px"]].map(String::as_str),
+            [&is["joint"], &is["parent"], &is["groups"], &is["length_px"]]
+        );
+        n_turned += usize::from(was["angle_rad"] != is["angle_rad"] && is["angle_rad"] != other["angle_rad"]);
+    }
+    let n_drawn: u64 =
+        siblings["levels"].as_array().unwrap().iter().map(|level| level["bones"].as_u64().unwrap()).sum();
+    assert_eq!(n_turned as u64, 40 * n_drawn, "{siblings}");
+    assert_eq!(rows(&bench.path("l.csv")).len(), rows(&bench.path("l-2.csv")).len());
+    let read = |name: &str| std::fs::read(bench.path(name)).unwrap();
+    let wanted = read("m-1.bvh");
+    bench.text("grow p.honami m.bvh --flat --groups 9 --siblings 1 --seed 5 --level 1");
+    assert!(read("m-1.bvh") == wanted && wanted != read("m-2.bvh"), "known by seed and number");
+    assert!(bench.text("grow p.honami m.bvh --siblings 1").contains("siblings: 1 of seed 1"));
+}
+
 /// Another reader of motion capture finds joints where the table has them, to 1e-4 of a pixel, where it is installed.
 #[test]
 fn another_program_reads_the_same_motion() {
@@ -87,6 +116,11 @@ fn what_cannot_grow_says_why() {
         ("grow p.honami --groups 0", 1, "groups, not 0"),
         ("grow p.honami --groups 100000", 1, "groups, not 100000"),
         ("grow p.honami --truth p.honami", 1, "p.honami"),
+        ("grow p.honami out.bvh --siblings 0", 2, "0 is not in 1..=9999"),
+        ("grow p.honami --siblings 2", 2, "name its file, as out.bvh"),
+        ("grow p.honami out.bvh --seed 2", 2, "--siblings <N>"),
+        ("grow p.honami out.bvh --siblings 2 --level 70", 1, "no two bones are of one level from 70 on"),
+        ("grow p.honami out.bvh --siblings 2 --threshold 1e6", 1, "is as dense as 1000000 per radian"),
         ("grow p.honami clip.y4m.csv/out.bvh", 1, "there is no folder"),
         ("grow none.honami out.bvh", 1, "there is no project none.honami"),
     ];

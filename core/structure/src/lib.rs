@@ -6,7 +6,10 @@ pub mod diener;
 pub mod ellipse;
 pub mod follow;
 pub mod repeat;
+pub mod siblings;
 pub mod tree;
+mod turn;
+pub mod von_mises;
 
 use honami_model::clip::TimesError;
 use honami_model::skeleton::SkeletonError;
@@ -40,6 +43,34 @@ pub enum StructureError {
         came: u32,
         /// Frames at least.
         wanted: u32,
+    },
+    /// No angle that siblings could differ in.
+    #[error(
+        "no two bones are of one level from {wanted} on, and siblings differ in their angles: the levels of this skeleton \
+         are 0 to {deepest}"
+    )]
+    NoLevel {
+        /// The first level whose angles were to be drawn.
+        wanted: u32,
+        /// The last there is.
+        deepest: u32,
+    },
+    /// A threshold that no angle reaches.
+    #[error(
+        "no angle of level {level} is as dense as {wanted} per radian: the densest are {most:.3} (κ = {kappa:.3}), and all \
+         levels have angles above a threshold of {least:.3} or less"
+    )]
+    Threshold {
+        /// Per radian, as asked for.
+        wanted: f64,
+        /// The first level that has none.
+        level: u32,
+        /// The highest density there.
+        most: f64,
+        /// How close together its angles are.
+        kappa: f64,
+        /// What is dense enough in all levels, cut off after three digits.
+        least: f64,
     },
     /// Frames of a loop that are none.
     #[error(transparent)]

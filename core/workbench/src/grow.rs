@@ -5,7 +5,6 @@ mod judge;
 use std::ops::Range;
 use std::path::Path as File;
 
-use honami_exchange::skeleton;
 pub use honami_exchange::skeleton::SkeletonFormat;
 use honami_model::skeleton::Skeleton;
 use honami_model::track::{Span, TrackId};
@@ -13,6 +12,7 @@ use honami_store::Project;
 use honami_structure::diener::{self, Settings};
 use honami_structure::follow::Path;
 use honami_structure::repeat::repeat;
+pub use honami_structure::siblings::{self, Siblings};
 use honami_structure::tree::tree;
 
 pub use self::judge::{Judged, judge};
@@ -106,18 +106,37 @@ fn path(track: TrackId, span: Option<&Span>, n_frames: u32) -> Path {
     Path { track, at: (0..n_frames).map(at).collect() }
 }
 
+/// What siblings of a skeleton are drawn from.
+///
+/// # Errors
+/// [`WorkbenchError::Structure`] where there is nothing that they could differ in.
+pub fn siblings<'a>(
+    growth: &'a Growth,
+    settings: siblings::Settings,
+) -> Result<Siblings<'a>, WorkbenchError> {
+    Ok(Siblings::of(&growth.skeleton, settings)?)
+}
+
+/// The `number`-th sibling of a seed.
+///
+/// # Errors
+/// [`WorkbenchError::Structure`].
+pub fn draw(siblings: &Siblings, seed: u64, number: u32) -> Result<Skeleton, WorkbenchError> {
+    Ok(siblings.draw(seed, number)?)
+}
+
 /// Writes a skeleton.
 ///
 /// # Errors
 /// What the disk met.
-pub fn write(growth: &Growth, format: SkeletonFormat, out: &File) -> Result<(), WorkbenchError> {
-    Ok(skeleton::write(out, format, &growth.skeleton)?)
+pub fn write(skeleton: &Skeleton, format: SkeletonFormat, out: &File) -> Result<(), WorkbenchError> {
+    Ok(honami_exchange::skeleton::write(out, format, skeleton)?)
 }
 
-/// Writes where its leaves are; returns the number of rows.
+/// Writes where the leaves of a skeleton are; returns the number of rows.
 ///
 /// # Errors
 /// What the disk met.
-pub fn write_leaves(growth: &Growth, out: &File) -> Result<usize, WorkbenchError> {
-    Ok(skeleton::write_leaves(out, &growth.skeleton)?)
+pub fn write_leaves(skeleton: &Skeleton, out: &File) -> Result<usize, WorkbenchError> {
+    Ok(honami_exchange::skeleton::write_leaves(out, skeleton)?)
 }

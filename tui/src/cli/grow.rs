@@ -1,5 +1,10 @@
 //! `grow`: the branches behind the tracks.
 
+mod siblings;
+
+use std::path::PathBuf;
+
+use honami_workbench::grow::siblings::Settings;
 use honami_workbench::grow::{self, GrowRequest, Growth, Judged, SkeletonFormat};
 use serde_json::json;
 
@@ -8,18 +13,7 @@ use super::{Answer, look, want};
 
 /// Grows a skeleton, and writes it.
 pub(super) fn grow(args: &Grow) -> anyhow::Result<Answer> {
-    let mut files = Vec::new();
-    for out in &args.out {
-        let format = SkeletonFormat::of(out);
-        want(format.is_some(), || {
-            format!("skeletons are written as .bvh, .csv or .swc, not as {}", out.display())
-        })?;
-        files.extend(format.map(|format| (format, out)));
-    }
-    let is_csv = |file: &std::path::PathBuf| file.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
-    if let Some(leaves) = args.leaves.as_ref().filter(|file| !is_csv(file)) {
-        want(false, || format!("leaves are written as .csv, not as {}", leaves.display()))?;
-    }
+    let files = files(args)?;
     let project = look(&args.project)?;
     let request = GrowRequest {
         root: args.root.map(|place| place.0),
@@ -29,10 +23,12 @@ pub(super) fn grow(args: &Grow) -> anyhow::Result<Answer> {
     };
     let growth = grow::grow(&project, &request)?;
     let judged = args.truth.as_ref().map(|truth| grow::judge(&growth, &project, truth)).transpose()?;
+    let settings = Settings { level: args.level, threshold: args.threshold };
+    let siblings = args.siblings.map(|n| grow::siblings(&growth, settings).map(|of| (n, of))).transpose()?;
     for (format, out) in &files {
-        grow::write(&growth, *format, out)?;
+        grow::write(&growth.skeleton, *format, out)?;
     }
-    let n_rows = args.leaves.as_ref().map(|out| grow::write_leaves(&growth, out)).transpose()?;
+    let n_rows = args.leaves.as_ref().map(|out| grow::write_leaves(&growth.skeleton, out)).transpose()?;
     let mut answer = describe(args, &growth);
     if let Some(judged) = judged {
         answer.text += &format!("\n{}", told(&judged));
@@ -54,7 +50,30 @@ pub(super) fn grow(args: &Grow) -> anyhow::Result<Answer> {
     if let (Some(out), Some(n_rows)) = (&args.leaves, n_rows) {
         answer.text += &format!("\n{}: leaves, {n_rows} rows", out.display());
     }
+    if let Some((n, siblings)) = &siblings {
+        siblings::draw(*n, siblings, args, &files, &mut answer)?;
+    }
     Ok(answer)
+}
+
+/// What is to be written, and as what.
+fn files(args: &Grow) -> anyhow::Result<Vec<(SkeletonFormat, &PathBuf)>> {
+    let mut files = Vec::new();
+    for out in &args.out {
+        let format = SkeletonFormat::of(out);
+        want(format.is_some(), || {
+            format!("skeletons are written as .bvh, .csv or .swc, not as {}", out.display())
+        })?;
+        files.extend(format.map(|format| (format, out)));
+    }
+    let is_csv = |file: &PathBuf| file.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
+    if let Some(leaves) = args.leaves.as_ref().filter(|file| !is_csv(file)) {
+        want(false, || format!("leaves are written as .csv, not as {}", leaves.display()))?;
+    }
+    want(args.siblings.is_none() || !files.is_empty(), || {
+        "siblings are written beside a skeleton: name its file, as out.bvh".to_owned()
+    })?;
+    Ok(files)
 }
 
 fn describe(args: &Grow, growth: &Growth) -> Answer {

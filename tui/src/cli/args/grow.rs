@@ -32,6 +32,21 @@ pub(in crate::cli) struct Grow {
     /// Write where every track is as a leaf of the skeleton: track,joint,frame,time_s,x_px,y_px,depth_px.
     #[arg(long, value_name = "FILE.csv")]
     pub(in crate::cli) leaves: Option<PathBuf>,
+    /// Draw N siblings, alike but not the same, and write each as OUT-1, OUT-2 … beside OUT: bones turn by other angles, and
+    /// swing as they did.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=9999))]
+    pub(in crate::cli) siblings: Option<u32>,
+    /// The same seed gives the same siblings.
+    #[arg(long, default_value_t = 1, requires = "siblings")]
+    pub(in crate::cli) seed: u64,
+    /// First level of bones whose angles siblings draw; bones at the root are of level 0 (default: 3, or the last level of
+    /// several bones where that comes before).
+    #[arg(long, value_name = "L", requires = "siblings")]
+    pub(in crate::cli) level: Option<u32>,
+    /// How dense angles are at least that siblings draw, per radian (default: 0.4, or half of the highest density of a
+    /// level where that is less).
+    #[arg(long, value_name = "T", requires = "siblings")]
+    pub(in crate::cli) threshold: Option<f64>,
     /// True positions of a generated clip, a table `track,frame,x,y,visible,branch`: say how far joints are from them.
     #[arg(long, value_name = "FILE")]
     pub(in crate::cli) truth: Option<PathBuf>,

@@ -1,0 +1,76 @@
+//! `grow --siblings`: skeletons that are alike, but not the same.
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use honami_workbench::grow::{self, Siblings, SkeletonFormat};
+use serde_json::json;
+
+use super::super::Answer;
+use super::super::args::grow::Grow;
+
+/// Draws `n` siblings, and writes each beside every file of the skeleton; tells of it in the answer.
+pub(super) fn draw(
+    n: u32,
+    siblings: &Siblings,
+    args: &Grow,
+    files: &[(SkeletonFormat, &PathBuf)],
+    answer: &mut Answer,
+) -> anyhow::Result<()> {
+    let (mut written, mut drawing) = (Vec::new(), Duration::ZERO);
+    for number in 1..=n {
+        let begun = Instant::now();
+        let sibling = grow::draw(siblings, args.seed, number)?;
+        drawing += begun.elapsed();
+        for (format, out) in files {
+            let out = numbered(out, number);
+            grow::write(&sibling, *format, &out)?;
+            written.push(out);
+        }
+        if let Some(leaves) = &args.leaves {
+            let out = numbered(leaves, number);
+            grow::write_leaves(&sibling, &out)?;
+            written.push(out);
+        }
+    }
+    let mean_s = drawing.as_secs_f64() / f64::from(n);
+    answer.text += &format!("\nsiblings: {n} of seed {}, {mean_s:.4} s each", args.seed);
+    for level in siblings.levels() {
+        let (mu, half) = (level.angles.mu.to_degrees(), level.half_width().to_degrees());
+        answer.text += &format!(
+            "\nlevel {}: {} bones turn off by {mu:.1} degrees (κ {:.2}), siblings' by {:.1} to {:.1}",
+            level.level,
+            level.n_bones,
+            level.angles.kappa,
+            mu - half,
+            mu + half
+        );
+    }
+    if let (Some(first), Some(last)) = (written.first(), written.last()) {
+        answer.text += &format!("\n{} to {}", first.display(), last.display());
+    }
+    let levels: Vec<_> = siblings
+        .levels()
+        .iter()
+        .map(|level| {
+            json!({
+                "level": level.level,
+                "bones": level.n_bones,
+                "mu": level.angles.mu,
+                "kappa": level.angles.kappa,
+                "threshold": level.threshold,
+                "half_width": level.half_width(),
+            })
+        })
+        .collect();
+    answer.json["siblings"] =
+        json!({ "seed": args.seed, "levels": levels, "seconds": mean_s, "files": written });
+    Ok(())
+}
+
+/// `motion.bvh` as `motion-3.bvh`.
+fn numbered(out: &Path, number: u32) -> PathBuf {
+    let stem = out.file_stem().unwrap_or_default().to_string_lossy();
+    let ending = out.extension().unwrap_or_default().to_string_lossy();
+    out.with_file_name(format!("{stem}-{number}.{ending}"))
+}
