@@ -4,7 +4,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
 
-use honami_tests::{Bench, root, skipped};
+use honami_tests::{Bench, missing, root};
 use serde_json::Value;
 
 /// How far what ships is held.
@@ -54,7 +54,7 @@ fn every_shipped_plugin_passes_and_is_listed_as_checked() {
 /// The example in C as a library; `None` without a C compiler.
 fn example_in_c(bench: &Bench, flags: &[&str]) -> Option<PathBuf> {
     if !Command::new("cc").arg("--version").output().is_ok_and(|output| output.status.success()) {
-        skipped("a C compiler (cc)");
+        missing("C compiler (cc)");
         return None;
     }
     let library = bench.path("null.so");

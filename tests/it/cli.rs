@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-use honami_tests::{Bench, Row, by_track, rows, skipped};
+use honami_tests::{Bench, Row, by_track, missing, rows};
 use serde_json::Value;
 
 /// The answer has these keys; more may be added to it.
@@ -24,7 +24,7 @@ fn clips() -> Vec<&'static str> {
     if has_ffmpeg {
         clips.push("clip.mp4");
     } else {
-        skipped("ffmpeg (clip.mp4)");
+        missing("ffmpeg (clip.mp4)");
     }
     clips
 }

@@ -1,6 +1,6 @@
 //! Skeletons from the tracks of a generated clip, through the real program.
 
-use honami_tests::{Bench, root, rows, skipped};
+use honami_tests::{Bench, python_with, root, rows};
 
 /// A project of a generated clip, tracked and grouped.
 fn grouped() -> Bench {
@@ -82,11 +82,8 @@ fn siblings_turn_otherwise_on_bones_of_the_same_length() {
 /// Another reader of motion capture finds joints where the table has them, to 1e-4 of a pixel, where it is installed.
 #[test]
 fn another_program_reads_the_same_motion() {
-    let python = |args: &[&str]| std::process::Command::new("python3").args(args).output();
-    if !python(&["-c", "import bvhio"]).is_ok_and(|output| output.status.success()) {
-        skipped("bvhio (pip install bvhio)");
-        return;
-    }
+    let Some(python) = python_with("bvhio") else { return };
+    let python = |args: &[&str]| std::process::Command::new(&python).args(args).output();
     let bench = grouped();
     let script = root().join("tests/peers/bvh_bvhio.py");
     for more in ["--flat", "--groups 9", "--loop"] {

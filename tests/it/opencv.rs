@@ -1,6 +1,6 @@
 //! OpenCV's trackers in the real program, where their library was built.
 
-use honami_tests::{Bench, skipped};
+use honami_tests::{Bench, missing};
 
 #[test]
 fn opencvs_lk_does_in_the_program_what_klt_does() {
@@ -8,7 +8,7 @@ fn opencvs_lk_does_in_the_program_what_klt_does() {
     let doctor = bench.json("doctor");
     let mut findings = doctor["findings"].as_array().unwrap().iter();
     if findings.any(|finding| finding["what"] == "OpenCV" && finding["there"] == false) {
-        return skipped("OpenCV's trackers beside the program (cargo xtask opencv)");
+        return missing("library of OpenCV's trackers beside the program (cargo xtask opencv)");
     }
     let made = bench.json("synth clip.y4m --size 320x180 --frames 20 --leaves 120 --seed 3");
     let truth = made["truth"].as_str().unwrap();

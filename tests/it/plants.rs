@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::fs;
 
-use honami_tests::{Bench, data, program, root, rows, skipped};
+use honami_tests::{Bench, data, missing, program, python_with, root, rows};
 use serde_json::Value;
 
 /// A rod of 1 m and 2 cm radius as a digitised plant: centimetres, and tenths of them for diameters.
@@ -67,12 +67,8 @@ fn the_digitised_walnut_swings_as_measured_and_as_another_program_says() {
 /// OpenSees finds the same frequencies on the same beams, to 1e-8, where it is installed.
 #[test]
 fn another_program_finds_the_same_modes_of_the_same_beams() {
-    let python = |args: &[&str]| std::process::Command::new("python3").args(args).output();
-    let is_there = python(&["-c", "import openseespy.opensees"]).is_ok_and(|output| output.status.success());
-    if !is_there {
-        skipped("openseespy (pip install openseespy)");
-        return;
-    }
+    let Some(python) = python_with("openseespy.opensees") else { return };
+    let python = |args: &[&str]| std::process::Command::new(&python).args(args).output();
     let script = root().join("tests/peers/beams_opensees.py");
     let program = program().to_str().unwrap();
     let walnut = data("trees/openalea_mtg/noylum2.mtg");
@@ -202,6 +198,93 @@ fn what_was_written_before_is_replaced_and_told() {
     assert_eq!(bench.json(&line("0.2"))["replaced"].as_array().unwrap().len(), 4);
 }
 
+/// The same force from twice the drag as from twice the air; copies stand where they are told to, and what they are like is
+/// told of all of them.
+#[test]
+fn air_and_room_between_copies_are_as_typed() {
+    let bench = Bench::new();
+    let pressed = |more: &str| {
+        let answer = bench.json(&format!("simulate synth::tree:20,1 --modes 2 {more}"));
+        answer["modes"][0]["wind"][0].as_f64().unwrap()
+    };
+    let plain = pressed("");
+    for (more, times) in
+        [("--drag 2", 2.0), ("--air-density 2.4", 2.0), ("--drag 0.5 --air-density 0.6", 0.25)]
+    {
+        assert!((pressed(more) / plain / times - 1.0).abs() < 1e-12, "{more}");
+    }
+    let line = "simulate synth::tree:20,1 --modes 2 --forest 4 --size-spread 0.5 --seconds 0.1 --pull 0.1 --heavier 4";
+    let copies = [10, 20].map(|spacing| {
+        let made = bench.json(&format!("{line} --spacing {spacing} --cache {spacing}.pc2"));
+        let bytes = fs::read(bench.path(&format!("{spacing}.pc2"))).unwrap();
+        // The root of the last copy.
+        let at = 32 + 3 * 20 * 12;
+        let x = f32::from_le_bytes(bytes[at..at + 4].try_into().unwrap());
+        (f64::from(x), made["motion"]["copies_span"].clone())
+    });
+    assert!(
+        (copies[1].0 / copies[0].0 - 2.0).abs() < 1e-5 && (7.5..12.5).contains(&copies[0].0),
+        "{copies:?}"
+    );
+    let span = |name: &str| [0, 1].map(|k| copies[0].1[name][k].as_f64().unwrap());
+    let ([slow, fast], [low, high], [light, heavy]) = (span("hz"), span("height_m"), span("kg"));
+    // All swing by their size alone, and weigh by its cube.
+    assert!((slow * high / (fast * low) - 1.0).abs() < 1e-6 && high > low, "{copies:?}");
+    assert!((heavy / light / (high / low).powi(3) - 1.0).abs() < 1e-6, "{copies:?}");
+    let told = bench.text(&line.replace("--size-spread 0.5 ", ""));
+    assert!(told.contains("\ncopies: slowest mode ") && !told.contains(" to "), "{told}");
+}
+
+/// A recording that is too short is told, and so is what a file without units makes of a plant.
+#[test]
+fn what_was_taken_for_granted_is_told() {
+    let bench = Bench::new();
+    let rows: String = (0..50).map(|k| format!("{:.1},3,1\n", 0.1 * f64::from(k))).collect();
+    fs::write(bench.path("mast.csv"), format!("# at 10 m\nt,u,v\n{rows}")).unwrap();
+    let told = bench.text("simulate synth::tree:20,1 --modes 2 --wind mast.csv --seconds 8");
+    assert!(
+        told.contains(
+            "warning: mast.csv, a recording, lasts for 5.0 s, the motion for 8.0 s: it begins again"
+        ),
+        "{told}"
+    );
+    let told = bench.text("simulate synth::tree:20,1 --modes 2 --wind mast.csv --seconds 5");
+    assert!(!told.contains("begins again"), "{told}");
+    fs::write(bench.path("rod.mtg"), rod(4)).unwrap();
+    for (options, wanted) in [
+        (
+            "",
+            "diameters in 0.001 m, which makes it 1 m high and 0.04 m thick at most; --unit and --diameters say otherwise",
+        ),
+        (
+            "--unit 100",
+            "10000 m high and 400 m thick at most is odd: plants are 0.01 to 150 m high; is --unit or",
+        ),
+        ("--diameters 1000", "a stem so thick stands up to 0.431 m; is --unit or --diameters another?"),
+    ] {
+        let answer = bench.json(&format!("simulate rod.mtg --modes 2 {options}"));
+        assert!(answer["notes"].to_string().contains(wanted), "{options}: {answer}");
+    }
+}
+
+/// An apple tree that was digitised in millimetres is 28 m high where that is not said.
+#[test]
+fn a_tree_in_other_units_is_told_by_its_height() {
+    let Some(tree) = data("trees/openalea_mtg/agraf.mtg") else { return };
+    let of = |more: &[&str]| {
+        let line = [&["simulate", tree.to_str().unwrap(), "--modes", "2", "--json"], more].concat();
+        Bench::new().run(line).json()
+    };
+    let notes = |answer: &Value| answer["notes"].to_string();
+    let plain = of(&[]);
+    assert!(
+        notes(&plain).contains("lengths taken in 0.01 m, diameters in 0.001 m, which makes it 28"),
+        "{plain}"
+    );
+    let small = of(&["--unit", "0.001"]);
+    assert!(notes(&small).contains("which makes it 2.8"), "{small}");
+}
+
 /// What simulate writes, spectrum reads: frequency and damping come back.
 #[test]
 fn a_swing_has_its_frequency_and_damping_back_from_its_sensors() {
@@ -312,8 +395,7 @@ fn another_simulator_takes_the_place_of_the_one_that_ships() {
         .arg("-lm")
         .status();
     if !built.is_ok_and(|status| status.success()) {
-        skipped("a C compiler (cc)");
-        return;
+        return missing("C compiler (cc)");
     }
     let line = "simulate synth::tree:40,1 --modes 3 --wind wind --forest 3 --seconds 1";
     let own = format!("--plugin own.so {line} --with bad");

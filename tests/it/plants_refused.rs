@@ -23,6 +23,7 @@ fn files(bench: &Bench) {
         ("fat.swc", swc("1", "1e300")),
         ("thin.swc", swc("1", "1e-200")),
         ("tall.swc", swc("1e300", "0.02")),
+        ("minus.swc", "1 1 0 0 0 .1 -1\n2 1 0 0 1 -.1 1\n".to_owned()),
         ("stub.swc", swc("0.01", "1")),
         ("wind.csv", "t,x,y\n0,1,2\n0.1,1,2\n".to_owned()),
         ("clip.pc2", "YUV4MPEG2 W2 H2 F25:1\n".to_owned()),
@@ -108,7 +109,7 @@ const CASES: &[(&str, i32, &str)] = &[
         "there is no node 9: the beams have nodes 0 to 1",
     ),
     ("simulate two.mtg --modes 2 --longest 1e-9", 1, "nodes of beams, and 4000000 are the most"),
-    ("simulate synth::tree:100000000,1", 1, "100000000 nodes of beams, and 4000000 are the most"),
+    ("simulate synth::tree:100000000,1", 1, "1e8 nodes of beams, and 4000000 are the most"),
     ("spectrum two.mtg --fps 4 --above=-1", 2, "wanted hertz, a number of 0 or more"),
     ("simulate two.mtg --modes 2 --wind calm --seconds 0", 2, "a motion has 1 to 100000000 frames"),
     // Sizes.
@@ -123,6 +124,44 @@ const CASES: &[(&str, i32, &str)] = &[
         "is in pixels: `honami simulate --unit M` says how many metres one of them is",
     ),
     ("simulate no.honami --modes 2 --unit 0.01", 1, "cannot open the project"),
+    // Options for files of other kinds, and classes that do not occur.
+    ("simulate rod.mtg --modes 2 --classes S,X", 2, "rod.mtg: no part is of class X: there are S (5)"),
+    (
+        "simulate fat.swc --modes 2 --classes S",
+        2,
+        "--classes says nothing of fat.swc: it is for plants in .mtg",
+    ),
+    (
+        "simulate nan.csv --unit 2",
+        2,
+        "--unit says nothing of nan.csv: it is for plants in .mtg, .swc, .honami",
+    ),
+    ("simulate synth::tree:9,1 --diameters 10", 2, "--diameters says nothing of synth::tree:9,1"),
+    ("bench bending fat.swc --classes S", 2, "--classes says nothing of fat.swc"),
+    (
+        "simulate minus.swc --modes 2",
+        1,
+        "minus.swc: line 2: a radius is 0, where it was not measured, or more, not -0.1",
+    ),
+    // Long numbers are short.
+    ("simulate two.mtg --modes 2 --unit=-1e300", 2, "not -1e300 m of length"),
+    ("simulate two.mtg --modes 2 --young=-1e300", 2, "not of -1e300"),
+    ("simulate two.mtg --modes 2 --longest 1e-300", 1, "e299 nodes of beams, and 4000000 are the most"),
+    ("simulate two.mtg --modes 2 --heavier=-1e300", 2, "a plant is -1e300 times as heavy"),
+    // Air and room.
+    (
+        "simulate two.mtg --modes 2 --drag=-1",
+        2,
+        "a drag coefficient of 0 to 10000 in air of 0 to 10000 kg/m3, not of -1",
+    ),
+    ("simulate two.mtg --modes 2 --air-density nan", 2, "not of 1 in air of NaN"),
+    ("simulate two.mtg --modes 2 --spacing 3", 2, "--forest"),
+    ("simulate two.mtg --modes 2 --forest 3 --spacing 0", 2, "copies stand 0.001 to 100000 m apart, not 0 m"),
+    (
+        "simulate synth::tree:30,1 --modes 2 --forest 100000 --seconds 4e6",
+        1,
+        " GB would be written there, and ",
+    ),
     // Wood and leaves.
     ("simulate two.mtg --modes 2 --young nan", 2, "a Young's modulus of more than 0 Pa, not of NaN"),
     ("simulate two.mtg --modes 2 --density=-1", 2, "a density of more than 0 kg/m3, not of -1"),
@@ -165,14 +204,22 @@ const CASES: &[(&str, i32, &str)] = &[
         2,
         "5000 modes of 5394 were asked for: more than half of them",
     ),
-    ("simulate synth::tree:300,1 --forest 100000 --seconds 100", 1, "its readers hold 2147 MB at most"),
+    (
+        "simulate synth::tree:300,1 --forest 100000 --seconds 100 --out a.csv --glb a.glb",
+        1,
+        "its readers hold 2147 MB at most",
+    ),
     // Places.
     (
         "simulate two.mtg --modes 2 --out a.csv --cache clip.pc2",
         1,
         "clip.pc2 is a clip, and honami does not write over it",
     ),
-    ("simulate two.mtg --modes 2 --cache clip.y4m", 2, "a point cache is written as .pc2, not as clip.y4m"),
+    (
+        "simulate two.mtg --modes 2 --out a.csv --cache clip.y4m",
+        2,
+        "a point cache is written as .pc2, not as clip.y4m",
+    ),
     (
         "simulate two.mtg --modes 2 --beams rod.mtg --out a.csv",
         2,
@@ -183,5 +230,5 @@ const CASES: &[(&str, i32, &str)] = &[
     ("simulate two.mtg --modes 2 --out nan.csv", 1, "nan.csv is there already and is another kind of file"),
     ("simulate two.mtg --modes 2 --beams nan.csv --out a.csv", 1, "is another kind of file"),
     ("simulate two.mtg --modes 2 --out a.csv --beams b.csv --glb no/a.glb", 1, "there is no folder no"),
-    ("simulate two.mtg --modes 2 --out a.csv --glb ./a.csv", 2, "is read or written already"),
+    ("simulate two.mtg --modes 2 --out a.csv --beams ./a.csv", 2, "is read or written already"),
 ];

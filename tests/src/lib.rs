@@ -67,15 +67,34 @@ pub fn skipped(wanted: &str) {
     eprintln!("skipped: needs {wanted}");
 }
 
+/// Says that something is skipped for want of what `cargo xtask test` installs, which `HONAMI_SKIP=never` forbids.
+#[track_caller]
+pub fn missing(wanted: &str) {
+    let never = std::env::var_os("HONAMI_SKIP").is_some_and(|value| value == "never");
+    assert!(!never, "there is no {wanted}, and HONAMI_SKIP=never forbids to do without");
+    skipped(wanted);
+}
+
+/// The Python that `HONAMI_PYTHON` names, or the usual one, if it has a module.
+#[must_use]
+#[track_caller]
+pub fn python_with(module: &str) -> Option<String> {
+    let python = std::env::var("HONAMI_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let tried = Command::new(&python).args(["-c", &format!("import {module}")]).output();
+    if tried.is_ok_and(|output| output.status.success()) {
+        return Some(python);
+    }
+    missing(&format!("{module} for Python (cargo xtask peers)"));
+    None
+}
+
 /// Whether there is a compiler of this name; says what is skipped if not, which `HONAMI_SKIP=never` forbids.
 #[must_use]
 #[track_caller]
 pub fn has_compiler(name: &str) -> bool {
     let is_there = Command::new(name).arg("--version").output().is_ok_and(|output| output.status.success());
-    let never = std::env::var_os("HONAMI_SKIP").is_some_and(|value| value == "never");
-    assert!(is_there || !never, "there is no compiler {name}, and HONAMI_SKIP=never forbids to do without");
     if !is_there {
-        skipped(&format!("a compiler ({name})"));
+        missing(&format!("compiler ({name})"));
     }
     is_there
 }

@@ -1,10 +1,11 @@
-//! Developer commands of honami: `cargo xtask demo|test|lint|opencv|bench|wan`.
+//! Developer commands of honami: `cargo xtask demo|test|lint|opencv|peers|bench|wan`.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a command-line tool speaks to a person")]
 
 mod accuracy;
 mod bench;
 mod forest;
 mod opencv;
+mod peers;
 mod shell;
 mod system;
 mod wan;
@@ -20,6 +21,7 @@ cargo xtask <command>
   test [args…]        install what the tests need where it may, then run every test
   lint                formatting, clippy and documentation, warnings denied
   opencv              install what OpenCV's trackers need where it may, then build them (release)
+  peers               install the programs that tests compare with where it may; say how tests find them
   bench [name]        measure; without a name, list the benchmarks
   wan [--json] [case…]  measure over slow links (as root); `wan list` lists the cases";
 
@@ -38,6 +40,7 @@ fn main() -> ExitCode {
         Some((&"test", rest)) => test(rest),
         Some((&"lint", [])) => lint(),
         Some((&"opencv", [])) => opencv::build(),
+        Some((&"peers", [])) => peers::tell(),
         Some((&"bench", rest)) => bench::run(rest),
         Some((&"wan", rest)) => wan::run(rest),
         Some((&("help" | "--help" | "-h"), _)) => {
@@ -74,12 +77,17 @@ fn test(args: &[&str]) -> anyhow::Result<()> {
     if args.is_empty() && opencv.is_none() {
         system::may_skip("OpenCV's trackers")?;
     }
+    let peers = if args.is_empty() { peers::want() } else { None };
+    if args.is_empty() && peers.is_none() {
+        system::may_skip("what OpenSees, bvhio and glTF's validator say")?;
+    }
     // The end-to-end tests run the real program with the real plugins: build them first.
     cargo(&["build"]).run()?;
     if let Some(opencv) = &opencv {
         opencv.cargo(&["build"]).run()?;
     }
-    cargo(&["test"]).args(args.iter().copied()).run()?;
+    let tests = cargo(&["test"]).args(args.iter().copied());
+    peers.unwrap_or_default().into_iter().fold(tests, |tests, (name, value)| tests.env(name, value)).run()?;
     opencv.map_or(Ok(()), |opencv| opencv.cargo(&["test"]).run())
 }
 

@@ -50,7 +50,7 @@ fn answers(program: &str) -> bool {
 }
 
 /// Installs a Debian package where this user may do so without a question; says so where not.
-fn install(package: &str) -> bool {
+pub(crate) fn install(package: &str) -> bool {
     let Some(apt) = Apt::find() else {
         eprintln!("{package} is missing and cannot be installed from here (needs root and apt-get)");
         return false;

@@ -16,7 +16,7 @@ pub use point_cache::{PointCache, PointCacheError};
 pub use sway_table::SwayRow;
 
 use honami_model::plant::{Plant, PlantError};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// A plant that was read, and what was done to make it one.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,7 +49,41 @@ pub enum PlantFileError {
     /// It lacks something that every such file has.
     #[error("{0}")]
     Lacks(String),
+    /// None of the classes of parts that were asked for occurs.
+    #[error("no part is of class {wanted}: there are {}", there.join(", "))]
+    Classes {
+        /// The first that does not.
+        wanted: String,
+        /// Those that do, with how many parts are of each.
+        there: Vec<String>,
+    },
     /// What is in it is no plant.
     #[error(transparent)]
     Plant(#[from] PlantError),
+    /// In which file.
+    #[error("{}: {source}", path.display())]
+    In {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: Box<PlantFileError>,
+    },
+}
+
+impl PlantFileError {
+    /// The same, with the file.
+    #[must_use]
+    pub fn of(self, path: &Path) -> Self {
+        Self::In { path: path.to_owned(), source: Box::new(self) }
+    }
+
+    /// Whether other options would do: the file is a plant.
+    #[must_use]
+    pub fn is_as_typed(&self) -> bool {
+        match self {
+            Self::Classes { .. } => true,
+            Self::In { source, .. } => source.is_as_typed(),
+            Self::Io { .. } | Self::Line { .. } | Self::Lacks(_) | Self::Plant(_) => false,
+        }
+    }
 }

@@ -6,6 +6,7 @@ mod tests;
 use crate::element::Section;
 use crate::material::{Material, MaterialError};
 use crate::tree_matrix::TreeMatrix;
+use honami_model::brief::Brief;
 use honami_model::plant::{Plant, RadiusRule};
 use nalgebra::{Matrix6, Vector3};
 use std::ops::RangeInclusive;
@@ -65,7 +66,8 @@ pub enum BeamsError {
     Point,
     /// More nodes than can be worked with.
     #[error(
-        "the plant becomes {nodes:.0} nodes of beams, and {MOST_NODES} are the most: fewer nodes, or longer segments, are wanted"
+        "the plant becomes {} nodes of beams, and {MOST_NODES} are the most: fewer nodes, or longer segments, are wanted",
+        Brief(*nodes)
     )]
     TooMany {
         /// Nodes of the plant, or parts of its segments.
@@ -85,7 +87,7 @@ pub enum BeamsError {
         length: f64,
     },
     /// A length of segments that is none.
-    #[error("the longest segment is more than 0 m long, not {0} m")]
+    #[error("the longest segment is more than 0 m long, not {} m", Brief(*.0))]
     Longest(f64),
 }
 

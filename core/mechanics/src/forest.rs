@@ -23,6 +23,7 @@ use crate::oscillator::{Damping, Integrator, LimitError, Oscillator};
 use crate::rig::{BATCH, Rig};
 use crate::stirring::Stirring;
 use crate::threads::Threads;
+use honami_model::brief::Brief;
 use nalgebra::Vector3;
 use pulp::Arch;
 use std::collections::BTreeMap;
@@ -95,7 +96,8 @@ pub enum ForestError {
     },
     /// Damping that no plant has.
     #[error(
-        "plants are {mass} times as heavy, with damping {alpha}, {beta} and {air} times that of the air: masses are more than 0, damping is not negative"
+        "plants are {} times as heavy, with damping {}, {} and {} times that of the air: masses are more than 0, damping is not negative",
+        Brief(*mass), Brief(*alpha), Brief(*beta), Brief(*air)
     )]
     Damping {
         /// Of all copies.

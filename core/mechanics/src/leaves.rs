@@ -5,6 +5,7 @@ mod tests;
 
 use crate::beams::Beams;
 use crate::wind_basis::Drag;
+use honami_model::brief::Brief;
 
 /// All leaves of a plant, shared alike by the ends of its branches.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -17,7 +18,7 @@ pub struct Leaves {
 
 /// Leaves that nothing weighs less than.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("leaves weigh 0 kg or more and have a drag area of 0 m2 or more, not {mass} kg and {drag} m2")]
+#[error("leaves weigh 0 kg or more and have a drag area of 0 m2 or more, not {} kg and {} m2", Brief(*mass), Brief(*drag))]
 pub struct LeavesError {
     mass: f64,
     drag: f64,

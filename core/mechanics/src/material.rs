@@ -1,5 +1,7 @@
 //! What plants are made of.
 
+use honami_model::brief::Brief;
+
 /// The wood of a plant, and how it loses energy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
@@ -20,7 +22,7 @@ impl Default for Material {
 
 /// A number of a material that no wood has.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("a material has a {name} of {wanted}, not of {came}")]
+#[error("a material has a {name} of {wanted}, not of {}", Brief(*came))]
 pub struct MaterialError {
     name: &'static str,
     wanted: &'static str,

@@ -86,6 +86,9 @@ pub enum ModesError {
          apart"
     )]
     Numbers,
+    /// Whoever watches has stopped it.
+    #[error("stopped")]
+    Stopped,
     /// It went on for long and could not be sure.
     #[error(
         "{wanted} modes were asked for, {found} were found, and it is not proved that these are the slowest: more of them, or \
@@ -106,6 +109,19 @@ impl Modes {
     /// # Errors
     /// [`ModesError`].
     pub fn new(beams: &Beams, n_modes: usize, seed: u64) -> Result<Self, ModesError> {
+        Self::watched(beams, n_modes, seed, &|_found| true)
+    }
+
+    /// As [`new`](Self::new); whoever watches is told how many are found, again and again, and says whether to go on.
+    ///
+    /// # Errors
+    /// [`ModesError::Stopped`], and the others.
+    pub fn watched(
+        beams: &Beams,
+        n_modes: usize,
+        seed: u64,
+        watch: &dyn Fn(usize) -> bool,
+    ) -> Result<Self, ModesError> {
         let mass = beams.mass();
         let there = DOF * mass.len();
         if n_modes > there || n_modes == 0 {
@@ -124,7 +140,7 @@ impl Modes {
             }
             found
         } else {
-            few(&flexibility, &factor, &mass, n_modes, seed)?
+            few(&flexibility, &factor, &mass, (n_modes, seed), watch)?
         };
         Self::checked(&factor, &mass, &lambdas, vectors)
     }
@@ -227,15 +243,17 @@ fn few(
     flexibility: &Flexibility,
     factor: &Factor,
     mass: &TreeMatrix,
-    n_modes: usize,
-    seed: u64,
+    (n_modes, seed): (usize, u64),
+    watch: &dyn Fn(usize) -> bool,
 ) -> Result<(Vec<f64>, Vec<f64>), ModesError> {
+    goes_on(watch, 0)?;
     let (shift, shifted) = amid(flexibility, factor, mass, n_modes, seed)?;
     let n_below = shifted.n_negative();
     let mut lanczos = Lanczos::new(&shifted, shift, mass, seed, WIDTH * n_modes)?;
     let width_max = (12 * n_modes + 136).min(DOF * mass.len());
     let mut found = 0;
     while lanczos.width() < width_max {
+        goes_on(watch, found.min(n_modes))?;
         lanczos.grow(BLOCKS_A_LOOK.max(lanczos.width() / COLUMNS_A_BLOCK))?;
         if lanczos.width() < n_modes + found.max(n_modes / 2) {
             continue;
@@ -248,6 +266,10 @@ fn few(
         }
     }
     Err(ModesError::Uncertain { wanted: n_modes, found })
+}
+
+fn goes_on(watch: &dyn Fn(usize) -> bool, found: usize) -> Result<(), ModesError> {
+    if watch(found) { Ok(()) } else { Err(ModesError::Stopped) }
 }
 
 /// Whether these eigenvalues, in order, are the smallest: as many lie below the last, and below those that are equal to

@@ -6,6 +6,7 @@ mod flowing;
 mod gust;
 mod layer;
 mod noise;
+mod profile;
 mod spectrum;
 #[cfg(test)]
 mod tests;
@@ -16,6 +17,7 @@ pub use flowing::{Flowing, FlowingError, Inflow};
 pub use gust::{Frozen, Mask, Series};
 pub use layer::Layer;
 pub use noise::Noise;
+pub use profile::{Growth, Profile};
 pub use spectrum::{Kaimal, Power, Spectrum, series};
 
 use nalgebra::Vector3;

@@ -3,6 +3,7 @@
 //! Image coordinates: x right, y down, pixels; (0, 0) is the centre of the top-left pixel.
 //! Times are seconds, frames count from 0, a clip has T frames.
 
+pub mod brief;
 pub mod clip;
 pub mod compose;
 pub mod correct;

@@ -3,6 +3,8 @@
 #[cfg(test)]
 mod tests;
 
+use crate::brief::Brief;
+
 /// A plant has no segment thicker at its base than so many times what it is at its tip: else a twig would begin with
 /// the radius of the trunk that bears it.
 const TAPER_MAX: f64 = 1.5;
@@ -73,7 +75,7 @@ pub enum PlantError {
         parent: u32,
     },
     /// A coordinate that is no number, or a radius that is none or not above 0.
-    #[error("node {node} lies at {position:?} m with radius {radius} m")]
+    #[error("node {node} lies at {position:?} m with radius {} m", Brief(*radius))]
     Measure {
         /// Row.
         node: usize,

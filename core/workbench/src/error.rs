@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use honami_model::brief::Brief;
 use honami_model::document::RunId;
 use honami_model::track::TrackId;
 
@@ -321,6 +322,27 @@ pub enum WorkbenchError {
         "the skeleton of a project is in pixels: `honami simulate --unit M` says how many metres one of them is"
     )]
     Pixels,
+    /// An option for files of other kinds.
+    #[error("{option} says nothing of {source_name}: it is for plants in {}", of.join(", "))]
+    NoMeaning {
+        /// As typed.
+        option: &'static str,
+        /// Endings of files that it is for.
+        of: Vec<String>,
+        /// The plant.
+        source_name: String,
+    },
+    /// Drag that air does not have.
+    #[error(
+        "branches have a drag coefficient of 0 to 10000 in air of 0 to 10000 kg/m3, not of {} in air of {}",
+        Brief(*branches), Brief(*density)
+    )]
+    Drag {
+        /// Coefficient.
+        branches: f64,
+        /// Kilograms per cubic metre.
+        density: f64,
+    },
     /// A plant cannot become beams.
     #[error(transparent)]
     Beams(#[from] honami_mechanics::BeamsError),
@@ -376,6 +398,19 @@ pub enum WorkbenchError {
         /// Free.
         there: usize,
     },
+    /// Files for which there is no room.
+    #[error(
+        "{}: {:.1} GB would be written there, and {:.1} are free: fewer copies, nodes or frames are wanted",
+        path.display(), *bytes as f64 / 1e9, *there as f64 / 1e9
+    )]
+    Disk {
+        /// The file that is too much.
+        path: PathBuf,
+        /// Wanted in its folder.
+        bytes: u64,
+        /// Free.
+        there: u64,
+    },
     /// The system gives no threads.
     #[error(transparent)]
     Threads(#[from] honami_mechanics::ThreadsError),
@@ -388,7 +423,10 @@ pub enum WorkbenchError {
         source: rayon::ThreadPoolBuildError,
     },
     /// Units that nothing is measured in.
-    #[error("units are more than 0: not {unit} m of length, nor {diameters} of diameter to one of length")]
+    #[error(
+        "units are more than 0: not {} m of length, nor {} of diameter to one of length",
+        Brief(*unit), Brief(*diameters)
+    )]
     Units {
         /// Metres.
         unit: f64,
@@ -417,6 +455,12 @@ pub enum WorkbenchError {
         size: f64,
         /// Of masses.
         mass: f64,
+    },
+    /// Copies that stand in one another, or nowhere.
+    #[error("copies stand 0.001 to 100000 m apart, not {} m", Brief(*metres))]
+    Spacing {
+        /// Asked for.
+        metres: f64,
     },
     /// Pulled out of all proportion.
     #[error("a plant is pulled by a number of metres from -1000 to 1000, not by {pull:e}")]
@@ -469,6 +513,9 @@ impl WorkbenchError {
     pub fn is_of_plant_as_typed(&self) -> bool {
         use honami_mechanics::wind::FlowingError::{Cells, Numbers};
         use honami_mechanics::{BeamsError, ModesError};
+        if let Self::PlantFile(error) = self {
+            return error.is_as_typed();
+        }
         matches!(
             self,
             Self::NoPlant { .. }
@@ -478,8 +525,11 @@ impl WorkbenchError {
                 | Self::Pace { .. }
                 | Self::Pull { .. }
                 | Self::Spread { .. }
+                | Self::Spacing { .. }
                 | Self::Sensor { .. }
                 | Self::Leaves(_)
+                | Self::NoMeaning { .. }
+                | Self::Drag { .. }
                 | Self::Beams(BeamsError::Material(_) | BeamsError::Longest(_))
                 | Self::Modes(ModesError::TooMany { .. } | ModesError::Half { .. })
                 | Self::Air(Numbers { .. } | Cells { .. })

@@ -4,9 +4,10 @@ pub mod bench;
 pub mod film;
 pub mod forms;
 pub mod glb;
-mod grove;
+pub mod grove;
 pub mod mover;
 pub mod outs;
+mod sizes;
 pub mod sway;
 #[cfg(test)]
 mod tests;
@@ -20,13 +21,19 @@ use std::time::Instant;
 
 use honami_exchange::plant::{Measured, PlantFileError, mtg, qsm, swc};
 use honami_exchange::skeleton::at_rest;
-use honami_mechanics::{Beams, BeamsError, Leaves, MOST_NODES, Modes, Options, WindBasis};
+use honami_mechanics::{
+    AIR, Beams, BeamsError, Drag, Leaves, MOST_NODES, Modes, ModesError, Options, WindBasis,
+};
+use honami_model::brief::Brief;
 use honami_model::plant::RadiusRule;
 use honami_store::{Access, Project};
 
 use crate::error::WorkbenchError;
 use crate::grow::{self, GrowRequest};
+use crate::progress::{Flow, Progress};
 
+/// Drag coefficients, and kilograms of a cubic metre of what blows: water has a thousand.
+const MOST_DRAG: f64 = 1e4;
 /// What makes a tree to calculate with, in place of a file: `synth::tree:NODES,SEED`.
 const GENERATED: &str = "synth::tree:";
 
@@ -37,14 +44,18 @@ pub struct Wish {
     pub source: String,
     /// Metres of a unit of length, where a file does not say; `None`: as usual in files of its kind.
     pub unit: Option<f64>,
-    /// Of a multiscale tree graph: so many units of diameter are one of length.
-    pub diameters: f64,
+    /// Of a multiscale tree graph: so many units of diameter are one of length; `None`: as usual.
+    pub diameters: Option<f64>,
     /// Of a multiscale tree graph: classes of parts that are wood; empty: all.
     pub classes: Vec<String>,
     /// How it becomes beams.
     pub beams: Options,
     /// What hangs on the ends of its branches.
     pub leaves: Leaves,
+    /// Drag coefficient of branches.
+    pub drag: f64,
+    /// Density of the air, kilograms per cubic metre.
+    pub air_density: f64,
     /// How many modes.
     pub n_modes: usize,
     /// Of the search for modes; they do not depend on it but for the last digits.
@@ -58,10 +69,12 @@ impl Wish {
         Self {
             source: source.to_owned(),
             unit: None,
-            diameters: mtg::Options::default().diameters,
+            diameters: None,
             classes: Vec::new(),
             beams: Options::default(),
             leaves: Leaves::default(),
+            drag: Drag::default().branches,
+            air_density: AIR,
             n_modes,
             seed: 1,
         }
@@ -90,9 +103,14 @@ pub struct Vibrating {
 /// Reads a plant and finds its modes.
 ///
 /// # Errors
-/// What is wrong with the file or with numbers of the wish.
-pub fn vibrate(wish: &Wish) -> Result<Vibrating, WorkbenchError> {
+/// What is wrong with the file or with numbers of the wish; [`WorkbenchError::Stopped`].
+pub fn vibrate(wish: &Wish, progress: &dyn Progress) -> Result<Vibrating, WorkbenchError> {
+    let (branches, density) = (wish.drag, wish.air_density);
+    if ![branches, density].iter().all(|v| (0.0..=MOST_DRAG).contains(v)) {
+        return Err(WorkbenchError::Drag { branches, density });
+    }
     let Measured { plant, mut notes } = read(wish)?;
+    notes.extend(hint(&wish.source).and_then(|hint| sizes::odd(&plant, &wish.beams.material, hint)));
     let mut beams = Beams::new(&plant, &wish.beams)?;
     let mut note = |n: usize, one: &str, many: &str| {
         if n > 0 {
@@ -109,10 +127,15 @@ pub fn vibrate(wish: &Wish) -> Result<Vibrating, WorkbenchError> {
         "segment is thicker than long, of which a beam is a rough model",
         "segments are thicker than long, of which beams are a rough model",
     );
-    let drag = wish.leaves.hang(&mut beams)?;
+    let drag = Drag { branches, density, ..wish.leaves.hang(&mut beams)? };
     room(beams.len(), wish.n_modes, sway::free())?;
     let begun = Instant::now();
-    let modes = Modes::new(&beams, wish.n_modes, wish.seed)?;
+    let found = |n: usize| progress.report(n as u64, wish.n_modes as u64, "modes") == Flow::Continue;
+    let modes = Modes::watched(&beams, wish.n_modes, wish.seed, &found);
+    let modes = modes.map_err(|error| match error {
+        ModesError::Stopped => WorkbenchError::Stopped,
+        error => error.into(),
+    })?;
     let seconds = begun.elapsed().as_secs_f64();
     let basis = WindBasis::new(&beams, &modes, &drag);
     let (n_measured, height) = (plant.nodes().len(), plant.height());
@@ -148,8 +171,9 @@ fn skeleton(path: &Path, unit: Option<f64>) -> Result<Measured, WorkbenchError> 
     let grown = grow::grow(&Project::open(path, Access::Read)?, &GrowRequest::default())?;
     let mut measured = swc::parse(&at_rest(&grown.skeleton), unit)?;
     let whose = format!(
-        "the skeleton that `honami grow` makes of {} groups, a pixel taken as {unit} m",
-        grown.n_groups
+        "the skeleton that `honami grow` makes of {} groups, a pixel taken as {} m",
+        grown.n_groups,
+        Brief(unit)
     );
     measured.notes.extend(std::iter::once(whose).chain(grown.notes));
     Ok(measured)
@@ -160,6 +184,7 @@ fn skeleton(path: &Path, unit: Option<f64>) -> Result<Measured, WorkbenchError> 
 /// # Errors
 /// What is wrong with the file or the name.
 pub fn read(wish: &Wish) -> Result<Measured, WorkbenchError> {
+    check_options(wish)?;
     let source = &wish.source;
     let unknown = || WorkbenchError::NoPlant { source_name: source.clone() };
     if let Some(numbers) = source.strip_prefix(GENERATED) {
@@ -177,34 +202,68 @@ pub fn read(wish: &Wish) -> Result<Measured, WorkbenchError> {
         let plant = honami_synth::tree(n, seed).map_err(PlantFileError::from)?;
         return Ok(Measured { plant, notes: Vec::new() });
     }
-    let diameters = wish.diameters;
-    if ![wish.unit.unwrap_or(1.0), diameters].iter().all(|v| v.is_finite() && *v > 0.0) {
-        return Err(WorkbenchError::Units { unit: wish.unit.unwrap_or(1.0), diameters });
+    let (unit, diameters) =
+        (wish.unit.unwrap_or(1.0), wish.diameters.unwrap_or(mtg::Options::default().diameters));
+    if ![unit, diameters].iter().all(|v| v.is_finite() && *v > 0.0) {
+        return Err(WorkbenchError::Units { unit, diameters });
     }
     let path = Path::new(source);
     let bytes = || fs::read(path).map_err(|source| PlantFileError::Io { path: path.to_owned(), source });
     // Some are in Latin-1: only remarks and names of people have such letters.
     let text = || bytes().map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
-    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
-    match ending.as_deref() {
-        Some("mtg") => {
+    let within = |error: PlantFileError| error.of(path);
+    match ending(source).as_str() {
+        "mtg" => {
             let unit = wish.unit.unwrap_or(mtg::Options::default().unit);
             let options = mtg::Options { unit, diameters, classes: wish.classes.clone() };
-            let mut measured = mtg::parse(&text()?, &options)?;
-            let thick = unit / diameters;
-            let note = format!("the file names no units: lengths taken in {unit} m, diameters in {thick} m");
-            measured.notes.push(note);
+            let mut measured = mtg::parse(&text()?, &options).map_err(within)?;
+            let taken =
+                format!("lengths taken in {} m, diameters in {} m", Brief(unit), Brief(unit / diameters));
+            measured.notes.push(sizes::as_taken(&measured.plant, &taken, "--unit and --diameters say"));
             Ok(measured)
         }
-        Some("swc") => {
-            let unit = wish.unit.unwrap_or(1.0);
-            let mut measured = swc::parse(&text()?, unit)?;
-            measured.notes.push(format!("the file names no units: lengths taken in {unit} m"));
+        "swc" => {
+            let mut measured = swc::parse(&text()?, unit).map_err(within)?;
+            let taken = format!("lengths taken in {} m", Brief(unit));
+            measured.notes.push(sizes::as_taken(&measured.plant, &taken, "--unit says"));
             Ok(measured)
         }
-        Some("honami") => skeleton(path, wish.unit),
-        Some("csv") => Ok(qsm::parse_table(&text()?)?),
-        Some("mat") => Ok(qsm::parse_mat(&bytes()?)?),
+        "honami" => skeleton(path, wish.unit),
+        "csv" => Ok(qsm::parse_table(&text()?).map_err(within)?),
+        "mat" => Ok(qsm::parse_mat(&bytes()?).map_err(within)?),
         _ => Err(unknown()),
+    }
+}
+
+/// What may be wrong where a plant is of an odd size; of one that is generated nothing.
+fn hint(source: &str) -> Option<&'static str> {
+    match ending(source).as_str() {
+        "mtg" => Some("is --unit or --diameters another?"),
+        "swc" | "honami" => Some("is --unit another?"),
+        "csv" | "mat" => Some("are its lengths metres?"),
+        _ => None,
+    }
+}
+
+/// Of a file's name, in small letters; empty where it is no file's.
+fn ending(source: &str) -> String {
+    let ending = Path::new(source).extension().filter(|_| !source.starts_with(GENERATED));
+    ending.map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default()
+}
+
+/// Refuses options that say nothing of a plant of this kind.
+fn check_options(wish: &Wish) -> Result<(), WorkbenchError> {
+    let ending = ending(&wish.source);
+    let given = [
+        ("--classes", !wish.classes.is_empty(), &["mtg"][..]),
+        ("--diameters", wish.diameters.is_some(), &["mtg"]),
+        ("--unit", wish.unit.is_some(), &["mtg", "swc", "honami"]),
+    ];
+    match given.iter().find(|(_, is_given, of)| *is_given && !of.contains(&ending.as_str())) {
+        Some((option, _, of)) => {
+            let (option, of) = (*option, of.iter().map(|ending| format!(".{ending}")).collect());
+            Err(WorkbenchError::NoMeaning { option, of, source_name: wish.source.clone() })
+        }
+        None => Ok(()),
     }
 }

@@ -8,7 +8,7 @@ mod tests;
 use std::sync::Arc;
 
 use honami_mechanics::{
-    Beams, Detail, Direction, Forest, Integrator, Leaves, Modes, Pace, Pose, Stand, Stirring, Threads,
+    Beams, Detail, Direction, Drag, Forest, Integrator, Leaves, Modes, Pace, Pose, Stand, Stirring, Threads,
     WindBasis,
 };
 use honami_model::plant;
@@ -46,7 +46,8 @@ impl Simulator for Modal {
         let mut beams = Beams::new(&measured, &settings.options()).map_err(unusable)?;
         cx.progress(0.1, "modes")?;
         let leaves = Leaves { mass: settings.leaf_mass, drag: settings.leaf_drag };
-        let drag = leaves.hang(&mut beams).map_err(unusable)?;
+        let (branches, density) = (settings.drag, settings.air_density);
+        let drag = Drag { branches, density, ..leaves.hang(&mut beams).map_err(unusable)? };
         let n_modes = (settings.modes as usize).min(FREEDOMS * (beams.len() - 1));
         let modes = Modes::new(&beams, n_modes, plant.seed).map_err(unusable)?;
         cx.progress(0.8, "curves")?;

@@ -57,6 +57,10 @@ params! {
         leaf_mass: f64 = 0.0 => { label: "Mass", group: "Leaves", unit: "kg", min: 0, max: 1e6, soft_max: 100 },
         /// Area of all leaves times their drag coefficient, shared alike.
         leaf_drag: f64 = 0.0 => { label: "Drag area", group: "Leaves", unit: "m²", min: 0, max: 1e6, soft_max: 100 },
+        /// Drag coefficient of branches.
+        drag: f64 = 1.0 => { label: "Drag of branches", group: "Air", unit: "1", min: 0, max: 1e4, soft_max: 2 },
+        /// Density of the air.
+        air_density: f64 = 1.2 => { label: "Density of the air", group: "Air", unit: "kg/m³", min: 0, max: 1e4, soft_max: 2 },
         /// How many modes, the slowest first; a small plant may have fewer.
         modes: i64 = 25 => { label: "Modes", group: "Motion", min: 1, max: 5000, soft_max: 100 },
         /// How nodes follow their modes.
@@ -71,7 +75,7 @@ params! {
         air_damping: f64 = 1.0 => { label: "Damping by the air", group: "Motion", unit: "1", min: 0, max: 1000, soft_max: 5, affects: "step" },
         /// So many times as heavy as its wood, all over: rain, snow, fruit.
         heavier: f64 = 1.0 => { label: "Heavier", group: "Motion", unit: "1", min: 0.01, max: 100, scale: "log", affects: "step" },
-        /// In the beginning the slowest mode of every copy is pulled out, so that the node that it moves most is so far from rest.
+        /// In the beginning the slowest mode of every copy is pulled out, so that the node that it moves most would be so far from rest in a straight line.
         pull: f64 = 0.0 => { label: "Pull", group: "Motion", unit: "m", min: -1000, max: 1000, soft_min: -2, soft_max: 2 },
     }
 }

@@ -90,7 +90,15 @@ fn the_plugin_moves_as_the_forest_does() {
     let instances: Vec<Instance> = (0..5)
         .map(|k| Instance { yaw: k as f32, scale: 1.0 + 0.3 * k as f32, mass: 1.0 + 0.1 * k as f32 })
         .collect();
-    let settings = Settings { leaf_mass: 0.3, leaf_drag: 0.2, modes: 6, pull: 0.05, ..Settings::default() };
+    let settings = Settings {
+        leaf_mass: 0.3,
+        leaf_drag: 0.2,
+        drag: 0.8,
+        air_density: 1.3,
+        modes: 6,
+        pull: 0.05,
+        ..Settings::default()
+    };
     let mut modal = prepared(&settings, &nodes, &instances).unwrap();
 
     let measured = plant::Plant::new(
@@ -105,6 +113,7 @@ fn the_plugin_moves_as_the_forest_does() {
     );
     let mut beams = Beams::new(&measured.unwrap(), &settings.options()).unwrap();
     let drag = Leaves { mass: 0.3, drag: 0.2 }.hang(&mut beams).unwrap();
+    let drag = Drag { branches: 0.8, density: 1.3, ..drag };
     assert_eq!(drag.leaves.len(), 2, "the end of the rod, and of its twig");
     let modes = Modes::new(&beams, 6, 1).unwrap();
     let basis = WindBasis::new(&beams, &modes, &drag);

@@ -18,7 +18,7 @@ const BOUNDARY: Cell = (1000, 1000, 25, None);
 /// Measures both tables, or the cells that were asked for.
 pub(super) fn forest(args: &BenchForest, common: &Common) -> anyhow::Result<Answer> {
     want(args.seconds.is_finite() && args.seconds >= 0.0, || {
-        format!("a run lasts 0 s or more, not {} s", args.seconds)
+        format!("a run lasts 0 s or more, not {:?} s", args.seconds)
     })?;
     let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     let n_threads = args.threads.unwrap_or(cores);
@@ -84,7 +84,7 @@ pub(super) fn forest(args: &BenchForest, common: &Common) -> anyhow::Result<Answ
 
 /// Compares the ways in which nodes can follow modes.
 pub(super) fn bending(args: &BenchBending) -> anyhow::Result<Answer> {
-    let plant = plant::vibrate(&simulate::wish(&args.plant))?;
+    let plant = plant::vibrate(&simulate::wish(&args.plant), &report::Bar::new())?;
     let rows = forms::forms(&plant);
     let head = |what: &str| forms::DEFLECTIONS.map(|share| format!("{what} {:.0} %", 100.0 * share));
     let mut table =

@@ -2,9 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use honami_model::brief::Brief;
 use honami_model::plant::RadiusRule;
 use honami_workbench::mechanics::{Damping, Form, Integrator, Leaves, Material, Options};
 use honami_workbench::plant::glb::Made;
+use honami_workbench::plant::grove::Spans;
 use honami_workbench::plant::mover::Mover;
 use honami_workbench::plant::outs::Outs;
 use honami_workbench::plant::sway::{self, Motion, Moved};
@@ -38,7 +40,10 @@ pub(super) fn simulate(args: &Simulate, common: &Common) -> anyhow::Result<Answe
     want(is_plant, || {
         format!(
             "a plant is {} times as heavy, with damping {}, {} and {} times that of the air: masses are more than 0, damping is not negative",
-            args.heavier, args.alpha, args.beta, args.air_damping
+            Brief(args.heavier),
+            Brief(args.alpha),
+            Brief(args.beta),
+            Brief(args.air_damping)
         )
     })?;
     want(args.sensors > 0, || "one sensor at least is wanted".to_owned())?;
@@ -48,7 +53,8 @@ pub(super) fn simulate(args: &Simulate, common: &Common) -> anyhow::Result<Answe
     let damping = Damping { alpha: args.alpha, beta: args.beta, mass: args.heavier, air: args.air_damping };
     let motion = motion(args, n_frames as u32, damping);
     motion.check()?;
-    let plant = plant::vibrate(&wish)?;
+    let bar = report::Bar::with(common);
+    let plant = plant::vibrate(&wish, &bar)?;
     let (mut text, mut json) = describe(&wish, &plant, &damping);
     if is_moved(args) {
         let options = told_options(common);
@@ -57,16 +63,19 @@ pub(super) fn simulate(args: &Simulate, common: &Common) -> anyhow::Result<Answe
         let chosen = Chosen::Only(&args.typed.0);
         let simulator = told::told(&wish, &motion, plugin, chosen, &args.plugin.set)?;
         let mover = Mover { host: &options.host, plugin, values: &simulator.values };
-        let bar = report::Bar::with(common);
         let [table, cache, glb, beams] =
             [&args.out, &args.cache, &args.glb, &args.beams].map(|path| path.as_deref());
         let outs = Outs { table, cache, glb, beams };
+        let again = wind.again(f64::from(motion.n_frames - 1) / motion.fps);
         let wind = wind.over(&Ground::of(&plant, &motion))?;
         let mut moved = sway::sway(&plant, &mover, &*wind, &motion, outs, &bar)?;
-        moved.warnings.splice(0..0, simulator.notes);
-        let told = told(args, &motion, &moved);
+        moved.warnings.splice(0..0, simulator.notes.into_iter().chain(again));
+        let spans = Spans::of(&plant, &motion);
+        let told = told(args, &motion, &moved, &spans);
         text += &format!("\n{}", report::with_warnings(&told, &moved.warnings));
         json["motion"] = entry(&motion, &moved, args);
+        json["motion"]["copies_span"] =
+            json!({ "hz": spans.hz, "height_m": spans.height, "kg": spans.kilograms });
         json["motion"]["simulator"] = plugin.id.clone().into();
     } else if let Some(beams) = &args.beams {
         plant::write_beams(&plant, beams)?;
@@ -146,6 +155,7 @@ fn motion(args: &Simulate, n_frames: u32, damping: Damping) -> Motion {
         sensors: args.nodes.clone(),
         size_spread: args.size_spread,
         mass_spread: args.mass_spread,
+        spacing: args.spacing,
         seed: args.seed,
         n_threads: args.threads.unwrap_or(cores),
     }
@@ -165,6 +175,8 @@ pub(super) fn wish(args: &Plant) -> Wish {
         classes: args.classes.clone(),
         beams: Options { rule, material, longest: args.longest },
         leaves: Leaves { mass: args.leaf_mass, drag: args.leaf_drag },
+        drag: args.drag,
+        air_density: args.air_density,
         ..Wish::of(&args.source, args.modes as usize)
     }
 }
@@ -234,7 +246,7 @@ fn describe(wish: &Wish, plant: &Vibrating, damping: &Damping) -> (String, serde
     (text, json)
 }
 
-fn told(args: &Simulate, motion: &Motion, moved: &Moved) -> String {
+fn told(args: &Simulate, motion: &Motion, moved: &Moved, spans: &Spans) -> String {
     let copies =
         if motion.n_copies == 1 { "it".to_owned() } else { format!("each of {} copies", motion.n_copies) };
     let who = args.nodes.first().map_or("the highest end".to_owned(), |node| format!("node {node}"));
@@ -242,6 +254,16 @@ fn told(args: &Simulate, motion: &Motion, moved: &Moved) -> String {
         "{} frames of {copies}: {who} deviates by {:.3} m from its mean place, {:.3} m at most from rest",
         moved.n_frames, moved.deviation, moved.farthest
     );
+    if motion.n_copies > 1 {
+        let [hz, metres, kg] = [spans.hz, spans.height, spans.kilograms].map(|[least, most]| {
+            if most - least <= 1e-6 * most {
+                format!("{most:.4}")
+            } else {
+                format!("{least:.4} to {most:.4}")
+            }
+        });
+        text += &format!("\ncopies: slowest mode {hz} Hz, {metres} m high, {kg} kg");
+    }
     text += &format!(
         "\n{:.2} ms a frame on {}, {:.1} MB",
         moved.frame_s * 1e3,

@@ -52,7 +52,8 @@ pub(super) fn synth(args: &Synth) -> anyhow::Result<Answer> {
 /// Films a plant that moves by its own modes.
 fn film(args: &Synth, source: &str, settings: &Settings) -> anyhow::Result<Answer> {
     let wish = Wish { classes: args.classes.clone(), ..Wish::of(source, args.modes as usize) };
-    let plant = plant::vibrate(&wish)?;
+    let bar = report::Bar::new();
+    let plant = plant::vibrate(&wish, &bar)?;
     let weather = match (args.pull, args.wind) {
         (Some(_), _) => "still",
         (None, Wind::Calm) => "calm",
@@ -68,7 +69,6 @@ fn film(args: &Synth, source: &str, settings: &Settings) -> anyhow::Result<Answe
     let (fps, pull) = (args.fps, args.pull.unwrap_or(0.0));
     let motion = Motion { n_frames: args.frames, fps, pull, damping, ..Motion::default() };
     let wind = wind.over(&Ground::of(&plant, &motion))?;
-    let bar = report::Bar::new();
     let moving = plant::film::film(&plant, &*wind, &motion, &bar)?;
     let mut answer = describe(&generate::film(settings, &moving, &args.out, &bar)?);
     let (hz, omega) = (plant.modes.hz(0), plant.modes.omegas[0]);

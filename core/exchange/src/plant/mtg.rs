@@ -12,6 +12,7 @@ mod tests;
 use super::{Measured, PlantFileError};
 use graph::{Graph, Vertex};
 use honami_model::plant::{Node, Plant};
+use std::collections::BTreeMap;
 
 /// What a file of this format leaves open.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,6 +38,7 @@ impl Default for Options {
 /// [`PlantFileError`] with the line.
 pub fn parse(text: &str, options: &Options) -> Result<Measured, PlantFileError> {
     let graph = Graph::parse(text)?;
+    check_classes(&graph, &options.classes)?;
     let mut notes = Vec::new();
     let is_wood = |vertex: &Vertex| options.classes.is_empty() || options.classes.contains(&vertex.class);
     // What every part becomes: a node, or what the part before it is.
@@ -85,6 +87,21 @@ pub fn parse(text: &str, options: &Options) -> Result<Measured, PlantFileError> 
     note(n_nowhere, "without a position left out: what they bear stands on what bears them");
     note(n_thin, "without a diameter taken as thick as the part before");
     Ok(Measured { plant, notes })
+}
+
+/// A class that no part is of is a slip of the pen: a plant without it would be another.
+fn check_classes(graph: &Graph, wanted: &[String]) -> Result<(), PlantFileError> {
+    let mut there = BTreeMap::<&str, usize>::new();
+    for vertex in graph.vertices.iter().filter(|vertex| vertex.is_finest) {
+        *there.entry(&vertex.class).or_default() += 1;
+    }
+    match wanted.iter().find(|class| !there.contains_key(class.as_str())) {
+        Some(class) => {
+            let there = there.iter().map(|(class, n)| format!("{class} ({n})")).collect();
+            Err(PlantFileError::Classes { wanted: class.clone(), there })
+        }
+        None => Ok(()),
+    }
 }
 
 /// Where the first part of a plant begins: the place of what it is a part of, if that is known.

@@ -11,6 +11,7 @@ mod tests;
 
 use super::rooted::{self, Raw};
 use super::{Measured, PlantFileError};
+use honami_model::brief::Brief;
 
 /// A cylinder; metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -144,14 +145,18 @@ fn cylinder(line: usize, row: &[f64]) -> Result<Cylinder, PlantFileError> {
         return Err(wrong(format!("wanted {} numbers, came {}", COLUMNS.len(), row.len())));
     };
     if !row.iter().all(|v| v.is_finite()) || radius <= 0.0 || length < 0.0 {
-        return Err(wrong(format!("a cylinder of radius {radius} m and length {length} m")));
+        return Err(wrong(format!(
+            "a cylinder has a radius of more than 0 m and a length of 0 m or more, not of {} m and {} m",
+            Brief(radius),
+            Brief(length)
+        )));
     }
     let size = ax.hypot(ay).hypot(az);
     if size <= 0.0 {
         return Err(wrong("an axis that points nowhere".into()));
     }
     if parent < 0.0 || parent.fract().abs() > 0.0 {
-        return Err(wrong(format!("a parent is a whole number of 0 or more, not {parent}")));
+        return Err(wrong(format!("a parent is a whole number of 0 or more, not {}", Brief(parent))));
     }
     let axis = [ax / size, ay / size, az / size];
     Ok(Cylinder { radius, length, start: [sx, sy, sz], axis, parent: parent as usize, line })

@@ -6,9 +6,10 @@ mod tests;
 
 use super::rooted::{self, Raw};
 use super::{Measured, PlantFileError};
+use honami_model::brief::Brief;
 
-/// Reads a plant from the text of a file, whose lengths are `unit` metres. Types are not looked at; a radius that is not
-/// above 0 was not measured.
+/// Reads a plant from the text of a file, whose lengths are `unit` metres. Types are not looked at; a radius of 0 was not
+/// measured.
 ///
 /// # Errors
 /// [`PlantFileError`] with the line.
@@ -36,7 +37,12 @@ pub fn parse(text: &str, unit: f64) -> Result<Measured, PlantFileError> {
         };
         let (id, parent) = (whole(id)?, whole(parent)?);
         let position = [number(x)? * unit, number(y)? * unit, number(z)? * unit];
-        let radius = Some(number(radius)? * unit);
+        let radius = number(radius)?;
+        if radius < 0.0 {
+            let what = format!("a radius is 0, where it was not measured, or more, not {}", Brief(radius));
+            return Err(wrong(what));
+        }
+        let radius = Some(radius * unit);
         raw.push(Raw { id, parent: (parent >= 0).then_some(parent), position, radius, line });
     }
     if raw.is_empty() {

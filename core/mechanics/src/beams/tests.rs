@@ -84,10 +84,7 @@ fn what_cannot_be_beams_is_named() {
     assert!(error.to_string().contains("nodes of beams, and 4000000 are the most"), "{error}");
     let wood = Material::default();
     let cases = [
-        (
-            Material { young: -1e9, ..wood },
-            "a material has a Young's modulus of more than 0 Pa, not of -1000000000",
-        ),
+        (Material { young: -1e9, ..wood }, "a material has a Young's modulus of more than 0 Pa, not of -1e9"),
         (Material { density: 0.0, ..wood }, "a material has a density of more than 0 kg/m3, not of 0"),
         (Material { density: f64::NAN, ..wood }, "a material has a density of more than 0 kg/m3, not of NaN"),
         (Material { poisson: 0.6, ..wood }, "a material has a Poisson's ratio of -1 to 0.5, not of 0.6"),

@@ -292,3 +292,20 @@ fn what_modes_take_is_known_before() {
     assert!((16_000_000..40_000_000).contains(&bytes), "{bytes}");
     assert_eq!(Modes::bytes(1 << 40, usize::MAX), usize::MAX);
 }
+
+#[test]
+fn whoever_watches_the_search_is_told_how_far_it_is_and_may_stop_it() {
+    let plant = rod(60, Vector3::z());
+    let beams = Beams::new(&plant, &options(RadiusRule::Mean)).unwrap();
+    let told = std::cell::RefCell::new(Vec::new());
+    let watch = |found| {
+        told.borrow_mut().push(found);
+        true
+    };
+    let modes = Modes::watched(&beams, 12, 1, &watch).unwrap();
+    assert_eq!(modes.omegas, Modes::new(&beams, 12, 1).unwrap().omegas);
+    let told = told.into_inner();
+    assert!(told[0] == 0 && told.iter().all(|found| *found <= 12) && told.len() > 1, "{told:?}");
+    let stopped = Modes::watched(&beams, 12, 1, &|_found| false);
+    assert_eq!(stopped.err(), Some(ModesError::Stopped));
+}

@@ -4,6 +4,7 @@
 mod tests;
 
 use super::{Layer, Wind};
+use honami_model::brief::Brief;
 use nalgebra::{Vector2, Vector3};
 
 /// Cells along each side in which what comes in takes the place of what has come round,
@@ -37,7 +38,8 @@ pub struct Inflow<'a> {
 pub enum FlowingError {
     /// Numbers that no air has.
     #[error(
-        "air flows at more than 0 m/s in cells of more than 0 m, with a viscosity of 0 m2/s or more, for a number of seconds: not at {speed} m/s in cells of {cell} m with {viscosity} m2/s for {seconds} s"
+        "air flows at more than 0 m/s in cells of more than 0 m, with a viscosity of 0 m2/s or more, for a number of seconds: not at {} m/s in cells of {} m with {} m2/s for {} s",
+        Brief(*speed), Brief(*cell), Brief(*viscosity), Brief(*seconds)
     )]
     Numbers {
         /// Of its mean.
@@ -51,7 +53,8 @@ pub enum FlowingError {
     },
     /// A tree that is nowhere, or pushes the air.
     #[error(
-        "tree {tree} holds back {held} m2/s at {x}, {y}: places are numbers, and nothing pushes the air on"
+        "tree {tree} holds back {} m2/s at {}, {}: places are numbers, and nothing pushes the air on",
+        Brief(*held), Brief(*x), Brief(*y)
     )]
     Tree {
         /// Which.

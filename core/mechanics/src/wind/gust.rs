@@ -27,7 +27,8 @@ impl Series {
     }
 
     /// Seconds after which it begins again.
-    fn period(&self) -> f64 {
+    #[must_use]
+    pub fn period(&self) -> f64 {
         self.step * self.samples.len() as f64
     }
 }

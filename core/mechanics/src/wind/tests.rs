@@ -1,8 +1,8 @@
 //! Winds against what defines them.
 
 use super::{
-    Constant, Draw, Field, Frozen, Kaimal, Mask, Noise, Power, Primitive, Series, Shape, Sine, Spectrum, Sum,
-    Wind, series,
+    Constant, Draw, Field, Frozen, Growth, Kaimal, Mask, Noise, Power, Primitive, Profile, Series, Shape,
+    Sine, Spectrum, Sum, Wind, series,
 };
 use nalgebra::Vector3;
 use realfft::RealFftPlanner;
@@ -258,4 +258,32 @@ fn are_alike(mean: Vector3<f64>, n: usize, step: f64, spectrum: &dyn Spectrum) {
             assert!((got - wanted).abs() < 0.05, "{hz} Hz, {apart} m: {got} {wanted}");
         }
     }
+}
+
+/// Over rough ground the wind's shear is u*/(0.4 (z - d)), the same at all heights when multiplied by z - d; by a power the
+/// wind doubles from height to height where it doubled once.
+#[test]
+fn wind_grows_with_height_as_its_profile_says() {
+    let steady = Constant(Vector3::new(6.0, 2.0, 0.0));
+    let at = |profile: &Profile<Constant>, z: f64| profile.sample(&Vector3::new(3.0, 4.0, z), 1.0);
+    let log = Profile { wind: steady, at: 10.0, growth: Growth::Log { roughness: 0.5, displacement: 2.0 } };
+    let shear = |z: f64| (at(&log, z + 1e-4).x - at(&log, z - 1e-4).x) / 2e-4 * (z - 2.0);
+    for z in [3.0, 7.5, 10.0, 60.0] {
+        assert!((shear(z) / shear(20.0) - 1.0).abs() < 1e-6, "{z}");
+    }
+    // A tenfold height above d is ln 10 / ln 16 more.
+    let more = (at(&log, 82.0) - at(&log, 10.0)).norm() / steady.0.norm();
+    assert!((more - 10.0_f64.log(16.0)).abs() < 1e-12, "{more}");
+    let power = Profile { wind: steady, at: 10.0, growth: Growth::Power { exponent: 0.25 } };
+    for z in [0.3, 4.0, 25.0] {
+        assert!((at(&power, 16.0 * z) - 2.0 * at(&power, z)).norm() < 1e-12, "{z}");
+    }
+    for profile in [&log, &power] {
+        assert!((at(profile, 10.0) - steady.0).norm() < 1e-12);
+        assert_eq!((at(profile, 0.0), at(profile, -1.0)), (Vector3::zeros(), Vector3::zeros()));
+        assert!(profile.repeats(7.0));
+    }
+    assert_eq!(at(&log, 2.5), Vector3::zeros());
+    let even = Profile { growth: Growth::Power { exponent: 0.0 }, ..power };
+    assert_eq!(at(&even, 3.0), steady.0);
 }

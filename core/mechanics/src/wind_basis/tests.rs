@@ -22,9 +22,9 @@ fn rod(n: u32) -> Beams {
 fn modes_in_uniform_wind_add_up_to_the_deflection_of_statics() {
     let beams = rod(40);
     let modes = Modes::new(&beams, 90, 1).unwrap();
-    let basis = WindBasis::new(&beams, &modes, &Drag::default());
+    let basis = WindBasis::new(&beams, &modes, &Drag { density: 1.5, branches: 0.8, ..Drag::default() });
     let wind = Vector3::new(3.0, 4.0, 0.0);
-    let pressure = 0.5 * AIR * 2.0 * RADIUS * wind.norm();
+    let pressure = 0.5 * 1.5 * 0.8 * 2.0 * RADIUS * wind.norm();
     let wanted = pressure * wind / (8.0 * Material::default().young * PI * RADIUS.powi(4) / 4.0);
     let mut tip = Vector3::zeros();
     let mut bending = 0;
@@ -50,7 +50,11 @@ fn modes_in_uniform_wind_add_up_to_the_deflection_of_statics() {
 fn damping_is_how_the_force_falls_with_the_speed_of_the_branch() {
     let beams = Beams::new(&honami_synth::tree(60, 3).unwrap(), &Options::default()).unwrap();
     let modes = Modes::new(&beams, 5, 1).unwrap();
-    let basis = WindBasis::new(&beams, &modes, &Drag { branches: 1.2, leaves: vec![(7, 0.3), (30, 0.1)] });
+    let basis = WindBasis::new(
+        &beams,
+        &modes,
+        &Drag { branches: 1.2, leaves: vec![(7, 0.3), (30, 0.1)], ..Drag::default() },
+    );
     let (wind, step) = (Vector3::new(5.0, -2.0, 1.0), 1e-5);
     for mode in 0..5 {
         // The force on mode i while it moves at speed q': the integral of C D |v - phi q'| (v - phi q') . phi, by points.

@@ -151,7 +151,7 @@ fn measured(
         if progress.report(k as u64, cells.len() as u64, "cell") == Flow::Stop {
             return Err(WorkbenchError::Stopped);
         }
-        let plant = vibrate(&Wish::of(&format!("synth::tree:{n_nodes},1"), n_modes))?;
+        let plant = vibrate(&Wish::of(&format!("synth::tree:{n_nodes},1"), n_modes), &())?;
         let nodes = plant.beams.coarse_to_fine();
         let rate = |form: Form| {
             let stirring = Stirring::new(&plant.beams, &plant.modes, plant.basis.clone(), form);
@@ -242,7 +242,7 @@ pub fn boundary(
     plugin: &PluginInfo,
 ) -> Result<Boundary, WorkbenchError> {
     let wish = Wish::of(&format!("synth::tree:{n_nodes},1"), n_modes);
-    let plant = vibrate(&wish)?;
+    let plant = vibrate(&wish, &())?;
     sway::room(n_copies, 2 * n_nodes, 2 * n_modes)?;
     let stands: Vec<Stand> = (0..n_copies).map(|k| Stand { turn: k as f32, ..Stand::default() }).collect();
     let stirring = Stirring::new(&plant.beams, &plant.modes, plant.basis.clone(), Form::Turn);

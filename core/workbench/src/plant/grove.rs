@@ -6,16 +6,47 @@ use honami_mechanics::wind::Wind;
 use honami_mechanics::{Direction, Forest, Stand, Stirring};
 use rand::{RngExt as _, SeedableRng as _};
 
+use super::Vibrating;
 use super::sway::Motion;
 use crate::error::WorkbenchError;
 
-/// Metres between copies of a plant of height 1, and how far each stands from there by chance.
+/// Metres between copies of a plant of height 1, unless others are wanted; each stands up to a quarter of that off.
 const APART: f64 = 0.8;
 /// Sizes, and masses, are so many larger ones and so many smaller: copies of one size and mass go on by the same numbers,
 /// which are few.
 const STEPS: i32 = 8;
 /// Where on a copy's height its wind is measured, from the ground.
 const CROWN: f64 = 2.0 / 3.0;
+
+/// Of all copies, the least and the most.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spans {
+    /// Of the slowest mode, hertz.
+    pub hz: [f64; 2],
+    /// Metres.
+    pub height: [f64; 2],
+    /// Wood and leaves, kilograms.
+    pub kilograms: [f64; 2],
+}
+
+impl Spans {
+    /// Of the copies of a plant as they move.
+    #[must_use]
+    pub fn of(plant: &Vibrating, motion: &Motion) -> Self {
+        let stands = Grove::new(plant.height, motion).stands;
+        let (heavier, kilograms, hz) = (motion.damping.mass, plant.beams.kilograms(), plant.modes.hz(0));
+        let span = |of: &dyn Fn(f64, f64) -> f64| {
+            let values = stands.iter().map(|stand| of(f64::from(stand.scale), f64::from(stand.mass)));
+            values.fold([f64::INFINITY, 0.0], |[least, most], value| [value.min(least), value.max(most)])
+        };
+        Self {
+            // A copy that is s times as large swings s times as slowly.
+            hz: span(&|scale, mass| hz / (scale * (mass * heavier).sqrt())),
+            height: span(&|scale, _| plant.height * scale),
+            kilograms: span(&|scale, mass| kilograms * heavier * scale.powi(3) * mass),
+        }
+    }
+}
 
 /// Where copies stand, and how.
 pub(super) struct Grove {
@@ -32,7 +63,8 @@ impl Grove {
         // Apart from the other: copies stand where they do whatever their sizes.
         let mut sizes = rand_pcg::Pcg64Mcg::seed_from_u64(!motion.seed);
         let mut chance = rand_pcg::Pcg64Mcg::seed_from_u64(motion.seed);
-        let (side, apart) = ((motion.n_copies as f64).sqrt().ceil() as usize, APART * height);
+        let (side, apart) =
+            ((motion.n_copies as f64).sqrt().ceil() as usize, motion.spacing.unwrap_or(APART * height));
         let mut stand = |k: usize| {
             let mut off = || chance.random_range(-0.25..0.25);
             let (row, column) = (k / side, k % side);

@@ -11,7 +11,7 @@ use super::Vibrating;
 use super::glb::{self, Made};
 use super::grove::Grove;
 use super::mover::{Mover, Moving};
-use super::outs::{Files, Outs};
+use super::outs::{Files, Outs, check_room, free_in};
 use crate::ear::Ear;
 use crate::error::WorkbenchError;
 use crate::progress::Progress;
@@ -21,6 +21,8 @@ const FPS: RangeInclusive<f64> = 1e-3..=1e6;
 const SUBSTEPS: RangeInclusive<u32> = 1..=10_000;
 /// Copies are up to five times as large or heavy.
 const SPREADS: RangeInclusive<f64> = 0.0..=4.0;
+/// Metres between copies.
+const SPACINGS: RangeInclusive<f64> = 1e-3..=1e5;
 /// Metres by which a plant may be pulled.
 const FARTHEST_PULL: f64 = 1000.0;
 /// Memory is left to others: so much of what is free.
@@ -55,6 +57,8 @@ pub struct Motion {
     pub size_spread: f64,
     /// And heavier or lighter than one of their size.
     pub mass_spread: f64,
+    /// Metres between copies; `None`: 0.8 times the plant's height.
+    pub spacing: Option<f64>,
     /// Of where copies stand, how they are turned, and their sizes and masses.
     pub seed: u64,
     /// Threads.
@@ -77,6 +81,7 @@ impl Default for Motion {
             sensors: Vec::new(),
             size_spread: 0.0,
             mass_spread: 0.0,
+            spacing: None,
             seed: 1,
             n_threads: 1,
         }
@@ -87,11 +92,14 @@ impl Motion {
     /// Whether it can be.
     ///
     /// # Errors
-    /// [`WorkbenchError::Pace`], [`WorkbenchError::Spread`], [`WorkbenchError::Pull`].
+    /// [`WorkbenchError::Pace`], [`WorkbenchError::Spread`], [`WorkbenchError::Spacing`], [`WorkbenchError::Pull`].
     pub fn check(&self) -> Result<(), WorkbenchError> {
         let Self { fps, n_substeps, n_frames, pull, size_spread: size, mass_spread: mass, .. } = *self;
         if ![size, mass].iter().all(|spread| SPREADS.contains(spread)) {
             return Err(WorkbenchError::Spread { size, mass });
+        }
+        if let Some(metres) = self.spacing.filter(|metres| !SPACINGS.contains(metres)) {
+            return Err(WorkbenchError::Spacing { metres });
         }
         if !(FPS.contains(&fps) && SUBSTEPS.contains(&n_substeps) && n_frames > 0) {
             return Err(WorkbenchError::Pace { fps, n_substeps });
@@ -144,6 +152,8 @@ pub fn sway(
     let (n_copies, n_nodes) = (motion.n_copies, plant.beams.len());
     let sensors = sensors(plant, motion)?;
     let bytes = room(n_copies, n_nodes, plant.modes.len())?;
+    let sizes = [n_copies.saturating_mul(n_nodes), sensors.len()];
+    check_room(&outs, sizes, motion.n_frames, free_in, progress)?;
     let mut files = Files::create(plant, motion, outs)?;
     let grove = Grove::new(plant.height, motion);
     let ear = Ear::new(&mover.plugin.short_name, progress);

@@ -100,7 +100,7 @@ fn values(
 }
 
 /// Names of options, and what they are.
-fn options(wish: &Wish, motion: &Motion) -> [(&'static str, Value); 13] {
+fn options(wish: &Wish, motion: &Motion) -> [(&'static str, Value); 15] {
     let (wood, leaves, damping) = (wish.beams.material, wish.leaves, motion.damping);
     let method = match motion.integrator {
         Integrator::Exact => "exact",
@@ -119,6 +119,8 @@ fn options(wish: &Wish, motion: &Motion) -> [(&'static str, Value); 13] {
         ("density", Value::Float(wood.density)),
         ("leaf_mass", Value::Float(leaves.mass)),
         ("leaf_drag", Value::Float(leaves.drag)),
+        ("drag", Value::Float(wish.drag)),
+        ("air_density", Value::Float(wish.air_density)),
         ("alpha", Value::Float(damping.alpha)),
         ("beta", Value::Float(damping.beta)),
         ("air_damping", Value::Float(damping.air)),

@@ -6,8 +6,8 @@ mod typed;
 
 use honami_mechanics::Direction;
 use honami_mechanics::wind::{
-    Constant, Draw, Field, Flowing, Frozen, Inflow, Kaimal, Mask, Noise, Power, Primitive, Shape, Sine,
-    Spectrum, Sum, Wind,
+    Constant, Draw, Field, Flowing, Frozen, Growth, Inflow, Kaimal, Mask, Noise, Power, Primitive, Profile,
+    Shape, Sine, Spectrum, Sum, Wind,
 };
 
 use super::Vibrating;
@@ -17,7 +17,7 @@ use crate::error::WorkbenchError;
 
 pub use typed::{Typed, read};
 
-/// Samples of a turbulent wind in time, and seconds between them: it begins again after seven minutes.
+/// Samples of a turbulent wind in time, and seconds between them: it begins again after seven minutes, which is told.
 const N_SAMPLES: usize = 8192;
 const STEP_S: f64 = 0.05;
 /// Stations across a turbulent wind, and metres between them.
@@ -196,6 +196,21 @@ pub const WEATHERS: &[Weather] = &[
             Box::new(Frozen { mean: v.blowing(), turbulence, time: v.of("at") })
         }),
     },
+    Weather {
+        name: "log",
+        doc: "what follows it, log+wind, as it is at a height and less below it, by the logarithm over rough ground",
+        values: &[("height", 10.0), ("roughness", 0.1), ("displacement", 0.0)],
+        make: Make::Carrying(|v, wind| {
+            let (roughness, displacement) = (v.of("roughness"), v.of("displacement"));
+            grown(v, wind, Growth::Log { roughness, displacement })
+        }),
+    },
+    Weather {
+        name: "power",
+        doc: "what follows it, power+wind, as it is at a height and less below it, by a power of the height",
+        values: &[("height", 10.0), ("exponent", 0.14)],
+        make: Make::Carrying(|v, wind| grown(v, wind, Growth::Power { exponent: v.of("exponent") })),
+    },
 ];
 
 const ABOUT: &[(&str, f64)] = &[("strength", 200.0), ("x", 0.0), ("y", -15.0), ("core", 1.0)];
@@ -205,8 +220,11 @@ const MOST: f64 = 1e6;
 /// From where to where a value may be, by its name.
 fn range(name: &str) -> [f64; 2] {
     match name {
-        "scale" | "cell" | "second" | "length" | "radius" | "core" | "decay" => [1.0 / MOST, MOST],
-        "drag" | "viscosity" | "density" | "deviation" => [0.0, MOST],
+        "scale" | "cell" | "second" | "length" | "radius" | "core" | "decay" | "height" | "roughness" => {
+            [1.0 / MOST, MOST]
+        }
+        "drag" | "viscosity" | "density" | "deviation" | "displacement" => [0.0, MOST],
+        "exponent" => [0.0, 2.0],
         // Steeper spectra are no number at their ends.
         "beta" => [0.0, 20.0],
         _ => [-MOST, MOST],
@@ -233,6 +251,10 @@ impl Values {
     fn blowing(&self) -> Direction {
         self.along() * self.of("speed")
     }
+}
+
+fn grown(v: &Values, wind: Box<dyn Wind>, growth: Growth) -> Box<dyn Wind> {
+    Box::new(Profile { wind, at: v.of("height"), growth })
 }
 
 fn about(v: &Values, shape: Shape) -> Box<dyn Wind> {
@@ -308,7 +330,9 @@ pub fn help() -> String {
     let lines: Vec<String> = WEATHERS.iter().map(line).collect();
     format!(
         "Winds, with their values; metres, seconds, kilograms, hertz, and degrees: 0 towards x, 90 towards y. Several blow at \
-         once by a +, as in wind+vortex:strength=300.\n{}",
+         once by a +, as in wind+vortex:strength=300.\n{}\n\
+         A file: a row an instant, seconds and two or three components in m/s (x, y, and z up), separated by commas, semicolons, \
+         tabs or blanks; the first row may name the columns; evenly timed, without gaps. It begins again after its end.",
         lines.join("\n")
     )
 }

@@ -22,7 +22,9 @@ pub(in crate::cli) struct Simulate {
     /// several with a + between them, wind+vortex:strength=300.
     #[arg(long, value_name = "WIND", default_value = "still")]
     pub(in crate::cli) wind: String,
-    /// Begin with the slowest mode of every copy pulled out, so that the node it moves most is this far from rest, metres.
+    /// Begin with the slowest mode of every copy pulled out, metres: so far that the node which it moves most would go in a
+    /// straight line (--bend linear). It bends there instead, and is less far from rest the farther it is pulled; a copy that
+    /// is s times as large is pulled s times as far.
     #[arg(long, value_name = "M", default_value_t = 0.0, allow_negative_numbers = true)]
     pub(in crate::cli) pull: f64,
     /// How long.
@@ -61,13 +63,17 @@ pub(in crate::cli) struct Simulate {
     /// Copies are up to 1 + X times as heavy or as light as one of their size.
     #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 0.0, requires = "forest")]
     pub(in crate::cli) mass_spread: f64,
+    /// How far copies stand apart, metres (default: 0.8 times the height of the plant); each is up to a quarter of it off.
+    #[arg(long, value_name = "M", allow_negative_numbers = true, requires = "forest")]
+    pub(in crate::cli) spacing: Option<f64>,
     /// Ends of branches of the first copy that are followed, all over it, the highest first.
     #[arg(long, value_name = "N", default_value_t = 12)]
     pub(in crate::cli) sensors: u32,
     /// Follow this node instead, by its number in what --beams writes; give it once for each.
     #[arg(long = "sensor", value_name = "NODE", conflicts_with = "sensors")]
     pub(in crate::cli) nodes: Vec<u32>,
-    /// Write where they are, metres from the foot of the plant, z up: sensor,node,frame,time_s,x,y,z.
+    /// Write where they are, metres from the foot of the plant, z up: sensor,node,frame,time_s,x,y,z. --beams has nodes where
+    /// the file has them: the row of node 0 apart.
     #[arg(long, value_name = "FILE.csv")]
     pub(in crate::cli) out: Option<PathBuf>,
     /// Write where all nodes of all copies are in every frame, as a point cache (PC2).
@@ -132,9 +138,9 @@ pub(in crate::cli) struct Plant {
     /// metre), or of a pixel of a project.
     #[arg(long, value_name = "M", allow_negative_numbers = true)]
     pub(in crate::cli) unit: Option<f64>,
-    /// Of a multiscale tree graph: so many units of diameter are one of length.
-    #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 10.0)]
-    pub(in crate::cli) diameters: f64,
+    /// Of a multiscale tree graph: so many units of diameter are one of length (default: 10).
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub(in crate::cli) diameters: Option<f64>,
     /// How thick a segment is between two nodes.
     #[arg(long, value_enum, default_value_t = Radius::Mean)]
     pub(in crate::cli) radius: Radius,
@@ -156,6 +162,12 @@ pub(in crate::cli) struct Plant {
     /// Area of all leaves times their drag coefficient, square metres, shared alike.
     #[arg(long, value_name = "M2", allow_negative_numbers = true, default_value_t = 0.0)]
     pub(in crate::cli) leaf_drag: f64,
+    /// Drag coefficient of branches: 1 to 1.2 for cylinders across a wind (Hoerner 1965); bundles of twigs have less.
+    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 1.0)]
+    pub(in crate::cli) drag: f64,
+    /// Density of the air, kilograms per cubic metre: 1.2 at 20 degrees and sea level, 1.29 at 0.
+    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 1.2)]
+    pub(in crate::cli) air_density: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -1,6 +1,7 @@
 //! The lines of a multiscale tree graph: parts, what each stands on, and where it ends.
 
 use crate::plant::PlantFileError;
+use honami_model::brief::Brief;
 use std::collections::BTreeMap;
 
 /// A longer series of parts is a slip of the pen.
@@ -202,7 +203,13 @@ impl Graph {
         if let (Some(x), Some(y), Some(z)) = (number(x)?, number(y)?, number(z)?) {
             self.vertices[vertex].position = Some([x, y, z]);
         }
-        self.vertices[vertex].diameter = number(columns.diameter)?;
+        let diameter = number(columns.diameter)?;
+        if let Some(negative) = diameter.filter(|diameter| *diameter < 0.0) {
+            let what =
+                format!("a diameter is 0, where it was not measured, or more, not {}", Brief(negative));
+            return Err(wrong(line, what));
+        }
+        self.vertices[vertex].diameter = diameter;
         Ok(())
     }
 }

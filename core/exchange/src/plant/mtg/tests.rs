@@ -67,7 +67,7 @@ fn what_is_no_plant_is_named_with_its_line() {
     let (nodes, notes) = tree(&orphan, &Options::default()).unwrap();
     assert_eq!(nodes, [(None, 10.0), (Some(0), 20.0)]);
     assert_eq!(notes, ["1 more tree of 1 node left out: on nothing that the largest stands on"]);
-    let cases: [(&[&str], &str); 9] = [
+    let cases: [(&[&str], &str); 10] = [
         (&["/P1", "\t\t+S1\t0\t0\t1\t1"], "line 20: \"+S1\" stands under nothing"),
         (
             &["/P1", "\t/S1\t\t0\t0\t1\t1", "\t\t\t\t+S9\t0"],
@@ -78,11 +78,21 @@ fn what_is_no_plant_is_named_with_its_line() {
         (&["/P1", "\t/S5<<S2"], "line 20: <<S2 is no series from S6 on"),
         (&["/P1", "\t/S1\t\t0\tzero\t1\t1"], "line 20: \"zero\" is no number"),
         (&["/P1", "\t/S1\t\t0\tinf\t1\t1"], "line 20: \"inf\" is no number"),
+        (
+            &["/P1", "\t/S1\t\t0\t0\t1\t-4"],
+            "line 20: a diameter is 0, where it was not measured, or more, not -4",
+        ),
         (&["/P1", "\t/S1\t\t0\t0\t1\t0"], "line 20: the first part of an axis has a diameter, S1 has none"),
         (&["/P1", "\t/S1\t\t0\t0\t1\t1"], "a plant has two nodes at least, this one has 1"),
     ];
     for (lines, wanted) in cases {
         assert_eq!(tree(lines, &Options::default()), Err(wanted.to_owned()));
+    }
+    let sound = ["/P1", "\t/A1/S1\t\t0\t0\t10\t4", "\t^<S2\t\t0\t0\t20\t4", "\t^<U3\t\t0\t0\t30\t4"];
+    for class in ["X", "s", "A", ""] {
+        let options = Options { classes: vec!["S".into(), class.into()], ..Options::default() };
+        let wanted = format!("no part is of class {class}: there are S (2), U (1)");
+        assert_eq!(tree(&sound, &options), Err(wanted));
     }
     for (text, wanted) in [
         ("", "a multiscale tree graph has a table CLASSES, this file has none"),

@@ -42,7 +42,10 @@ fn what_is_no_cylinder_is_named_with_its_line() {
     let cases = [
         ("", "a tree of cylinders has one at least, this has none"),
         ("0.2,1,0,0,0,0,0,1,7\n", "line 2: cylinder 1 is borne by 7, there are 1"),
-        ("-0.2,1,0,0,0,0,0,1,0\n", "line 2: a cylinder of radius -0.2 m and length 1 m"),
+        (
+            "-0.2,1,0,0,0,0,0,1,0\n",
+            "line 2: a cylinder has a radius of more than 0 m and a length of 0 m or more, not of -0.2 m and 1 m",
+        ),
         ("0.2,1,0,0,0,0,0,0,0\n", "line 2: an axis that points nowhere"),
         ("0.2,1,0,0,0,0,0,1,0.5\n", "line 2: a parent is a whole number of 0 or more, not 0.5"),
         ("0.2,1,0,0,,0,0,1,0\n", "line 2: \"\" is no number"),

@@ -22,6 +22,10 @@ fn what_is_no_node_is_named_with_its_line() {
         ("1 1 0 0 0 1", "line 1: wanted number, type, x, y, z, radius and parent, came 6 cells"),
         ("1 1 0 0 0 1 -1\n2 1 0 x 0 1 1", "line 2: \"x\" is no number"),
         ("1 1 0 0 0 1 -1\n2 1 0 NaN 0 1 1", "line 2: \"NaN\" is no number"),
+        (
+            "1 1 0 0 0 1 -1\n2 1 0 0 1 -1e300 1",
+            "line 2: a radius is 0, where it was not measured, or more, not -1e300",
+        ),
         ("1.5 1 0 0 0 1 -1", "line 1: \"1.5\" is no whole number"),
         ("1 1 0 0 0 1 -1", "a plant has two nodes at least, this one has 1"),
         ("1 1 0 0 0 1 2\n2 1 0 0 0 1 1", "line 1: node 1 stands on itself, through its parents"),

@@ -18,8 +18,9 @@ fn at(typed: &str, place: [f64; 3], time: f64) -> Direction {
 #[test]
 fn every_wind_that_has_a_name_blows_with_numbers() {
     for weather in WEATHERS {
-        let carried = if weather.name == "frozen" { "frozen+noise" } else { weather.name };
-        let wind = blow(carried).unwrap();
+        let carries = ["frozen", "log", "power"].contains(&weather.name);
+        let carried = if carries { format!("{}+noise", weather.name) } else { weather.name.to_owned() };
+        let wind = blow(&carried).unwrap();
         for k in 0..50 {
             let t = f64::from(k);
             let v = wind.sample(&Direction::new(t, -2.0 * t, 5.0), 0.37 * t);
@@ -66,6 +67,47 @@ fn frozen_carries_what_follows_it() {
     assert!((later - (of(3.0, place) - vortex(place))).norm() < 1e-9);
 }
 
+/// By a power of 1 the wind is twice as fast at twice the height; what stands before it is as it was.
+#[test]
+fn a_profile_is_of_what_follows_it() {
+    for (typed, z, wanted) in [
+        ("power:height=5,exponent=1+steady:speed=4", 10.0, 8.0),
+        ("steady:speed=1+power:height=5,exponent=1+steady:speed=4", 10.0, 9.0),
+        ("log:height=8,roughness=2+steady:speed=4", 32.0, 8.0),
+        ("log:height=8,roughness=2+steady:speed=4+steady:speed=2", 32.0, 12.0),
+    ] {
+        let v = at(typed, [1.0, 2.0, z], 0.5);
+        assert!((v.x - wanted).abs() < 1e-12, "{typed}: {v}");
+    }
+}
+
+#[test]
+fn winds_that_end_before_the_motion_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mast.csv");
+    let rows: String = (0..40).map(|k| format!("{},1,2\n", 0.5 * f64::from(k))).collect();
+    std::fs::write(&path, rows).unwrap();
+    let file = path.display();
+    let recorded = |seconds: &str| {
+        format!("{file}, a recording, lasts for 20.0 s, the motion for {seconds} s: it begins again")
+    };
+    for (typed, seconds, wanted) in [
+        (format!("{file}"), 20.0, vec![]),
+        (format!("{file}"), 20.5, vec![recorded("20.5")]),
+        (
+            format!("storm+steady+{file}"),
+            500.0,
+            vec![
+                "storm lasts for 409.6 s, the motion for 500.0 s: it begins again".to_owned(),
+                recorded("500.0"),
+            ],
+        ),
+        ("noise+steady+frozen+storm".to_owned(), 1e6, vec![]),
+    ] {
+        assert_eq!(read(&typed).unwrap().again(seconds), wanted);
+    }
+}
+
 #[test]
 fn air_that_flows_by_itself_is_held_back_by_the_trees() {
     let along = |typed: &str| {
@@ -100,6 +142,13 @@ fn what_is_no_wind_is_told_what_there_is() {
         ("air:drag=-1", "drag of air is a number from 0 to 1000000, not \"-1\""),
         ("gusts:speed=0", "gusts is carried by its mean: speed is a number above 0, not 0"),
         ("wind+frozen", "frozen carries what follows it: frozen+noise:speed=0, for instance"),
+        ("power+wind+log", "log carries what follows it: log+noise:speed=0, for instance"),
+        (
+            "log:height=0.1+wind",
+            "log has its wind above the ground: a height above displacement and roughness, 0.1 m",
+        ),
+        ("log:roughness=0+wind", "roughness of log is a number from 0.000001 to 1000000, not \"0\""),
+        ("power:exponent=-1+wind", "exponent of power is a number from 0 to 2, not \"-1\""),
         ("air:cell=0.01", "air over 12 m in cells of 0.01 m: at most 256 cells a side"),
     ];
     for (typed, wanted) in cases {

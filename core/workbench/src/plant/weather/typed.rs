@@ -8,7 +8,7 @@ use honami_exchange::plant::{PlantFileError, anemometer};
 use honami_mechanics::Direction;
 use honami_mechanics::wind::{Series, Sum, Wind};
 
-use super::{Ground, MOST, Make, Values, WEATHERS, range};
+use super::{Ground, Make, N_SAMPLES, STEP_S, Values, WEATHERS, range};
 use crate::error::WorkbenchError;
 
 /// Winds that were typed, one after the other; all there is to know of them but what they blow over.
@@ -81,6 +81,12 @@ fn part(typed: &str) -> Result<Part, WorkbenchError> {
         values[place] = number(name, key.trim(), value)?;
     }
     let values = Values { weather, values };
+    let ground = values.of("displacement") + values.of("roughness");
+    if weather.values.iter().any(|(known, _)| *known == "roughness") && values.of("height") <= ground {
+        return Err(wrong(format!(
+            "{name} has its wind above the ground: a height above displacement and roughness, {ground} m"
+        )));
+    }
     // What is carried by its mean stands still without one.
     let is_carried = weather.values.iter().any(|(known, _)| *known == "decay");
     if is_carried && values.of("speed") <= 0.0 {
@@ -107,12 +113,8 @@ fn number(name: &str, key: &str, value: &str) -> Result<f64, WorkbenchError> {
 fn recorded(path: &Path) -> Result<Series, WorkbenchError> {
     let text =
         fs::read_to_string(path).map_err(|source| PlantFileError::Io { path: path.to_owned(), source })?;
-    let recording = anemometer::parse(&text)?;
+    let recording = anemometer::parse(&text).map_err(|error| error.of(path))?;
     let samples: Vec<Direction> = recording.samples.into_iter().map(Direction::from).collect();
-    if let Some(wild) = samples.iter().find(|v| v.amax() > MOST) {
-        let (file, speed) = (path.display(), wild.amax());
-        return Err(wrong(format!("{file}: a wind of {speed:e} m/s, more than 1000000")));
-    }
     Ok(Series { step: recording.step, samples })
 }
 
@@ -123,6 +125,29 @@ impl Typed {
             Part::Recorded(path, _) => Some(path.as_path()),
             Part::Named(_) => None,
         })
+    }
+
+    /// What begins again before so many seconds are over, a sentence each.
+    #[must_use]
+    pub fn again(&self, seconds: f64) -> Vec<String> {
+        let lasts = |part: &Part| match part {
+            Part::Recorded(path, series) => {
+                Some((format!("{}, a recording,", path.display()), series.period()))
+            }
+            Part::Named(values) => {
+                let is_drawn = values.weather.values.iter().any(|(known, _)| *known == "decay");
+                is_drawn.then(|| (values.weather.name.to_owned(), N_SAMPLES as f64 * STEP_S))
+            }
+        };
+        // What is frozen has stopped.
+        let runs =
+            self.0.iter().take_while(|part| !matches!(part, Part::Named(v) if v.weather.name == "frozen"));
+        let short = runs.filter_map(lasts).filter(|(_, lasts)| *lasts < seconds * (1.0 - 1e-9));
+        short
+            .map(|(name, lasts)| {
+                format!("{name} lasts for {lasts:.1} s, the motion for {seconds:.1} s: it begins again")
+            })
+            .collect()
     }
 
     /// The wind over some ground.
