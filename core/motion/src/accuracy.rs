@@ -161,11 +161,17 @@ impl Sums {
     }
 }
 
-/// The middle one of some numbers, of two the larger; `None` of none.
+/// The middle one of some numbers, of an even count the mean of the two in the middle; `None` of none.
 #[must_use]
 pub fn median(mut numbers: Vec<f64>) -> Option<f64> {
     let middle = numbers.len() / 2;
-    (middle < numbers.len()).then(|| *numbers.select_nth_unstable_by(middle, f64::total_cmp).1)
+    if numbers.is_empty() {
+        return None;
+    }
+    let is_odd = numbers.len() % 2 == 1;
+    let (below, &mut upper, _) = numbers.select_nth_unstable_by(middle, f64::total_cmp);
+    let lower = below.iter().copied().max_by(f64::total_cmp).filter(|_| !is_odd);
+    Some(lower.map_or(upper, |lower| f64::midpoint(lower, upper)))
 }
 
 #[cfg(test)]

@@ -6,6 +6,8 @@ use std::ops::Range;
 
 use honami_model::track::{Sample, Span, TrackId};
 
+use crate::accuracy::median;
+
 /// Distances that shares are told of, pixels.
 pub const LIMITS_PX: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
 /// From here on two positions are apart, pixels.
@@ -164,8 +166,8 @@ pub fn disagreement(tracks: &[Paired]) -> Disagreement {
     found.summary.n_both = n as u64;
     found.summary.within =
         LIMITS_PX.map(|limit| distances.iter().filter(|px| **px < limit).count() as f64 / n.max(1) as f64);
-    found.summary.median_px = median(&mut distances);
-    found.summary.fb_px = errors.map(|mut errors| median(&mut errors));
+    found.summary.median_px = median(distances);
+    found.summary.fb_px = errors.map(median);
     found
 }
 
@@ -256,14 +258,8 @@ pub fn at_keys<'a>(keys: impl IntoIterator<Item = ([&'a Sample; 2], [f32; 2])>) 
             }
         }
     }
-    found.median_px = errors.map(|mut errors| median(&mut errors).filter(|px| px.is_finite()));
+    found.median_px = errors.map(|errors| median(errors).filter(|px| px.is_finite()));
     found
-}
-
-/// The value in the middle, of two the larger; the order of the values is changed.
-fn median(values: &mut [f64]) -> Option<f64> {
-    let middle = values.len() / 2;
-    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
 #[cfg(test)]

@@ -75,7 +75,7 @@ fn shares_moments_and_bias_by_hand() {
     close(got.axis_rms_px.unwrap()[0], got.rms_px.unwrap(), "all of it is to the right");
     close(got.axis_rms_px.unwrap()[1], 0.0, "nothing is down");
     close(got.bias_px.unwrap()[0], -1.0, "bias");
-    close(got.median_px.unwrap(), 3.0, "median of 0.5, 1.5, 3, 6");
+    close(got.median_px.unwrap(), 2.25, "median of 0.5, 1.5, 3, 6");
     close(got.trajectory_px.unwrap(), 3.0, "median of 0.5, 1.5, 3, 6 and the lost one");
     assert_eq!((got.n_samples, got.n_lost), (5, 1));
     let lost = of(&[true; 3], &[Some(0.0), None, None]);
@@ -104,6 +104,19 @@ fn nothing_visible_is_no_number() {
 }
 
 #[test]
+fn of_an_even_count_the_median_is_the_mean_of_the_two_in_the_middle() {
+    for (numbers, wanted) in [
+        (vec![4.0], 4.0),
+        (vec![5.0, 1.0], 3.0),
+        (vec![9.0, 2.0, 1.0], 2.0),
+        (vec![9.0, 2.0, 1.0, 3.0], 2.5),
+        (vec![1.0, f64::INFINITY, 2.0, f64::INFINITY], f64::INFINITY),
+    ] {
+        assert_eq!(median(numbers.clone()), Some(wanted), "{numbers:?}");
+    }
+}
+
+#[test]
 fn a_track_that_ends_early_is_lost_after_its_end() {
     let got = of(&[true; 3], &[Some(0.0), Some(0.0)]);
     assert_eq!((got.n_samples, got.n_lost), (2, 1));
@@ -126,7 +139,7 @@ fn drift_by_time_since_the_query() {
     let (a, b) = (track(&[Some(0.0), Some(1.0), Some(2.0)]), track(&[Some(9.0), Some(0.0), Some(4.0)]));
     let curve = drift([(&early, 10, &a), (&late, 11, &b)]);
     let told: Vec<_> = curve.iter().map(|d| (d.first, d.last, d.median_px, d.n_samples)).collect();
-    assert_eq!(told, [(1, 1, Some(4.0), 2), (2, 2, Some(2.0), 1)]);
+    assert_eq!(told, [(1, 1, Some(2.5), 2), (2, 2, Some(2.0), 1)]);
     // Where most are lost, nothing can be said of the rest.
     let lost = drift([(&truth(&[true; 3]), 10, &track(&[Some(0.0), Some(0.0), None]))]);
     let told: Vec<_> = lost.iter().map(|d| (d.first, d.median_px, d.lost)).collect();

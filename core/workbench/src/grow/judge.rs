@@ -5,6 +5,7 @@ use std::path::Path;
 
 use honami_model::skeleton::seen;
 use honami_model::track::TrackId;
+use honami_motion::accuracy::median;
 use honami_store::Project;
 
 use super::Growth;
@@ -108,9 +109,4 @@ fn mean(places: impl Iterator<Item = [f64; 2]>) -> Option<[f64; 2]> {
         (n, sum) = (n + 1.0, [sum[0] + x, sum[1] + y]);
     }
     (n > 0.0).then(|| sum.map(|v| v / n))
-}
-
-fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied()
 }

@@ -9,6 +9,7 @@ use honami_host::{CallContext, Host, PluginInfo, Steps, WindRows};
 use honami_mechanics::{
     Damping, Detail, Direction, Forest, Form, Integrator, Pace, Pose, Roof, Stand, Stirring, Threads,
 };
+use honami_motion::accuracy;
 
 use self::crowd::Crowd;
 use super::mover::{Mover, start};
@@ -274,12 +275,12 @@ pub fn boundary(
     let found = (0..runs.n_runs).map(|_| frames(n)).collect::<Result<Vec<_>, _>>()?;
     let mut ratios: Vec<f64> = found.iter().map(|[direct, plugin]| plugin / direct).collect();
     ratios.sort_by(f64::total_cmp);
-    let ratio = [0, ratios.len() / 2, ratios.len() - 1].map(|k| ratios[k]);
+    let (least, most) = (ratios[0], ratios[ratios.len() - 1]);
     let [direct_s, plugin_s] = [0, 1].map(|k| median(found.iter().map(|took| took[k]).collect()));
+    let ratio = [least, median(ratios), most];
     Ok(Boundary { direct_s, plugin_s, ratio })
 }
 
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or_default()
+fn median(values: Vec<f64>) -> f64 {
+    accuracy::median(values).unwrap_or_default()
 }
