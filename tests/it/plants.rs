@@ -297,7 +297,18 @@ fn a_swing_has_its_frequency_and_damping_back_from_its_sensors() {
         let (wanted, got) = (mode[name].as_f64().unwrap(), found[name].as_f64().unwrap());
         assert!((got / wanted - 1.0).abs() < tolerance, "{name}: {got} {wanted}");
     }
+    assert_eq!(found["manner"], "let go");
+    for name in ["hz_error", "damped_hz", "damping_error", "log_decrement_error", "cycles", "from_s"] {
+        assert!(found[name].as_f64().is_some(), "{name}: {found}");
+    }
+    let text = bench.text("spectrum sway.csv");
+    assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
     fs::write(bench.path("odd.txt"), "1 2\n3\n").unwrap();
+    let ran = bench.line("spectrum odd.txt");
+    assert!(
+        ran.code == Some(2) && ran.stderr.contains("numbers without times: --fps F says how many"),
+        "{ran:?}"
+    );
     let ran = bench.line("spectrum odd.txt --fps 4");
     assert!(
         ran.code == Some(1) && ran.stderr.contains("line 2: wanted 2 numbers as before, came 1"),

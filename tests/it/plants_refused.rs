@@ -111,6 +111,9 @@ const CASES: &[(&str, i32, &str)] = &[
     ("simulate two.mtg --modes 2 --longest 1e-9", 1, "nodes of beams, and 4000000 are the most"),
     ("simulate synth::tree:100000000,1", 1, "1e8 nodes of beams, and 4000000 are the most"),
     ("spectrum two.mtg --fps 4 --above=-1", 2, "wanted hertz, a number of 0 or more"),
+    ("spectrum two.mtg --fps 4 --track 1", 2, "--track is for tracks, and"),
+    ("spectrum two.mtg --fps 4 --peaks 2", 2, "--peaks is for tracks, and"),
+    ("spectrum two.mtg --fps 4 --from soon", 2, "wanted seconds, a number, got soon"),
     ("simulate two.mtg --modes 2 --wind calm --seconds 0", 2, "a motion has 1 to 100000000 frames"),
     // Sizes.
     ("simulate fat.swc --modes 2", 1, "has a radius of 1e300 m and a segment of"),

@@ -1,148 +1,215 @@
 //! How fast something swings and how soon it comes to rest, from a series of where it was.
 //!
-//! A mode that is pulled and let go, and one that the wind drives, have nearly the same shape of spectrum about its
-//! frequency: A (1 + C r^2) r^-D / ((1 - r^2)^2 + (2 zeta r)^2) + B, r = f / f0; C is how much of it began with a push, and
-//! 0 for the wind; D how steeply the wind falls with frequency, 5/3 in turbulence, and 0 without. It is fitted to the
-//! periodogram by Whittle's likelihood, whose errors are those of a spectrum that was drawn (Whittle, Ark. Mat. 2, 1953).
+//! What was pulled and let go is a sum of damped sines on a straight line, and is fitted by least squares ([`free`]):
+//! no method is more exact where noise is white, and it tells a steady sine and one that grows as what they are. Where
+//! it was let go within the series is found ([`release`]). What the wind drives has no shape but that of its spectrum,
+//! which is fitted by Whittle's likelihood ([`driven`]). Which of the two it is, or noise alone, is told by the Bayesian
+//! information criterion (Schwarz, Ann. Stat. 6, 1978) of all three on the same frequencies.
 
+mod driven;
+mod free;
+mod periodogram;
+mod release;
 #[cfg(test)]
 mod tests;
 
-use realfft::RealFftPlanner;
 use std::f64::consts::TAU;
+use std::ops::Range;
 
+use periodogram::{Periodogram, straightened};
+
+/// Fewer samples than this are no swing.
+pub const FEWEST: usize = 12;
 /// The band that is fitted, in shares of the strongest frequency.
 const BAND: [f64; 2] = [0.6, 1.5];
 /// And so many frequencies to either side of the strongest, at least.
 const BESIDE: usize = 3;
-/// Damping to begin with.
-const RATIO: f64 = 0.05;
-/// Steps of the search.
-const STEPS: usize = 800;
-/// Numbers that are sought: logarithms of f0, zeta, B / A and C; and D.
-const N: usize = 5;
-/// Of fewer frequencies D would be a guess: it is 0.
-const SLOPED: usize = 20;
+/// A damping or growth within so many standard errors of none is none.
+const SURE: f64 = 3.0;
+/// A free swing is told from a driven one by so much of the criterion: brief records of wind look like either.
+const MARGIN: f64 = 6.0;
+/// What is known no better than this, of damping and in shares of the frequency, is not known.
+const VAGUE: f64 = 0.05;
+/// Rounding, in shares of what moves: nothing is more exact.
+const ROUNDING: f64 = 1e-6;
+
+/// A number and its standard error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Told {
+    /// The number.
+    pub value: f64,
+    /// Its standard error, 0 or more.
+    pub error: f64,
+}
+
+/// What keeps it swinging.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Manner {
+    /// Nothing: it was let go and comes to rest.
+    LetGo,
+    /// It goes on as it is: its damping is none within twice the standard error.
+    Steady,
+    /// It swings farther each time: its damping is negative.
+    Growing,
+    /// The wind, or something else that has all frequencies.
+    Driven,
+}
 
 /// How something swings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Swing {
-    /// Natural frequency, hertz.
-    pub hz: f64,
-    /// Damping, of critical.
-    pub ratio: f64,
+    /// What keeps it swinging.
+    pub manner: Manner,
+    /// Natural frequency, hertz: that without damping.
+    pub hz: Told,
+    /// Damping, of critical; below 0 it grows.
+    pub ratio: Told,
+    /// Swings from the first sample that was used to where it is no larger than the noise, or to the last.
+    pub n_cycles: f64,
+    /// The first sample that was used.
+    pub first: usize,
+}
+
+/// Why nothing swings.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum NoSwing {
+    /// Too few samples.
+    #[error("too short: {came} samples, wanted {FEWEST} or more")]
+    Short {
+        /// Samples there are.
+        came: usize,
+    },
+    /// A sample is no number.
+    #[error("sample {sample} is no number")]
+    NoNumber {
+        /// The first of them, from 0.
+        sample: usize,
+    },
+    /// All samples are on a straight line.
+    #[error("stands still")]
+    Still,
+    /// No frequency of the series is in the band.
+    #[error("too short for the band: its frequencies are {step_hz:.3} Hz apart")]
+    Band {
+        /// From one to the next, hertz.
+        step_hz: f64,
+    },
+    /// Nothing stands out.
+    #[error("nothing stands out of the noise")]
+    Noise,
+    /// A fit tells next to nothing: too few swings, or too much noise.
+    #[error("too vague: {hz:.3} Hz, and a damping off by {:.0} %", 100.0 * error)]
+    Vague {
+        /// Natural frequency, hertz.
+        hz: f64,
+        /// Standard error of the damping, of critical.
+        error: f64,
+    },
 }
 
 impl Swing {
+    /// Frequency of the damped swing, hertz: what is counted in the series, f sqrt(1 - zeta^2).
+    #[must_use]
+    pub fn damped_hz(&self) -> f64 {
+        self.hz.value * (1.0 - self.ratio.value.powi(2)).max(0.0).sqrt()
+    }
+
     /// Logarithm of how much smaller each swing is than the one before, 2 pi zeta / sqrt(1 - zeta^2).
     #[must_use]
-    pub fn log_decrement(&self) -> f64 {
-        TAU * self.ratio / (1.0 - self.ratio.powi(2)).max(f64::MIN_POSITIVE).sqrt()
+    pub fn log_decrement(&self) -> Told {
+        let rest = (1.0 - self.ratio.value.powi(2)).max(f64::MIN_POSITIVE);
+        Told { value: TAU * self.ratio.value / rest.sqrt(), error: TAU * self.ratio.error / rest.powf(1.5) }
     }
 }
 
-/// The strongest swing of a series, evenly sampled at `fps`, between `lowest` and `highest` hertz; `None` where the
-/// series is too short for a fit, does not move or is no number.
-#[must_use]
-pub fn swing(series: &[f64], fps: f64, [lowest, highest]: [f64; 2]) -> Option<Swing> {
-    if series.len() < 4 || !series.iter().all(|v| v.is_finite()) {
-        return None;
+/// The strongest swing of a series, evenly sampled at `fps`, between `lowest` and `highest` hertz.
+///
+/// # Errors
+/// [`NoSwing`].
+pub fn swing(series: &[f64], fps: f64, [lowest, highest]: [f64; 2]) -> Result<Swing, NoSwing> {
+    if let Some(sample) = series.iter().position(|v| !v.is_finite()) {
+        return Err(NoSwing::NoNumber { sample });
     }
-    let power = periodogram(&straightened(series))?;
-    let step = fps / series.len() as f64;
-    let within = |from: f64, to: f64| {
-        let first = (from / step).ceil().max(1.0) as usize;
-        first..((to / step).floor() as usize + 1).min(power.len())
-    };
-    let peak = within(lowest, highest).max_by(|a, b| power[*a].total_cmp(&power[*b]))?;
-    let hz = peak as f64 * step;
-    let band = within(BAND[0] * hz, BAND[1] * hz);
-    let (first, end) = (band.start.min(peak.checked_sub(BESIDE)?), band.end.max(peak + BESIDE + 1));
-    // A series that stands still is straight but for rounding.
-    let size = series.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
-    let rounding = (f64::EPSILON * size * series.len() as f64).powi(2);
-    if first < 1 || end > power.len() || power[peak] <= rounding {
-        return None;
+    if series.len() < FEWEST {
+        return Err(NoSwing::Short { came: series.len() });
     }
-    let rows: Vec<(f64, f64)> = (first..end).map(|k| (k as f64 * step, power[k])).collect();
-    let start = [hz.ln(), RATIO.ln(), (1e-3 / (4.0 * RATIO.powi(2))).ln(), 0.0, 0.0];
-    let [found, ratio, ..] = smallest(start, |at| misfit(&rows, at)).map(f64::exp);
-    let is_there = (rows[0].0..=rows[rows.len() - 1].0).contains(&found) && (1e-5..1.0).contains(&ratio);
-    is_there.then_some(Swing { hz: found, ratio })
+    let seen = Seen::new(series, fps, [lowest, highest])?;
+    let whole = free::Fit::new(&seen);
+    let first = release::find(series, fps, &seen, &whole);
+    if first > 0
+        && let Ok(after) = Seen::new(&series[first..], fps, [lowest, highest])
+        && let Ok(swing) = told(&after, &free::Fit::new(&after))
+        && swing.manner != Manner::Driven
+    {
+        return Ok(Swing { first, ..swing });
+    }
+    told(&seen, &whole)
 }
 
-/// Less its mean and its straight line.
-fn straightened(series: &[f64]) -> Vec<f64> {
-    let n = series.len() as f64;
-    let (mean, middle) = (series.iter().sum::<f64>() / n, (n - 1.0) / 2.0);
-    let (mut product, mut square) = (0.0, 0.0);
-    for (k, v) in series.iter().enumerate() {
-        let t = k as f64 - middle;
-        product += t * (v - mean);
-        square += t * t;
-    }
-    let slope = product / square.max(f64::MIN_POSITIVE);
-    series.iter().enumerate().map(|(k, v)| v - mean - slope * (k as f64 - middle)).collect()
+/// A series less its straight line, and the frequencies about its strongest.
+struct Seen {
+    /// Less its mean and its straight line.
+    series: Vec<f64>,
+    fps: f64,
+    /// Where a swing is looked for, hertz.
+    within_hz: [f64; 2],
+    periodogram: Periodogram,
+    /// The strongest frequency of the periodogram there.
+    peak: usize,
+    /// Frequencies of the periodogram that are fitted.
+    band: Range<usize>,
+    /// What is less than this, on average of its squares, is rounding.
+    rounding: f64,
 }
 
-fn periodogram(series: &[f64]) -> Option<Vec<f64>> {
-    let forward = RealFftPlanner::<f64>::new().plan_fft_forward(series.len());
-    let (mut input, mut output) = (series.to_vec(), forward.make_output_vec());
-    forward.process(&mut input, &mut output).ok()?;
-    Some(output.iter().map(|v| v.norm_sqr()).collect())
-}
-
-/// Minus the logarithm of the likelihood, with the best A.
-fn misfit(rows: &[(f64, f64)], at: [f64; N]) -> f64 {
-    let [.., slope] = at;
-    let [hz, ratio, floor, push, _] = at.map(f64::exp);
-    let slope = if rows.len() < SLOPED { 0.0 } else { slope };
-    let (mut scale, mut sum) = (0.0, 0.0);
-    for (f, power) in rows {
-        let r = f / hz;
-        let resonance = ((1.0 - r * r).powi(2) + (2.0 * ratio * r).powi(2)).recip();
-        let shape = (1.0 + push * r * r) * r.powf(-slope) * resonance + floor;
-        scale += power / shape;
-        sum += shape.ln();
-    }
-    let n = rows.len() as f64;
-    let cost = n * (scale / n).max(f64::MIN_POSITIVE).ln() + sum;
-    if cost.is_finite() { cost } else { f64::MAX }
-}
-
-/// Where a function of some numbers is smallest (Nelder and Mead, Comput. J. 7, 1965).
-fn smallest(start: [f64; N], of: impl Fn([f64; N]) -> f64) -> [f64; N] {
-    let valued = |at: [f64; N]| (of(at), at);
-    let mut corners: Vec<(f64, [f64; N])> = vec![valued(start)];
-    for (axis, away) in [0.02, 0.5, 1.0, 1.0, 1.0].into_iter().enumerate() {
-        let mut at = start;
-        at[axis] += away;
-        corners.push(valued(at));
-    }
-    for _ in 0..STEPS {
-        corners.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let centre: [f64; N] =
-            std::array::from_fn(|k| corners[..N].iter().map(|corner| corner.1[k]).sum::<f64>() / N as f64);
-        let worst = corners[N];
-        let towards =
-            |share: f64| valued(std::array::from_fn(|k| centre[k] + share * (worst.1[k] - centre[k])));
-        let mirrored = towards(-1.0);
-        let next = if mirrored.0 < corners[0].0 {
-            let farther = towards(-2.0);
-            if farther.0 < mirrored.0 { farther } else { mirrored }
-        } else if mirrored.0 < corners[N - 1].0 {
-            mirrored
-        } else {
-            towards(if mirrored.0 < worst.0 { -0.5 } else { 0.5 })
-        };
-        if next.0 < worst.0 {
-            corners[N] = next;
-        } else {
-            let best = corners[0].1;
-            for corner in &mut corners[1..] {
-                *corner = valued(std::array::from_fn(|k| f64::midpoint(best[k], corner.1[k])));
-            }
+impl Seen {
+    fn new(series: &[f64], fps: f64, within_hz: [f64; 2]) -> Result<Self, NoSwing> {
+        if series.len() < FEWEST {
+            return Err(NoSwing::Short { came: series.len() });
         }
+        // A series that stands still is straight but for rounding.
+        let size = series.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+        let series = straightened(series);
+        let mean_square = series.iter().map(|v| v * v).sum::<f64>() / series.len() as f64;
+        if mean_square <= (16.0 * f64::EPSILON * size).powi(2) {
+            return Err(NoSwing::Still);
+        }
+        let periodogram = Periodogram::new(&series, fps);
+        let step_hz = periodogram.step_hz;
+        let peak = periodogram.strongest(within_hz).ok_or(NoSwing::Band { step_hz })?;
+        let hz = peak as f64 * step_hz;
+        let band = periodogram.within(BAND.map(|share| share * hz));
+        let first = band.start.min(peak.saturating_sub(BESIDE)).max(1);
+        let end = band.end.max(peak + BESIDE + 1).min(periodogram.power.len());
+        let rounding = ROUNDING * ROUNDING * mean_square;
+        Ok(Self { series, fps, within_hz, periodogram, peak, band: first..end, rounding })
     }
-    corners.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).map_or(start, |corner| corner.1)
+
+    /// The band's frequencies, hertz, and their power.
+    fn rows(&self) -> Vec<(f64, f64)> {
+        let step_hz = self.periodogram.step_hz;
+        self.band.clone().map(|k| (k as f64 * step_hz, self.periodogram.power[k])).collect()
+    }
+}
+
+/// The likeliest of a free swing, a driven one, and noise.
+fn told(seen: &Seen, fit: &free::Fit) -> Result<Swing, NoSwing> {
+    let rows = seen.rows();
+    // Real and imaginary parts are what is seen; a frequency was chosen of all there are.
+    let (a_number, a_peak) =
+        ((2.0 * rows.len() as f64).ln(), 2.0 * (seen.periodogram.power.len() as f64).ln());
+    let noise = 2.0 * driven::noise(&rows) + 2.0 * a_number;
+    let by_wind = driven::Fit::new(&rows, seen.peak as f64 * seen.periodogram.step_hz);
+    let of_wind = 2.0 * by_wind.misfit + 5.0 * a_number + a_peak;
+    let of_free = 2.0 * fit.misfit(seen) + (1.0 + 4.0 * fit.n_within(seen) as f64) * a_number + a_peak;
+    let n_cycles = |hz: f64| hz * seen.series.len() as f64 / seen.fps;
+    let by_itself = fit.strongest(seen).filter(|_| of_free + MARGIN < of_wind.min(noise));
+    let driven = || {
+        let swing = by_wind.swing().filter(|_| of_wind < noise)?;
+        Some(Swing { n_cycles: n_cycles(swing.damped_hz()), ..swing })
+    };
+    let swing = by_itself.or_else(driven).ok_or(NoSwing::Noise)?;
+    let (hz, error) = (swing.hz.value, swing.ratio.error);
+    if error < VAGUE && swing.hz.error < VAGUE * hz { Ok(swing) } else { Err(NoSwing::Vague { hz, error }) }
 }

@@ -479,6 +479,23 @@ pub enum WorkbenchError {
         /// Nodes.
         there: usize,
     },
+    /// Something faster was asked for than can be seen.
+    #[error(
+        "nothing above {nyquist_hz} Hz can be seen at {} samples a second: --above is less, not {above_hz} Hz",
+        2.0 * nyquist_hz
+    )]
+    TooFast {
+        /// What was asked for, hertz.
+        above_hz: f64,
+        /// Half the rate, hertz.
+        nyquist_hz: f64,
+    },
+    /// Nothing is left of a record between two times.
+    #[error("{what}")]
+    NothingLeft {
+        /// What there is.
+        what: String,
+    },
     /// A file is no table of series.
     #[error("{}: {what}", path.display())]
     Series {

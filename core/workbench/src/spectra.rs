@@ -14,7 +14,7 @@ use honami_store::Project;
 pub use honami_motion::spectrum::Peak;
 
 use crate::error::WorkbenchError;
-use crate::sways::{self, Swing};
+use crate::sways::{self, Swing, Within};
 
 /// How many times the noise around it the power of a peak of one track must be: foliage has broad peaks.
 pub(crate) const OVER_FLOOR: f64 = 3.0;
@@ -31,8 +31,8 @@ const ABOUT: f64 = 1.3;
 pub struct Wanted {
     /// So many at most, the strongest first.
     pub n_peaks: usize,
-    /// None at or below, hertz: what blows is mostly slower than what swings in it.
-    pub above_hz: f64,
+    /// When, and none at or below which frequency.
+    pub within: Within,
 }
 
 /// What sways.
@@ -66,6 +66,8 @@ pub struct Spectra {
     pub resolution_hz: f64,
     /// Nothing above can be seen.
     pub nyquist_hz: f64,
+    /// Time of the first frame that was looked at, seconds.
+    pub start_s: f64,
     /// Frame rate, where frames are evenly timed.
     pub fps: Option<f64>,
     /// All tracks together, then groups, then tracks.
@@ -111,6 +113,8 @@ pub fn of_table(path: &Path, wanted: Wanted) -> Result<Spectra, WorkbenchError> 
     of(&times, &tracks, &BTreeMap::new(), wanted)
 }
 
+type Cut = (FrameTimes, Vec<(TrackId, Arc<Span>)>);
+
 fn of(
     times: &FrameTimes,
     tracks: &[(TrackId, Arc<Span>)],
@@ -120,6 +124,7 @@ fn of(
     if tracks.is_empty() {
         return Err(WorkbenchError::NoTracks);
     }
+    let (times, tracks) = &cut(times, tracks, wanted.within)?;
     let analyser = Analyser::new(times)?;
     let spectra: Vec<(TrackId, Spectrum)> = tracks
         .iter()
@@ -136,6 +141,7 @@ fn of(
     };
     let all: Vec<Spectrum> = spectra.iter().map(|(_, spectrum)| spectrum.clone()).collect();
     let first = all.first().cloned().ok_or(WorkbenchError::TooBrief)?;
+    wanted.within.check_above(first.nyquist_hz)?;
     let ids: Vec<TrackId> = spectra.iter().map(|(id, _)| *id).collect();
     let mut groups = BTreeMap::<u32, (Vec<Spectrum>, Vec<TrackId>)>::new();
     for (id, spectrum) in &spectra {
@@ -156,16 +162,35 @@ fn of(
     Ok(Spectra {
         resolution_hz: first.resolution_hz,
         nyquist_hz: first.nyquist_hz,
+        start_s: times.as_slice()[0],
         fps: first.even_fps,
         n_brief: tracks.len() - spectra.len(),
         lines,
     })
 }
 
+/// Tracks in the frames between two times, and those times; frames count from the first of them.
+fn cut(times: &FrameTimes, tracks: &[(TrackId, Arc<Span>)], within: Within) -> Result<Cut, WorkbenchError> {
+    if within.from_s.is_none() && within.to_s.is_none() {
+        return Ok((times.clone(), tracks.to_vec()));
+    }
+    let range = within.range(times.as_slice()).map_err(|what| WorkbenchError::NothingLeft { what })?;
+    let of_span = |span: &Span| {
+        let frames = span.frames();
+        let first = range.start.max(frames.start as usize);
+        let end = range.end.min(frames.end as usize).max(first);
+        let samples = (first..end).filter_map(|frame| span.get(frame as u32).copied()).collect();
+        Arc::new(Span { first_frame: (first - range.start) as u32, samples })
+    };
+    let tracks = tracks.iter().map(|(id, span)| (*id, of_span(span))).collect();
+    let times = FrameTimes::new(times.as_slice()[range.clone()].to_vec());
+    Ok((times.map_err(|error| WorkbenchError::NothingLeft { what: error.to_string() })?, tracks))
+}
+
 impl Wanted {
     fn of(self, spectrum: &Spectrum, over_floor: f64) -> Vec<Peak> {
         let mut peaks = spectrum.peaks(usize::MAX, over_floor);
-        peaks.retain(|peak| peak.hz > self.above_hz);
+        peaks.retain(|peak| peak.hz > self.within.above_hz);
         peaks.truncate(self.n_peaks);
         peaks
     }
@@ -185,7 +210,8 @@ fn swing_of(spans: &BTreeMap<TrackId, &Span>, ids: &[TrackId], fps: f64, hz: f64
             .collect::<Option<_>>()?;
         let axes = [0, 1].map(|axis| samples.iter().map(|at| at[axis]).collect::<Vec<f64>>());
         let most = axes.into_iter().max_by(|a, b| sways::variance(a).total_cmp(&sways::variance(b)))?;
-        honami_motion::swing::swing(&most, fps, about)
+        let swing = honami_motion::swing::swing(&most, fps, about).ok()?;
+        Some(Swing { first: swing.first + span.first_frame as usize, ..swing })
     };
     sways::median(ids.iter().step_by(every).filter_map(of_track).collect())
 }

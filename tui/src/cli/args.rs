@@ -247,21 +247,27 @@ pub(super) struct Compare {
 
 #[derive(Args, Debug)]
 pub(super) struct Spectrum {
-    /// Project file (.honami), a table of tracks (.csv), of sensors as `simulate` writes it (.csv), or, with --fps, columns
-    /// of numbers.
+    /// Project file (.honami), a table of tracks (.csv), of sensors as `simulate` writes it (.csv), or columns of numbers
+    /// with one of times (time_s, t_s, time, t) or with --fps.
     pub(super) project: PathBuf,
-    /// It is columns of numbers, so many rows a second: strain, tilt or whatever was recorded of what swings.
+    /// It is columns of numbers without times, so many rows a second: strain, tilt or whatever was recorded of what swings.
     #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = frames_per_second)]
     pub(super) fps: Option<f64>,
-    /// Only this track.
+    /// Only this track; of tracks alone.
     #[arg(long, value_name = "ID")]
     pub(super) track: Option<u32>,
-    /// How many peaks to name for each.
-    #[arg(long, value_name = "N", default_value_t = 3)]
-    pub(super) peaks: usize,
+    /// How many peaks to name for each, 3 where it is not said; of tracks alone, other series have their strongest swing.
+    #[arg(long, value_name = "N")]
+    pub(super) peaks: Option<usize>,
     /// Leave out what is slower: gusts move a plant more slowly than it swings.
     #[arg(long, value_name = "HZ", default_value_t = 0.0, value_parser = hertz)]
     pub(super) above: f64,
+    /// From this time on, seconds. Where what was held is let go within a record is found without it, and told.
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = seconds)]
+    pub(super) from: Option<f64>,
+    /// To this time, seconds.
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = seconds)]
+    pub(super) to: Option<f64>,
 }
 
 #[derive(Args, Debug)]
@@ -513,6 +519,12 @@ pub(super) enum Kind {
 fn frames_per_second(text: &str) -> Result<f64, String> {
     let fps = text.parse().ok().filter(|fps: &f64| fps.is_finite() && *fps > 0.0);
     fps.ok_or_else(|| format!("wanted frames per second, a number above 0, got {text}"))
+}
+
+/// A time.
+fn seconds(text: &str) -> Result<f64, String> {
+    let seconds = text.parse().ok().filter(|seconds: &f64| seconds.is_finite());
+    seconds.ok_or_else(|| format!("wanted seconds, a number, got {text}"))
 }
 
 /// A frequency, or 0 for none.

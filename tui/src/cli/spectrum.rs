@@ -2,24 +2,43 @@
 
 use honami_workbench::review;
 use honami_workbench::spectra::{self, Line, Peak, Spectra, Subject, Wanted};
-use honami_workbench::sways::{self, Sways, Swing};
+use honami_workbench::sways::{self, Kind, Manner, Sways, Swing, Told, Within};
 use serde_json::json;
 
 use super::args::Spectrum;
-use super::{Answer, look, report};
+use super::{Answer, look, report, want};
 
 /// Tracks that are listed when none was asked for; all of them are in `--json`.
 const LISTED: usize = 12;
+/// Peaks that are named for each.
+const PEAKS: usize = 3;
+/// What is steady has no damping within so many standard errors.
+const SURE: f64 = 3.0;
 
-/// Prints the peaks of everything, of the groups, and of tracks.
+/// Prints the peaks of everything, of the groups, and of tracks; of other series how they swing.
 pub(super) fn spectrum(args: &Spectrum) -> anyhow::Result<Answer> {
-    if let Some(fps) = args.fps {
-        return Ok(swings(&sways::of_columns(&args.project, fps, args.above)?));
+    let within = Within { above_hz: args.above, from_s: args.from, to_s: args.to };
+    let kind = sways::kind(&args.project);
+    want(kind != Kind::Untimed || args.fps.is_some(), || {
+        let path = args.project.display();
+        format!("{path}: numbers without times: --fps F says how many rows there are a second")
+    })?;
+    if kind == Kind::Sensors || kind == Kind::Timed || args.fps.is_some() {
+        let only_tracks = |is_there: bool, option: &str| {
+            want(!is_there, || format!("{option} is for tracks, and {} has none", args.project.display()))
+        };
+        only_tracks(args.track.is_some(), "--track")?;
+        only_tracks(args.peaks.is_some(), "--peaks")?;
+        want(kind != Kind::Sensors || args.fps.is_none(), || {
+            "a table of sensors has its times: leave --fps out".to_owned()
+        })?;
+        let sways = match kind {
+            Kind::Sensors => sways::of_sensors(&args.project, within)?,
+            _ => sways::of_columns(&args.project, args.fps, within)?,
+        };
+        return Ok(swings(&sways, args.above));
     }
-    if sways::is_sensors(&args.project) {
-        return Ok(swings(&sways::of_sensors(&args.project, args.above)?));
-    }
-    let wanted = Wanted { n_peaks: args.peaks, above_hz: args.above };
+    let wanted = Wanted { n_peaks: args.peaks.unwrap_or(PEAKS), within };
     let is_table = args.project.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
     let mut spectra = if is_table {
         spectra::of_table(&args.project, wanted)?
@@ -39,34 +58,94 @@ pub(super) fn spectrum(args: &Spectrum) -> anyhow::Result<Answer> {
 }
 
 /// Series that are no tracks: what each swings at, and how soon it comes to rest.
-fn swings(sways: &Sways) -> Answer {
-    let mut rows = vec![["", "Hz", "damping %", "log decrement"].map(str::to_owned).to_vec()];
-    let mut row = |name: &str, swing: Option<Swing>| {
-        let none = || ["nothing swings", "", ""].map(str::to_owned).to_vec();
-        let cells = swing.map_or_else(none, |swing| {
-            vec![
-                format!("{:.4}", swing.hz),
-                format!("{:.2}", 100.0 * swing.ratio),
-                format!("{:.4}", swing.log_decrement()),
-            ]
-        });
-        rows.push(std::iter::once(name.to_owned()).chain(cells).collect());
+fn swings(sways: &Sways, above_hz: f64) -> Answer {
+    let at_s = |sample: usize| sways.start_s + sample as f64 / sways.fps;
+    let heads = ["", "Hz", "damping %", "log decrement", "swings", "from s", ""];
+    let mut rows = vec![heads.map(str::to_owned).to_vec()];
+    let cells = |name: &str, swing: &Swing| {
+        let Told { value, error } = swing.hz;
+        let damping = damped(swing, swing.ratio, 100.0, 2);
+        let decrement = damped(swing, swing.log_decrement(), 1.0, 3);
+        let from = format!("{:.2}", at_s(swing.first));
+        let swings = format!("{:.1}", swing.n_cycles);
+        let hz = format!("{value:.4}±{error:.4}");
+        [name.to_owned(), hz, damping, decrement, swings, from, manner(swing.manner).to_owned()].to_vec()
     };
-    row("median", sways.median);
-    sways.series.iter().for_each(|(name, swing)| row(name, *swing));
-    let text = format!("{} samples, {:.2} a second\n{}", sways.n_samples, sways.fps, report::table(&rows));
-    let series = sways.series.iter().map(|(name, swing)| json!({ "name": name, "swing": swing.map(swung) }));
+    let of_many = sways.median.filter(|_| sways.series.len() > 1);
+    rows.extend(of_many.iter().map(|swing| cells("median", swing)));
+    let mut none = Vec::new();
+    for (name, swing) in &sways.series {
+        match swing {
+            Ok(swing) => rows.push(cells(name, swing)),
+            Err(why) => none.push(format!("{name}: {why}")),
+        }
+    }
+    let n = sways.n_samples;
+    let mut text = format!(
+        "{n} samples, {:.2} a second, {:.2} to {:.2} s; looked for above {:.3} Hz",
+        sways.fps,
+        sways.start_s,
+        at_s(n - 1),
+        sways.lowest_hz
+    );
+    if sways.median.is_some() {
+        text += &format!("\n{}", report::table(&rows));
+        text +=
+            "\nHz: natural, as without damping; ±: standard errors; swings: seen above the noise, from s on";
+    }
+    none.iter().for_each(|why| text += &format!("\n{why}"));
+    let is_calm = sways.median.is_some_and(|swing| swing.manner != Manner::Driven);
+    if above_hz == 0.0 && !is_calm {
+        text += "\nIn wind gusts may hide a swing that is faster than they are: --above HZ leaves out what is slower.";
+    }
+    let series = sways.series.iter().map(|(name, swing)| {
+        let told = swing.as_ref().ok().map(|swing| swung(swing, sways.start_s, sways.fps));
+        json!({ "name": name, "swing": told, "why_none": swing.as_ref().err().map(ToString::to_string) })
+    });
     let json = json!({
         "fps": sways.fps,
-        "samples": sways.n_samples,
-        "median": sways.median.map(swung),
+        "samples": n,
+        "from_s": sways.start_s,
+        "to_s": at_s(n - 1),
+        "lowest_hz": sways.lowest_hz,
+        "median": sways.median.map(|swing| swung(&swing, sways.start_s, sways.fps)),
         "series": series.collect::<Vec<_>>(),
     });
     Answer { json, text, done: true }
 }
 
-fn swung(swing: Swing) -> serde_json::Value {
-    json!({ "hz": swing.hz, "damping": swing.ratio, "log_decrement": swing.log_decrement() })
+/// A damping and its standard error; of what is steady how near to none it is.
+fn damped(swing: &Swing, told: Told, scale: f64, digits: usize) -> String {
+    let (value, error) = (scale * told.value, scale * told.error);
+    match swing.manner {
+        Manner::Steady => format!("0 within {:.digits$}", SURE * error),
+        _ => format!("{value:.digits$}±{error:.digits$}"),
+    }
+}
+
+fn manner(manner: Manner) -> &'static str {
+    match manner {
+        Manner::LetGo => "let go",
+        Manner::Steady => "steady",
+        Manner::Growing => "growing",
+        Manner::Driven => "driven",
+    }
+}
+
+fn swung(swing: &Swing, start_s: f64, fps: f64) -> serde_json::Value {
+    let decrement = swing.log_decrement();
+    json!({
+        "manner": manner(swing.manner),
+        "hz": swing.hz.value,
+        "hz_error": swing.hz.error,
+        "damped_hz": swing.damped_hz(),
+        "damping": swing.ratio.value,
+        "damping_error": swing.ratio.error,
+        "log_decrement": decrement.value,
+        "log_decrement_error": decrement.error,
+        "cycles": swing.n_cycles,
+        "from_s": start_s + swing.first as f64 / fps,
+    })
 }
 
 /// What was never looked at may be no movement of the plant: says so.
@@ -92,7 +171,7 @@ fn describe(spectra: &Spectra) -> Answer {
     for line in &spectra.lines[..shown] {
         let peaks: Vec<String> = line.peaks.iter().map(peak).collect();
         let peaks = if peaks.is_empty() { "nothing stands out".to_owned() } else { peaks.join("   ") };
-        let damping = line.swing.map_or_else(String::new, |swing| format!("{:.1}", 100.0 * swing.ratio));
+        let damping = line.swing.map_or_else(String::new, |swing| damped(&swing, swing.ratio, 100.0, 1));
         rows.push(vec![name(line.subject), line.n_tracks.to_string(), damping, peaks]);
     }
     text += &format!("\n{}", report::table(&rows));
@@ -102,7 +181,8 @@ fn describe(spectra: &Spectra) -> Answer {
     if let Some(warning) = alias(spectra) {
         text += &format!("\n{warning}");
     }
-    let lines: Vec<_> = spectra.lines.iter().map(entry).collect();
+    let fps = spectra.fps.unwrap_or(1.0);
+    let lines: Vec<_> = spectra.lines.iter().map(|line| entry(line, spectra.start_s, fps)).collect();
     let json = json!({
         "fps": spectra.fps,
         "nyquist_hz": spectra.nyquist_hz,
@@ -139,7 +219,7 @@ fn alias(spectra: &Spectra) -> Option<String> {
     })
 }
 
-fn entry(line: &Line) -> serde_json::Value {
+fn entry(line: &Line, start_s: f64, fps: f64) -> serde_json::Value {
     let peaks: Vec<_> = line
         .peaks
         .iter()
@@ -153,6 +233,6 @@ fn entry(line: &Line) -> serde_json::Value {
             })
         })
         .collect();
-    let swing = line.swing.map(swung);
+    let swing = line.swing.map(|swing| swung(&swing, start_s, fps));
     json!({ "subject": name(line.subject), "tracks": line.n_tracks, "peaks": peaks, "swing": swing })
 }
