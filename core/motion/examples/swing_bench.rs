@@ -1,6 +1,7 @@
 //! Damping by honami and by what is in use, of swings that are known: how far off on average, and how far apart.
 //!
 //! `cargo run --release -p honami-motion --example swing_bench`
+#![expect(clippy::print_stdout, reason = "a program that prints its measurements")]
 
 use std::f64::consts::TAU;
 
