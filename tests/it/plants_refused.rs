@@ -51,7 +51,7 @@ fn what_is_refused_leaves_nothing_and_says_what_is_wanted() {
     let before = names(&bench);
     for (line, code, wanted) in CASES {
         let is_whole = line.starts_with("simulate")
-            && !["--with", "--set", "--out"].iter().any(|word| line.contains(word));
+            && !["--with", "--set", "--out", "--cache"].iter().any(|word| line.contains(word));
         let outs = if is_whole {
             let [table, cache, glb, beams] = OUTS;
             format!(" --out {table} --cache {cache} --glb {glb} --beams {beams}")

@@ -1,9 +1,9 @@
 //! How fast something swings and how soon it comes to rest, from a series of where it was.
 //!
-//! What was pulled and let go is a sum of damped sines on a straight line, and is fitted by least squares ([`free`]):
+//! What was pulled and let go is a sum of damped sines on a straight line, and is fitted by least squares (`free`):
 //! no method is more exact where noise is white, and it tells a steady sine and one that grows as what they are. Where
-//! it was let go within the series is found ([`release`]). What the wind drives has no shape but that of its spectrum,
-//! which is fitted by Whittle's likelihood ([`driven`]). Which of the two it is, or noise alone, is told by the Bayesian
+//! it was let go within the series is found (`release`). What the wind drives has no shape but that of its spectrum,
+//! which is fitted by Whittle's likelihood (`driven`). Which of the two it is, or noise alone, is told by the Bayesian
 //! information criterion (Schwarz, Ann. Stat. 6, 1978) of all three on the same frequencies.
 
 mod driven;

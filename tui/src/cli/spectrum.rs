@@ -90,13 +90,12 @@ fn swings(sways: &Sways, above_hz: f64) -> Answer {
     );
     if sways.median.is_some() {
         text += &format!("\n{}", report::table(&rows));
-        text +=
-            "\nHz: natural, as without damping; ±: standard errors; swings: seen above the noise, from s on";
+        text += "\nHz: natural, without damping; ±: standard errors; swings: those above the noise";
     }
     none.iter().for_each(|why| text += &format!("\n{why}"));
     let is_calm = sways.median.is_some_and(|swing| swing.manner != Manner::Driven);
     if above_hz == 0.0 && !is_calm {
-        text += "\nIn wind gusts may hide a swing that is faster than they are: --above HZ leaves out what is slower.";
+        text += "\nGusts may hide a swing that is faster: --above HZ leaves out what is slower.";
     }
     let series = sways.series.iter().map(|(name, swing)| {
         let told = swing.as_ref().ok().map(|swing| swung(swing, sways.start_s, sways.fps));
@@ -171,7 +170,7 @@ fn describe(spectra: &Spectra) -> Answer {
     for line in &spectra.lines[..shown] {
         let peaks: Vec<String> = line.peaks.iter().map(peak).collect();
         let peaks = if peaks.is_empty() { "nothing stands out".to_owned() } else { peaks.join("   ") };
-        let damping = line.swing.map_or_else(String::new, |swing| damped(&swing, swing.ratio, 100.0, 1));
+        let damping = line.swing.map_or_else(String::new, |swing| damped(&swing, swing.ratio, 100.0, 2));
         rows.push(vec![name(line.subject), line.n_tracks.to_string(), damping, peaks]);
     }
     text += &format!("\n{}", report::table(&rows));
