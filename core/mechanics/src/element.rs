@@ -6,14 +6,14 @@
 //! radius above 20).
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 use nalgebra::{Matrix3, Matrix6, SMatrix, Vector3};
 use std::f64::consts::PI;
 
 /// Stiffness or mass between the ends of a segment.
 #[derive(Clone, Copy, Debug)]
-pub struct Ends {
+pub(crate) struct Ends {
     /// Base with base.
     pub base: Matrix6<f64>,
     /// Tip with tip.
@@ -24,7 +24,7 @@ pub struct Ends {
 
 /// What a segment is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Section {
+pub(crate) struct Section {
     /// Length, metres.
     pub length: f64,
     /// Radius, metres.
@@ -44,8 +44,7 @@ const PLANES: [([usize; 4], f64); 2] = [([1, 5, 7, 11], 1.0), ([2, 4, 8, 10], -1
 
 impl Section {
     /// Area of the section, A = pi r^2.
-    #[must_use]
-    pub fn area(&self) -> f64 {
+    pub(crate) fn area(&self) -> f64 {
         PI * self.radius.powi(2)
     }
 
@@ -60,8 +59,7 @@ impl Section {
     }
 
     /// Stiffness of a segment in a direction, in the frame of the plant (6.5, with the shape functions of errata E37, E38).
-    #[must_use]
-    pub fn stiffness(&self, direction: &Vector3<f64>) -> Ends {
+    pub(crate) fn stiffness(&self, direction: &Vector3<f64>) -> Ends {
         let (l, bending) = (self.length, self.young * self.inertia() / self.length.powi(3));
         let mut local = Local::zeros();
         line(&mut local, 0, self.young * self.area() / l, [1.0, -1.0]);
@@ -94,8 +92,7 @@ impl Section {
     }
 
     /// Consistent mass of a segment in a direction, in the frame of the plant (6.8).
-    #[must_use]
-    pub fn mass(&self, direction: &Vector3<f64>) -> Ends {
+    pub(crate) fn mass(&self, direction: &Vector3<f64>) -> Ends {
         let (l, mass) = (self.length, self.density * self.area() * self.length);
         let mut local = Local::zeros();
         line(&mut local, 0, mass / 6.0, [2.0, 1.0]);
@@ -142,40 +139,9 @@ fn turned(local: &Local, direction: &Vector3<f64>) -> Ends {
 }
 
 /// A right-handed frame with its x-axis in a direction of length 1: its columns are the axes.
-#[must_use]
-pub fn frame(direction: &Vector3<f64>) -> Matrix3<f64> {
+pub(crate) fn frame(direction: &Vector3<f64>) -> Matrix3<f64> {
     // Whatever axis lies most across.
     let across = if direction.z.abs() < 0.9 { Vector3::z() } else { Vector3::x() };
     let y = across.cross(direction).normalize();
     Matrix3::from_columns(&[*direction, y, direction.cross(&y)])
-}
-
-/// The shape functions at a share of the length, 0 to 1: displacement and torsion there from those of the ends, in the
-/// frame of the segment (6.4; errata E37, E38).
-#[must_use]
-pub fn shape(share: f64, length: f64) -> SMatrix<f64, 4, 12> {
-    let (p, l) = (share, length);
-    let [l1, l2] = [1.0 - p, p];
-    let h1 = 1.0 - 3.0 * p.powi(2) + 2.0 * p.powi(3);
-    let h2 = l * p * (1.0 - p).powi(2);
-    let h3 = p.powi(2) * (3.0 - 2.0 * p);
-    let h4 = l * p.powi(2) * (p - 1.0);
-    let mut shape = SMatrix::zeros();
-    for (row, column, value) in [
-        (0, 0, l1),
-        (0, 6, l2),
-        (1, 1, h1),
-        (1, 5, h2),
-        (1, 7, h3),
-        (1, 11, h4),
-        (2, 2, h1),
-        (2, 4, -h2),
-        (2, 8, h3),
-        (2, 10, -h4),
-        (3, 3, l1),
-        (3, 9, l2),
-    ] {
-        shape[(row, column)] = value;
-    }
-    shape
 }

@@ -18,7 +18,7 @@ use pulp::Arch;
 
 /// The factors of K - s M.
 #[derive(Clone, Debug)]
-pub struct Factor {
+pub(crate) struct Factor {
     nodes: Vec<Pivot>,
     n_negative: usize,
 }
@@ -59,9 +59,8 @@ struct Flexible {
 
 impl Flexibility {
     pub(crate) fn new(beams: &Beams) -> Self {
-        let flexible = |(_, _, section, direction): (usize, usize, crate::Section, Vector3<f64>)| Flexible {
-            root: section.flexibility_root(&direction),
-            arm: direction * section.length,
+        let flexible = |(_, _, section, direction): (usize, usize, crate::element::Section, Vector3<f64>)| {
+            Flexible { root: section.flexibility_root(&direction), arm: direction * section.length }
         };
         Self { nodes: beams.segments().map(flexible).collect() }
     }
@@ -106,8 +105,7 @@ impl Factor {
     }
 
     /// How many eigenvalues of K x = lambda M x lie below the shift (Sylvester's law of inertia).
-    #[must_use]
-    pub fn n_negative(&self) -> usize {
+    pub(crate) fn n_negative(&self) -> usize {
         self.n_negative
     }
 
@@ -115,7 +113,7 @@ impl Factor {
     ///
     /// # Panics
     /// When a column is not 6 numbers a node.
-    pub fn solve(&self, x: &mut [f64]) {
+    pub(crate) fn solve(&self, x: &mut [f64]) {
         let height = DOF * self.nodes.len();
         assert!(x.len().is_multiple_of(height), "6 numbers a node");
         Arch::new().dispatch(

@@ -26,8 +26,6 @@ mod wind_basis;
 
 pub use beams::{Beams, BeamsError, MOST_NODES, Options};
 pub use bending::{Bending, Form};
-pub use element::{Section, frame, shape};
-pub use factor::Factor;
 pub use forest::{
     Blowing, Detail, DetailError, Details, Forest, ForestError, Pace, Pose, Round, Stand, StateError, View,
     Winds,
@@ -35,7 +33,7 @@ pub use forest::{
 pub use leaves::{Leaves, LeavesError};
 pub use material::{Material, MaterialError};
 pub use modes::{Modes, ModesError};
-pub use oscillator::{Damping, Integrator, LimitError, Oscillator, State, Step, symplectic_limit};
+pub use oscillator::{Damping, Integrator, LimitError, Oscillator, State, Step};
 pub use rig::Rig;
 pub use roof::Roof;
 pub use stirring::{Following, PullError, Stirring};

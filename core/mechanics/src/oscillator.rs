@@ -119,7 +119,7 @@ impl Oscillator {
     ///
     /// # Errors
     /// [`LimitError`] where it is not stable.
-    pub fn step_by(&self, integrator: Integrator, dt: f64) -> Result<Step, LimitError> {
+    pub(crate) fn step_by(&self, integrator: Integrator, dt: f64) -> Result<Step, LimitError> {
         if !(dt.is_finite() && dt > 0.0) {
             return Err(LimitError::Step(dt));
         }
@@ -135,7 +135,7 @@ impl Oscillator {
                 speed_of_force: of_force.speed,
             }
         };
-        let limit = symplectic_limit(self);
+        let limit = self.symplectic_limit();
         match integrator {
             Integrator::Exact => Ok(self.step(dt)),
             Integrator::Newmark => Ok(of(&|state, force| self.newmark(state, force, force, dt))),
@@ -145,8 +145,7 @@ impl Oscillator {
     }
 
     /// A step of the thesis (6.19 - 6.21), which is the symplectic Euler's (errata E41), under a force that stays.
-    #[must_use]
-    pub fn symplectic(&self, state: State, force: f64, dt: f64) -> State {
+    pub(crate) fn symplectic(&self, state: State, force: f64, dt: f64) -> State {
         let gain = force / self.mass - self.gamma * state.speed - self.omega.powi(2) * state.q;
         let speed = state.speed + dt * gain;
         State { q: state.q + dt * speed, speed }
@@ -154,8 +153,7 @@ impl Oscillator {
 
     /// A step of Newmark's method with constant mean acceleration (beta 1/4, gamma 1/2), under a force that changes
     /// linearly from `before` to `after`.
-    #[must_use]
-    pub fn newmark(&self, state: State, before: f64, after: f64, dt: f64) -> State {
+    pub(crate) fn newmark(&self, state: State, before: f64, after: f64, dt: f64) -> State {
         let (square, gamma) = (self.omega.powi(2), self.gamma);
         let gain = before / self.mass - gamma * state.speed - square * state.q;
         let q = state.q + dt * state.speed + dt.powi(2) / 4.0 * gain;
@@ -167,16 +165,37 @@ impl Oscillator {
 
     /// What it makes of a wave of force at a frequency, hertz: the amplitude that goes on, complex (5.39; errata E34: the
     /// signs of the printed difference are the wrong way round, and without damping there is no answer at its own frequency).
-    #[must_use]
-    pub fn response(&self, hz: f64) -> Complex<f64> {
+    pub(crate) fn response(&self, hz: f64) -> Complex<f64> {
         let drive = TAU * hz;
         (self.mass * Complex::new(self.omega.powi(2) - drive.powi(2), self.gamma * drive)).inv()
     }
 
-    /// Where it stays under a constant force.
+    /// The longest step, seconds, for which symplectic Euler stays bounded: omega dt < 2 (sqrt(1 + zeta^2) - zeta)
+    /// (errata E41: damping lowers the limit), also beyond critical damping.
+    pub(crate) fn symplectic_limit(&self) -> f64 {
+        let zeta = self.damping();
+        2.0 / (((1.0 + zeta.powi(2)).sqrt() + zeta) * self.omega)
+    }
+
+    /// Its damping, of critical: from 1 on it creeps back to rest and does not swing.
     #[must_use]
-    pub fn rest(&self, force: f64) -> f64 {
-        force / (self.mass * self.omega.powi(2))
+    pub fn damping(&self) -> f64 {
+        self.gamma / (2.0 * self.omega)
+    }
+
+    /// How often it swings by a method in steps of `dt` seconds, as a share of how often it does: without damping
+    /// (2 / x) atan(x / 2) by Newmark's and (2 / x) asin(x / 2) by symplectic Euler (errata E41), x = omega dt. `None`
+    /// where it does not swing, or the method bears no such step.
+    #[must_use]
+    pub fn swings(&self, integrator: Integrator, dt: f64) -> Option<f64> {
+        let step = self.step_by(integrator, dt).ok()?;
+        let swing = (self.omega.powi(2) - (self.gamma / 2.0).powi(2)).sqrt();
+        // A step turns its state by so much, and makes it smaller.
+        let middle = f64::midpoint(step.q_of_q, step.speed_of_speed);
+        let left = step.q_of_q * step.speed_of_speed - step.q_of_speed * step.speed_of_q;
+        let turn = (middle / left.sqrt()).acos();
+        let share = if integrator == Integrator::Exact { 1.0 } else { turn / (swing * dt) };
+        (swing > 0.0 && share.is_finite()).then_some(share)
     }
 }
 
@@ -193,8 +212,7 @@ pub struct Step {
 
 impl Step {
     /// What q is multiplied by, its speed and the force for the next q; then the same for the next speed.
-    #[must_use]
-    pub fn numbers(&self) -> [f64; 6] {
+    pub(crate) fn numbers(&self) -> [f64; 6] {
         [
             self.q_of_q,
             self.q_of_speed,
@@ -213,12 +231,4 @@ impl Step {
             speed: self.speed_of_q * q + self.speed_of_speed * speed + self.speed_of_force * force,
         }
     }
-}
-
-/// The longest step, seconds, for which symplectic Euler stays bounded: omega dt < 2 (sqrt(1 + zeta^2) - zeta)
-/// (errata E41: damping lowers the limit).
-#[must_use]
-pub fn symplectic_limit(oscillator: &Oscillator) -> f64 {
-    let zeta = oscillator.gamma / (2.0 * oscillator.omega);
-    2.0 * ((1.0 + zeta.powi(2)).sqrt() - zeta) / oscillator.omega
 }

@@ -31,7 +31,7 @@ impl Turning {
     pub fn new(beams: &Beams, modes: &Modes) -> Self {
         let rows: Vec<_> = beams.segments().collect();
         let turn = |mode: usize| {
-            let of = |(base, tip, section, along): &(usize, usize, crate::Section, Vector3<f64>)| {
+            let of = |(base, tip, section, along): &(usize, usize, crate::element::Section, Vector3<f64>)| {
                 let across = modes.displacement(mode, *tip) - modes.displacement(mode, *base);
                 let [from, to] = [base, tip].map(|node| modes.rotation(mode, *node));
                 // The chord turns across itself by where its ends are, about itself as they turn on average.

@@ -1,6 +1,6 @@
 //! The beam against what it is the integral of, and against bending without strain.
 
-use super::{Section, frame, shape};
+use super::{Section, frame};
 use nalgebra::{SMatrix, SVector, Vector3};
 
 const SECTION: Section = Section { length: 0.7, radius: 0.02, young: 1e10, shear: 1e10 / 2.6, density: 1e3 };
@@ -22,6 +22,35 @@ fn whole(ends: &super::Ends) -> Whole {
     whole.fixed_view_mut::<6, 6>(6, 0).copy_from(&ends.across);
     whole.fixed_view_mut::<6, 6>(0, 6).copy_from(&ends.across.transpose());
     whole
+}
+
+/// The shape functions at a share of the length, 0 to 1: displacement and torsion there from those of the ends, in the
+/// frame of the segment (6.4; errata E37, E38).
+pub(crate) fn shape(share: f64, length: f64) -> SMatrix<f64, 4, 12> {
+    let (p, l) = (share, length);
+    let [l1, l2] = [1.0 - p, p];
+    let h1 = 1.0 - 3.0 * p.powi(2) + 2.0 * p.powi(3);
+    let h2 = l * p * (1.0 - p).powi(2);
+    let h3 = p.powi(2) * (3.0 - 2.0 * p);
+    let h4 = l * p.powi(2) * (p - 1.0);
+    let mut shape = SMatrix::zeros();
+    for (row, column, value) in [
+        (0, 0, l1),
+        (0, 6, l2),
+        (1, 1, h1),
+        (1, 5, h2),
+        (1, 7, h3),
+        (1, 11, h4),
+        (2, 2, h1),
+        (2, 4, -h2),
+        (2, 8, h3),
+        (2, 10, -h4),
+        (3, 3, l1),
+        (3, 9, l2),
+    ] {
+        shape[(row, column)] = value;
+    }
+    shape
 }
 
 /// Displacement and torsion are the shape functions; the kinetic energy is their square (6.8).

@@ -13,7 +13,8 @@ const COSINE: [f32; 5] = [0.999_999_95, -0.499_999_05, 0.041_663_573, -0.001_385
 const SINE: [f32; 5] = [1.0, -0.166_666_58, 0.008_333_05, -1.980_901_7e-4, 2.605_107_6e-6];
 /// A segment turns no farther than round to the other side, radians.
 const FARTHEST: f32 = std::f32::consts::PI;
-/// A turn that is no number in single precision is this one.
+/// The largest number of single precision: turns beyond it, which are infinite there, are taken for it, so that they keep an
+/// axis.
 const HUGE: f32 = f32::MAX;
 
 /// A plant whose segments turn.

@@ -2,8 +2,9 @@
 
 use super::super::tests::{forest, plant, threads};
 use super::{Forest, Round, Waves};
+use crate::oscillator::State;
 use crate::wind::{Constant, Power, Sine, Sum, Wind, series};
-use crate::{Damping, ForestError, Form, Integrator, Oscillator, Pace, Stand, State};
+use crate::{Damping, ForestError, Form, Integrator, Oscillator, Pace, Stand};
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rustfft::num_complex::Complex;
