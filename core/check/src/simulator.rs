@@ -2,9 +2,8 @@
 
 use crate::course::{HERE, at, refusal};
 use crate::{Check, Fault, Subject, Verdict};
-use honami_host::draft::Node;
 use honami_host::{
-    CallContext, Detail, HostError, Hosting, Kind, PlantInstance, Simulator, Steps, Values, WindRows,
+    CallContext, Detail, HostError, Hosting, Kind, Node, PlantInstance, Simulator, Steps, Values, WindRows,
 };
 use rand::RngExt;
 use rand_pcg::Pcg64;

@@ -4,10 +4,9 @@ use crate::clip::{Clip, Texture, grid};
 use crate::course::difference;
 use crate::simulator::{DT, PLAIN, sapling};
 use crate::{Subject, clusterer};
-use honami_host::draft::Node;
 use honami_host::{
-    CallContext, Clusterer, Clustering, HostError, Hosting, Kind, PlantInstance, Point, Points, Simulator,
-    Steps, StreamInfo, Tracker, Tracks, Values, WindRows,
+    CallContext, Clusterer, Clustering, HostError, Hosting, Kind, Node, PlantInstance, Point, Points,
+    Simulator, Steps, StreamInfo, Tracker, Tracks, Values, WindRows,
 };
 
 /// What there is to do: a clip with points to follow, tracks to group, or copies of a plant to move.

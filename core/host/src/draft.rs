@@ -6,18 +6,7 @@ use crate::instance::{Handle, Request};
 use crate::reply::{self, Reply};
 use crate::types::Tracks;
 
-/// A node of a skeleton at rest.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Node {
-    /// Row of its parent, before its own; `None` for the root, row 0.
-    pub parent: Option<u32>,
-    /// Metres.
-    pub position: [f32; 3],
-    /// Metres.
-    pub radius: f32,
-    /// Row of the track it was grown from.
-    pub track: Option<u32>,
-}
+pub use crate::types::Node;
 
 /// A structure builder at work.
 #[derive(Debug)]

@@ -3,13 +3,12 @@
 //! Handles know only [`Instance`]: one calls the library in this process, one asks another process.
 
 use crate::context::CallContext;
-use crate::draft::Node;
 use crate::error::{Code, HostError};
 use crate::isolated::Ended;
 use crate::quarantine::{Tally, Trail};
 use crate::reply::{self, Reply, Schema};
 use crate::simulator::{PlantInstance, Steps};
-use crate::types::{DetectRequest, FrameView, Point, StreamInfo, Tracks};
+use crate::types::{DetectRequest, FrameView, Node, Point, StreamInfo, Tracks};
 use crate::values::Value;
 use honami_abi::code;
 

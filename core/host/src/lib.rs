@@ -59,7 +59,7 @@ pub use simulator::{Detail, ModeRow, PlantInstance, Simulator, Steps, WindRows};
 pub use tracker::{Checkpoint, Tracker};
 pub use trust::TrustBook;
 pub use types::{
-    Clustering, DetectRequest, Feature, Field, FrameNote, FrameView, Point, PointRow, Points, StreamInfo,
-    Tracks,
+    Clustering, DetectRequest, Feature, Field, FrameNote, FrameView, Node, Point, PointRow, Points,
+    StreamInfo, Tracks,
 };
 pub use values::{Value, ValueError, Values};

@@ -17,7 +17,7 @@ pub enum Kind {
     Clusterer,
     /// Grows skeletons (draft).
     Structure,
-    /// Moves plants (draft).
+    /// Moves plants.
     Simulator,
 }
 

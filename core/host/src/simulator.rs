@@ -5,12 +5,12 @@ mod input;
 mod tests;
 
 use crate::context::CallContext;
-use crate::draft::Node;
 use crate::error::HostError;
 use crate::host::complete;
 use crate::instance::{Handle, Request};
 use crate::registry::PluginInfo;
 use crate::reply::{self, Reply, Table};
+use crate::types::Node;
 use crate::values::{Value, Values};
 
 /// A copy of a plant.

@@ -225,3 +225,16 @@ pub struct Clustering {
     /// What is known of frames; empty if the plugin does not judge them.
     pub frames: Vec<FrameNote>,
 }
+
+/// A node of a skeleton at rest, or of a plant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Node {
+    /// Row of its parent, before its own; `None` for the root, row 0.
+    pub parent: Option<u32>,
+    /// Metres.
+    pub position: [f32; 3],
+    /// Metres.
+    pub radius: f32,
+    /// Row of the track it was grown from.
+    pub track: Option<u32>,
+}

@@ -1,8 +1,7 @@
 //! What goes to a plugin, in the shapes of the header. Everything borrows; nothing outlives the call.
 
-use crate::draft::Node;
 use crate::simulator::{Detail, PlantInstance, Steps, WindRows};
-use crate::types::{DetectRequest, FrameView, Point, StreamInfo, Tracks};
+use crate::types::{DetectRequest, FrameView, Node, Point, StreamInfo, Tracks};
 use honami_abi::{self as abi, draft, dtype, schema};
 use honami_model::picture::Range;
 use std::ffi::CStr;

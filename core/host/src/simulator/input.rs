@@ -1,8 +1,8 @@
 //! What must be true of a plant and of steps before a plugin sees them.
 
 use super::{Detail, PlantInstance, Steps, WindRows};
-use crate::draft::Node;
 use crate::reply::TABLE_BYTES_MAX;
+use crate::types::Node;
 
 /// What keeps this from being a plant in copies.
 pub(super) fn plant_fault(nodes: &[Node], instances: &[PlantInstance]) -> Option<String> {

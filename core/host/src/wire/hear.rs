@@ -2,11 +2,10 @@
 
 use super::memory::Inbox;
 use super::{Ask, Columns, FULL, Frame, LIMITED, Movement, Plane};
-use crate::draft::Node;
 use crate::instance::Request;
 use crate::reply::Element;
 use crate::simulator::{Detail, PlantInstance, Steps, WindRows};
-use crate::types::{DetectRequest, FrameView, Point, StreamInfo, Tracks};
+use crate::types::{DetectRequest, FrameView, Node, Point, StreamInfo, Tracks};
 use honami_model::picture::{Chroma, Gray, Range};
 
 /// Takes what was said apart in the plugin's process, and hands it on.

@@ -2,10 +2,9 @@
 
 use super::memory::{Outbox, bytes_of};
 use super::{Ask, Columns, FULL, Frame, LIMITED, Movement, Plane, Stream};
-use crate::draft::Node;
 use crate::instance::Request;
 use crate::simulator::{Detail, PlantInstance, WindRows};
-use crate::types::{FrameView, Point, Tracks};
+use crate::types::{FrameView, Node, Point, Tracks};
 use honami_model::picture::{Gray, Range};
 
 /// Lays what belongs to a request into the memory and says it; `None` when it does not fit.

@@ -1,9 +1,8 @@
 //! Simulators through the ABI, in this process and in one of their own.
 
 use crate::tools::{host, isolating, of_zoo};
-use honami_host::draft::Node;
 use honami_host::{
-    CallContext, Detail, HostError, Kind, PlantInstance, Simulator, Steps, Value, Values, WindRows,
+    CallContext, Detail, HostError, Kind, Node, PlantInstance, Simulator, Steps, Value, Values, WindRows,
 };
 
 const DT: f64 = 0.125;
