@@ -79,6 +79,45 @@ fn siblings_turn_otherwise_on_bones_of_the_same_length() {
     assert!(bench.text("grow p.honami m.bvh --siblings 1").contains("siblings: 1 of seed 1"));
 }
 
+/// A picture as large as the clip, white in these columns.
+fn paint(bench: &Bench, name: &str, white: std::ops::Range<usize>) {
+    let mut image = b"YUV4MPEG2 W160 H120 F25:1 Cmono\nFRAME\n".to_vec();
+    image.extend((0..160 * 120).map(|k| if white.contains(&(k % 160)) { 235 } else { 16 }));
+    std::fs::write(bench.path(name), image).unwrap();
+}
+
+#[test]
+fn copies_stand_round_the_trunk_and_fill_an_envelope() {
+    let bench = grouped();
+    let flat = bench.json("grow p.honami f.csv --method zeng --groups 9 --flat --truth clip.truth.csv");
+    let deep = bench.json("grow p.honami d.csv --method zeng --groups 9 --copies 4 --truth clip.truth.csv");
+    let number = |answer: &serde_json::Value, name: &str| answer[name].as_u64().unwrap() as usize;
+    let n_trunk = (4 * number(&flat, "joints") - number(&deep, "joints")) / 3;
+    assert_eq!(number(&deep, "joints"), n_trunk + 4 * (number(&flat, "joints") - n_trunk), "{deep}");
+    assert!((1..4).contains(&n_trunk), "{flat} {deep}");
+    let of = |answer: &serde_json::Value, name: &str| answer["truth"][name].as_f64().unwrap();
+    for name in ["median_px", "still_px", "motion_px"] {
+        assert!((of(&flat, name) - of(&deep, name)).abs() < 1e-6, "seen from the front they are one: {name}");
+    }
+    let sways = bench.json("grow p.honami --groups 9 --flat --truth clip.truth.csv");
+    assert!(of(&flat, "motion_px") < 0.6 * of(&sways, "still_px"), "{flat} {sways}");
+    let depths: Vec<f64> =
+        rows(&bench.path("d.csv")).iter().map(|row| row["depth_px"].parse().unwrap()).collect();
+    assert!(depths.iter().any(|depth| *depth > 5.0) && depths.iter().any(|depth| *depth < -5.0));
+    paint(&bench, "all.y4m", 0..160);
+    paint(&bench, "some.y4m", 60..100);
+    paint(&bench, "none.y4m", 0..0);
+    let line = "grow p.honami --method zeng --groups 9 --envelope";
+    let all = bench.json(&format!("{line} all.y4m"));
+    assert!(number(&all, "cut") == 0 && all["notes"].to_string().contains("none was cut"), "{all}");
+    let some = bench.json(&format!("{line} some.y4m"));
+    assert!(number(&some, "cut") > 0 && number(&some, "joints") < number(&all, "joints"), "{some}");
+    let none = bench.line(&format!("{line} none.y4m"));
+    assert!(none.code == Some(1) && none.stderr.contains("paint white where branches may be"), "{none:?}");
+    bench.json("grow p.honami s.bvh --method zeng --groups 9 --siblings 2");
+    assert!(bench.path("s-2.bvh").exists(), "siblings of either method");
+}
+
 /// Another reader of motion capture finds joints where the table has them, to 1e-4 of a pixel, where it is installed.
 #[test]
 fn another_program_reads_the_same_motion() {
@@ -113,6 +152,9 @@ fn what_cannot_grow_says_why() {
         ("grow p.honami --groups 0", 1, "groups, not 0"),
         ("grow p.honami --groups 100000", 1, "groups, not 100000"),
         ("grow p.honami --truth p.honami", 1, "p.honami"),
+        ("grow p.honami --copies 2", 2, "--copies goes with --method zeng"),
+        ("grow p.honami --method zeng --shift 1", 2, "--shift takes 0 to less than 1, not 1"),
+        ("grow p.honami --method zeng --envelope none.png", 1, "none.png"),
         ("grow p.honami out.bvh --siblings 0", 2, "0 is not in 1..=9999"),
         ("grow p.honami --siblings 2", 2, "name its file, as out.bvh"),
         ("grow p.honami out.bvh --seed 2", 2, "--siblings <N>"),

@@ -2,17 +2,39 @@
 //!
 //! Lengths are pixels of the clip; the axes are those of [`honami_model::skeleton`]. The same input gives the same bits.
 
+mod bones;
 pub mod diener;
 pub mod ellipse;
+mod filmed;
 pub mod follow;
 pub mod repeat;
 pub mod siblings;
 pub mod tree;
 mod turn;
 pub mod von_mises;
+pub mod zeng;
+
+#[cfg(test)]
+mod tests;
 
 use honami_model::clip::TimesError;
-use honami_model::skeleton::SkeletonError;
+use honami_model::skeleton::{Skeleton, SkeletonError};
+use honami_model::track::TrackId;
+
+/// A skeleton, and how it was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grown {
+    /// The skeleton, with a leaf for every feature.
+    pub skeleton: Skeleton,
+    /// From the centre of its group to where each path usually is, pixels (right, down); `None` for those in no group.
+    pub places: Vec<Option<[f64; 2]>>,
+    /// How far each fork stayed from what bears it, 0 to 1 of the way to the mean of what it bears.
+    pub alphas: Vec<f64>,
+    /// Forks that were one with what bears them, so that more than two bones begin there.
+    pub n_collapsed: usize,
+    /// Joints that were cut off, for they lay outside the envelope.
+    pub n_cut: usize,
+}
 
 /// Why there is no skeleton.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -20,6 +42,19 @@ pub enum StructureError {
     /// No feature is seen in any frame.
     #[error("no track of any group is seen: a skeleton grows from what moves")]
     NothingSeen,
+    /// A path that is not of the clip, or nowhere.
+    #[error(
+        "track {track} has {came} samples; one for each of {n_frames} frames was wanted, at two finite numbers of pixels or \
+         not seen"
+    )]
+    Path {
+        /// The track.
+        track: TrackId,
+        /// Its samples.
+        came: usize,
+        /// Frames of the clip.
+        n_frames: u32,
+    },
     /// Root and features are one point.
     #[error("all that is tracked lies where the root is, at ({x:.1}, {y:.1}): place the root elsewhere")]
     NoExtent {
@@ -44,6 +79,20 @@ pub enum StructureError {
         /// Frames at least.
         wanted: u32,
     },
+    /// A shift that is none.
+    #[error("joints are shifted by 0 to less than 1 of the way to what bears them, not by {0}")]
+    Shift(f64),
+    /// No copy at all.
+    #[error("one copy at least: 0 were asked for")]
+    Copies,
+    /// An envelope without a place to be in.
+    #[error("nothing in the image of the envelope is white: paint white where branches may be")]
+    NoWhite,
+    /// An envelope that no branch is in.
+    #[error(
+        "no branch is within what is white in the image of the envelope: paint white where branches are to stay"
+    )]
+    AllCut,
     /// No angle that siblings could differ in.
     #[error(
         "no two bones are of one level from {wanted} on, and siblings differ in their angles: the levels of this skeleton \

@@ -12,7 +12,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use crate::StructureError;
-use crate::turn::{Turn, angle, axis, turned};
+use crate::turn::{Made, Turn, angle, axis, made};
 use crate::von_mises::{Truncated, VonMises};
 
 /// Angles are drawn from this level on, where there are as many: so the main structure stays (Zeng 5.4.2, step 6).
@@ -118,17 +118,19 @@ impl<'a> Siblings<'a> {
     /// [`StructureError::Skeleton`], which rules of skeletons forbid.
     pub fn draw(&self, seed: u64, number: u32) -> Result<Skeleton, StructureError> {
         let mut rng = Pcg64Mcg::seed_from_u64(seed ^ (u64::from(number) << 32));
-        let mut turns = vec![Turn::NONE; self.level_of.len()];
-        for (row, joint) in self.skeleton.joints().iter().enumerate().skip(1) {
-            let before = turns[joint.parent.unwrap_or_default() as usize];
-            let level = self.levels.iter().find(|level| level.level == self.level_of[row]);
-            turns[row] = level.map_or(before, |level| {
-                let (from, to) = ends(self.skeleton, row);
+        let mut bones: Vec<Made> = Vec::with_capacity(self.level_of.len());
+        for (of, joint) in self.skeleton.joints().iter().enumerate() {
+            let before = joint.parent.map_or(Turn::NONE, |parent| bones[parent as usize].turn);
+            let level = self.levels.iter().find(|level| level.level == self.level_of[of]);
+            let level = level.filter(|_| joint.parent.is_some());
+            let turn = level.map_or(before, |level| {
+                let (from, to) = ends(self.skeleton, of);
                 let by = level.drawn.quantile(rng.random()) - angle(from, to);
                 before.after(&Turn::about(axis(from, to), by))
             });
+            bones.push(Made { of, parent: joint.parent, length: joint.length, turn, push: None });
         }
-        turned(self.skeleton, &turns)
+        made(self.skeleton, &bones)
     }
 }
 

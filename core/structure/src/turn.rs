@@ -69,19 +69,50 @@ pub(crate) fn norm(v: [f64; 3]) -> f64 {
     dot(v, v).sqrt()
 }
 
-/// The same skeleton with every bone turned in all frames alike, with the leaves that it carries: a bone moves beside how it
-/// points at rest as it did before.
-pub(crate) fn turned(skeleton: &Skeleton, turns: &[Turn]) -> Result<Skeleton, StructureError> {
+/// A bone of a skeleton that is made of another's.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Made {
+    /// Row of the joint whose bone it was.
+    pub(crate) of: usize,
+    /// Row, in the new skeleton, of the joint that it begins at; `None` for the root.
+    pub(crate) parent: Option<u32>,
+    /// Its length, pixels; 0 for the root.
+    pub(crate) length: f64,
+    /// By which it is turned, in all frames alike.
+    pub(crate) turn: Turn,
+    /// What is added to it then, across all of its directions, pixels: length is what both make.
+    pub(crate) push: Option<[f64; 3]>,
+}
+
+/// A skeleton made of another's bones, with the leaves that these carry: beside how it is at rest, a bone moves as it did.
+pub(crate) fn made(skeleton: &Skeleton, bones: &[Made]) -> Result<Skeleton, StructureError> {
     let frames = 0..skeleton.times().len();
     let directions = frames.flat_map(|frame| {
         let directions = skeleton.directions(frame);
-        directions.iter().zip(turns).map(|(direction, turn)| turn.apply(*direction))
+        bones.iter().map(|bone| {
+            let direction = bone.turn.apply(directions[bone.of]);
+            let length = skeleton.joints()[bone.of].length;
+            match bone.push {
+                None => direction,
+                Some(push) => std::array::from_fn(|k| (length * direction[k] + push[k]) / bone.length),
+            }
+        })
     });
-    let leaf = |leaf: &Leaf| {
-        let turn = &turns[leaf.joint as usize];
-        Leaf { offsets: leaf.offsets.iter().map(|&by| turn.apply(by)).collect(), ..*leaf }
+    let joint = |bone: &Made| Joint {
+        parent: bone.parent,
+        length: bone.length,
+        ..skeleton.joints()[bone.of].clone()
     };
-    let joints: Vec<Joint> = skeleton.joints().to_vec();
-    let turned = Skeleton::new(skeleton.root(), joints, directions.collect(), skeleton.times().clone())?;
-    Ok(turned.with_leaves(skeleton.leaves().iter().map(leaf).collect())?)
+    let mut rows_of = vec![Vec::new(); skeleton.joints().len()];
+    bones.iter().enumerate().for_each(|(row, bone)| rows_of[bone.of].push(row));
+    let leaves = skeleton.leaves().iter().flat_map(|leaf| {
+        rows_of[leaf.joint as usize].iter().map(|&row| Leaf {
+            track: leaf.track,
+            joint: row as u32,
+            offsets: leaf.offsets.iter().map(|&by| bones[row].turn.apply(by)).collect(),
+        })
+    });
+    let joints = bones.iter().map(joint).collect();
+    let made = Skeleton::new(skeleton.root(), joints, directions.collect(), skeleton.times().clone())?;
+    Ok(made.with_leaves(leaves.collect())?)
 }

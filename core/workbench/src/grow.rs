@@ -3,24 +3,30 @@
 mod judge;
 
 use std::ops::Range;
-use std::path::Path as File;
+use std::path::{Path as File, PathBuf};
 
 pub use honami_exchange::skeleton::SkeletonFormat;
+use honami_model::clip::Clip;
 use honami_model::skeleton::Skeleton;
 use honami_model::track::{Span, TrackId};
 use honami_store::Project;
-use honami_structure::diener::{self, Settings};
+use honami_structure::diener;
 use honami_structure::follow::Path;
 use honami_structure::repeat::repeat;
 pub use honami_structure::siblings::{self, Siblings};
 use honami_structure::tree::tree;
+use honami_structure::zeng::{self, Alpha};
+pub use honami_structure::zeng::{COPIES, SHIFT};
 
 pub use self::judge::{Judged, judge};
 use crate::error::WorkbenchError;
+use crate::track::{Area, mask};
 
 /// How to grow.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct GrowRequest {
+    /// The published way.
+    pub method: Method,
     /// Where the plant leaves the ground, pixels (right, down); else under the mean of all features, as low as the lowest.
     pub root: Option<[f64; 2]>,
     /// Groups to cut the hierarchy into; `None`: as it is cut.
@@ -29,6 +35,23 @@ pub struct GrowRequest {
     pub is_flat: bool,
     /// Only the frames of the best loop, without a jump.
     pub is_loop: bool,
+}
+
+/// How places of joints are found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Method {
+    /// Diener's, of the thesis 4.4: forks where bones change their length least; a mirror image for depth.
+    #[default]
+    Diener,
+    /// Zeng's: centroids of clusters, shifted; copies round the trunk, pushed until they fill an envelope.
+    Zeng {
+        /// How far joints are shifted from centroids towards what bears them, 0 to less than 1; see [`SHIFT`].
+        shift: f64,
+        /// Copies, 1 or more; see [`COPIES`].
+        copies: u32,
+        /// An image as large as the clip, white where branches may be; `None`: the convex hull.
+        envelope: Option<PathBuf>,
+    },
 }
 
 /// What has grown.
@@ -42,6 +65,8 @@ pub struct Growth {
     pub alphas: Vec<f64>,
     /// Forks that were one with what bears them.
     pub n_collapsed: usize,
+    /// Joints that were cut off, for they lay outside the envelope.
+    pub n_cut: usize,
     /// Groups.
     pub n_groups: usize,
     /// Frames of the clip that it moves through.
@@ -80,8 +105,20 @@ pub fn grow(project: &Project, request: &GrowRequest) -> Result<Growth, Workbenc
         notes.push(format!("{n_lost} of {n_tracks} tracks are seen in no frame now and are left out"));
     }
     let groups = tree(dendrogram, k, &is_seen);
-    let settings = Settings { root: request.root, is_flat: request.is_flat };
-    let grown = diener::grow(&paths, &groups, times, settings)?;
+    let (root, is_flat) = (request.root, request.is_flat);
+    let grown = match &request.method {
+        Method::Diener => diener::grow(&paths, &groups, times, diener::Settings { root, is_flat })?,
+        Method::Zeng { shift, copies, envelope } => {
+            let envelope = envelope.as_ref().map(|image| alpha(image, &project.clip().clip)).transpose()?;
+            let is_painted = envelope.is_some();
+            let settings = zeng::Settings { root, is_flat, shift: *shift, copies: *copies, envelope };
+            let grown = zeng::grow(&paths, &groups, times, &settings)?;
+            if is_painted && grown.n_cut == 0 {
+                notes.push("no branch is outside what is white in the envelope: none was cut".to_owned());
+            }
+            grown
+        }
+    };
     let (skeleton, frames) =
         if request.is_loop { repeat(&grown.skeleton)? } else { (grown.skeleton, 0..times.len()) };
     let places = paths.iter().zip(grown.places).filter_map(|(path, place)| Some((path.track, place?)));
@@ -90,11 +127,18 @@ pub fn grow(project: &Project, request: &GrowRequest) -> Result<Growth, Workbenc
         places: places.collect(),
         alphas: grown.alphas,
         n_collapsed: grown.n_collapsed,
+        n_cut: grown.n_cut,
         n_groups: groups.iter().filter(|group| group.children.is_empty()).count(),
         frames,
         notes,
         seconds: begun.elapsed().as_secs_f64(),
     })
+}
+
+/// The image of an envelope.
+fn alpha(image: &File, clip: &Clip) -> Result<Alpha, WorkbenchError> {
+    let pixels = mask(&Area::Mask(image.into()), clip)?.unwrap_or_default();
+    Ok(Alpha { width: clip.width as usize, pixels })
 }
 
 /// Where a track is seen.

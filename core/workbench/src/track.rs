@@ -394,7 +394,7 @@ fn given(session: &mut Session, seeds: &[Seed]) -> Result<Vec<Seed>, WorkbenchEr
 }
 
 /// A byte a pixel, non-zero where features may be.
-fn mask(area: &Area, clip: &Clip) -> Result<Option<Vec<u8>>, WorkbenchError> {
+pub(crate) fn mask(area: &Area, clip: &Clip) -> Result<Option<Vec<u8>>, WorkbenchError> {
     let wanted = (clip.width, clip.height);
     match area {
         Area::Whole => Ok(None),

@@ -8,14 +8,16 @@ use honami_workbench::grow::siblings::Settings;
 use honami_workbench::grow::{self, GrowRequest, Growth, Judged, SkeletonFormat};
 use serde_json::json;
 
-use super::args::grow::Grow;
+use super::args::grow::{Grow, Method};
 use super::{Answer, look, want};
 
 /// Grows a skeleton, and writes it.
 pub(super) fn grow(args: &Grow) -> anyhow::Result<Answer> {
     let files = files(args)?;
+    let method = method(args)?;
     let project = look(&args.project)?;
     let request = GrowRequest {
+        method,
         root: args.root.map(|place| place.0),
         groups: args.groups,
         is_flat: args.flat,
@@ -37,6 +39,7 @@ pub(super) fn grow(args: &Grow) -> anyhow::Result<Answer> {
             "tracks": judged.n_tracks,
             "median_px": judged.median_px,
             "still_px": judged.still_px,
+            "motion_px": judged.motion_px,
         });
     }
     for (format, out) in &files {
@@ -54,6 +57,30 @@ pub(super) fn grow(args: &Grow) -> anyhow::Result<Answer> {
         siblings::draw(*n, siblings, args, &files, &mut answer)?;
     }
     Ok(answer)
+}
+
+/// The method, with what is asked of it.
+fn method(args: &Grow) -> anyhow::Result<grow::Method> {
+    let asked = [
+        ("--shift", args.shift.is_some()),
+        ("--copies", args.copies.is_some()),
+        ("--envelope", args.envelope.is_some()),
+    ];
+    match args.method {
+        Method::Diener => {
+            let typed = asked.iter().find(|(_, is_typed)| *is_typed);
+            want(typed.is_none(), || {
+                format!("{} goes with --method zeng", typed.map_or("", |typed| typed.0))
+            })?;
+            Ok(grow::Method::Diener)
+        }
+        Method::Zeng => {
+            let shift = args.shift.unwrap_or(grow::SHIFT);
+            want((0.0..1.0).contains(&shift), || format!("--shift takes 0 to less than 1, not {shift}"))?;
+            let copies = args.copies.unwrap_or(grow::COPIES);
+            Ok(grow::Method::Zeng { shift, copies, envelope: args.envelope.clone() })
+        }
+    }
 }
 
 /// What is to be written, and as what.
@@ -82,7 +109,11 @@ fn describe(args: &Grow, growth: &Growth) -> Answer {
     let n_tracks = growth.places.len();
     let [x, y] = honami_model::skeleton::seen(skeleton.root());
     let is_deep = skeleton.rest().iter().any(|direction| direction[1].abs() > 0.0);
-    let depth = if is_deep { "in depth, with a mirror image behind" } else { "in the plane of the picture" };
+    let depth = match (is_deep, args.method) {
+        (false, _) => "in the plane of the picture".to_owned(),
+        (true, Method::Diener) => "in depth, with a mirror image behind".to_owned(),
+        (true, Method::Zeng) => format!("in depth, copies: {}", args.copies.unwrap_or(grow::COPIES)),
+    };
     let mut text = format!(
         "{}: {} groups of {n_tracks} tracks, {n_joints} joints {depth}, root at {x:.1},{y:.1}",
         args.project.display(),
@@ -90,6 +121,9 @@ fn describe(args: &Grow, growth: &Growth) -> Answer {
     );
     if growth.n_collapsed > 0 {
         text += &format!("\nforks that are one with another: {}", growth.n_collapsed);
+    }
+    if growth.n_cut > 0 {
+        text += &format!("\njoints outside the envelope, cut with what they bear: {}", growth.n_cut);
     }
     let frames = &growth.frames;
     text += &format!("\nframes {}..{}, {:.3} s", frames.start, frames.end, growth.seconds);
@@ -105,6 +139,7 @@ fn describe(args: &Grow, growth: &Growth) -> Answer {
         "tracks": n_tracks,
         "joints": n_joints,
         "collapsed": growth.n_collapsed,
+        "cut": growth.n_cut,
         "alphas": growth.alphas,
         "root": [x, y],
         "frames": [frames.start, frames.end],
@@ -119,7 +154,7 @@ fn describe(args: &Grow, growth: &Growth) -> Answer {
 fn told(judged: &Judged) -> String {
     format!(
         "beside the truth of {} tracks in {} groups: joints are {:.2} px off in the median; standing still they would be \
-         {:.2} px off",
-        judged.n_tracks, judged.n_groups, judged.median_px, judged.still_px
+         {:.2} px off, and their motion alone is {:.2} px off",
+        judged.n_tracks, judged.n_groups, judged.median_px, judged.still_px, judged.motion_px
     )
 }

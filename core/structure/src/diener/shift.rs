@@ -1,5 +1,6 @@
 //! Forks shifted towards what bears them, until bones change their length least (thesis 4.11, 4.12).
 
+use crate::bones::distance;
 use crate::tree::Group;
 
 /// Steps in which the best shift is first looked for.
@@ -61,11 +62,6 @@ fn deviation(lengths: impl Iterator<Item = f64>) -> f64 {
         (n, sum, squares) = (n + 1.0, sum + change, squares + change * change);
     }
     if n > 0.0 { (squares / n - (sum / n) * (sum / n)).max(0.0).sqrt() } else { 0.0 }
-}
-
-/// From one place to another, pixels.
-pub(super) fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    ((a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2) + (a[2] - b[2]).powi(2)).sqrt()
 }
 
 fn between(from: [f64; 3], to: [f64; 3], share: f64) -> [f64; 3] {

@@ -6,6 +6,7 @@ use honami_model::track::TrackId;
 use proptest::prelude::*;
 
 use super::*;
+use crate::bones::{Bones, distance};
 use crate::tree::tree;
 
 const N_FRAMES: u32 = 120;
@@ -117,7 +118,7 @@ fn forks_that_are_one_have_more_than_two_branches() {
         assert_eq!((bones.n_collapsed, n_on_fork), (n_collapsed, 2 + n_collapsed), "{inner} px apart");
         for (row, joint) in bones.joints.iter().enumerate().skip(1) {
             let from = &bones.at[joint.parent.unwrap() as usize];
-            let lengths = from.iter().zip(&bones.at[row]).map(|(a, b)| shift::distance(*a, *b));
+            let lengths = from.iter().zip(&bones.at[row]).map(|(a, b)| distance(*a, *b));
             assert!(lengths.map(|length| (length - joint.length).abs()).fold(0.0, f64::max) < 1e-9);
         }
     }
@@ -217,7 +218,9 @@ fn leaves_are_where_their_features_are_seen() {
     for t in 0..6 {
         let at = grown.skeleton.places(grown.skeleton.directions(t));
         for leaf in leaves {
-            let Some(wanted) = paths[leaf.track.0 as usize].at[t as usize] else { continue };
+            let Some(wanted) = paths[leaf.track.0 as usize].at[t as usize] else {
+                continue;
+            };
             let (from, by) = (at[leaf.joint as usize], leaf.offsets[t as usize]);
             let [x, y] = seen(std::array::from_fn(|axis| from[axis] + by[axis]));
             assert!((x - wanted[0]).hypot(y - wanted[1]) < 1e-9, "leaf {}, frame {t}", leaf.track);
@@ -245,7 +248,7 @@ fn bad_input_is_named_or_defined() {
     let grown = grow(&same, &pair, &times(2), Settings { root: Some([5.0, 45.0]), is_flat: false }).unwrap();
     let at = grown.skeleton.places(grown.skeleton.directions(1));
     assert!(
-        at.len() == 4 && at[2..].iter().all(|at| shift::distance(*at, placed([5.0, 5.0], 0.0)) < 1e-9),
+        at.len() == 4 && at[2..].iter().all(|at| distance(*at, placed([5.0, 5.0], 0.0)) < 1e-9),
         "{at:?}"
     );
     // One track, of one frame.

@@ -36,7 +36,9 @@ impl Truncated {
             return None;
         }
         // 1 - cos of the half width: Zeng's acos, without what that loses where it is narrow.
-        let width = |drop: f64| if drop < 2.0 { 2.0 * (drop / 2.0).sqrt().asin() } else { PI };
+        let width = |drop: f64| {
+            if drop < 2.0 { 2.0 * (drop / 2.0).sqrt().asin() } else { PI }
+        };
         let half_width =
             if threshold <= of.density(of.mu + PI) { PI } else { width((peak / threshold).ln() / of.kappa) };
         let reach = half_width.min(if of.kappa > 0.0 { width(REACH / of.kappa) } else { PI });

@@ -1,6 +1,6 @@
 //! A skeleton beside the truth of a generated clip: how far its tips are from where their groups truly are.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use honami_model::skeleton::seen;
@@ -27,6 +27,8 @@ pub struct Judged {
     pub median_px: f64,
     /// The same of a skeleton that stands still, each joint where it is in the mean: how much there was to find.
     pub still_px: f64,
+    /// The same distance, less what it is in the mean over frames: how far the motion is off, wherever joints are.
+    pub motion_px: f64,
 }
 
 /// Where the true point of a track is, less what lies between it and the centre of the track's group: the frame it begins
@@ -54,24 +56,28 @@ pub fn judge(growth: &Growth, project: &Project, truth: &Path) -> Result<Judged,
             (frame, places.into_iter().map(seen).collect())
         })
         .collect();
-    let (mut moving, mut still, mut n_groups) = (Vec::new(), Vec::new(), 0);
+    let (mut moving, mut still, mut motion, mut n_groups) = (Vec::new(), Vec::new(), Vec::new(), 0);
+    // Copies and mirror images bear the same tracks again, in planes that the camera has not seen.
+    let mut is_known = BTreeSet::new();
     for (row, joint) in growth.skeleton.joints().iter().enumerate() {
-        let of_joint: Vec<&Told> = joint.tracks.iter().filter_map(|track| told.get(track)).collect();
+        let new = joint.tracks.iter().filter(|track| is_known.insert(**track));
+        let of_joint: Vec<&Told> = new.filter_map(|track| told.get(track)).collect();
         n_groups += usize::from(!of_joint.is_empty());
         let Some(usual) = mean(poses.iter().map(|(_, at)| at[row])) else { continue };
-        for (frame, at) in &poses {
-            let now = of_joint
-                .iter()
-                .filter_map(|(first, at)| at.get(frame.checked_sub(*first)? as usize).copied());
-            if let Some(wanted) = mean(now) {
-                moving.push(apart(at[row], wanted));
-                still.push(apart(usual, wanted));
-            }
-        }
+        let wanted = poses.iter().filter_map(|(frame, at)| {
+            let now = of_joint.iter().filter_map(|(first, at)| at.get(frame.checked_sub(*first)? as usize));
+            Some((at[row], mean(now.copied())?))
+        });
+        let pairs: Vec<([f64; 2], [f64; 2])> = wanted.collect();
+        let beside = pairs.iter().map(|(at, wanted)| [at[0] - wanted[0], at[1] - wanted[1]]);
+        let offset = mean(beside.clone()).unwrap_or_default();
+        moving.extend(pairs.iter().map(|(at, wanted)| apart(*at, *wanted)));
+        still.extend(pairs.iter().map(|(_, wanted)| apart(usual, *wanted)));
+        motion.extend(beside.map(|by| apart(by, offset)));
     }
-    let (median_px, still_px) =
-        (median(moving).ok_or(WorkbenchError::NoTruth)?, median(still).ok_or(WorkbenchError::NoTruth)?);
-    Ok(Judged { n_groups, n_tracks: told.len(), median_px, still_px })
+    let median = |values| median(values).ok_or(WorkbenchError::NoTruth);
+    let (median_px, still_px, motion_px) = (median(moving)?, median(still)?, median(motion)?);
+    Ok(Judged { n_groups, n_tracks: told.len(), median_px, still_px, motion_px })
 }
 
 /// What the truth says of the centre of a track's group; `None` where no true point is near when the track begins.

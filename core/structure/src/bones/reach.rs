@@ -6,7 +6,7 @@
 
 use honami_model::skeleton::Joint;
 
-use super::shift::distance;
+use super::distance;
 
 /// Rounds at most.
 const MAX_ROUNDS: u32 = 20;
@@ -32,8 +32,12 @@ pub(super) fn reach(joints: &[Joint], targets: &[Option<[f64; 3]>], at: &mut [[f
         // And back: the root stays, bones point where they are wished.
         let mut farthest: f64 = 0.0;
         for (row, joint) in joints.iter().enumerate().skip(1) {
-            let Some(parent) = joint.parent.map(|parent| parent as usize) else { continue };
-            let Some(end) = along(at[parent], wishes[row].0, joint.length) else { continue };
+            let Some(parent) = joint.parent.map(|parent| parent as usize) else {
+                continue;
+            };
+            let Some(end) = along(at[parent], wishes[row].0, joint.length) else {
+                continue;
+            };
             farthest = farthest.max(distance(end, at[row]));
             at[row] = end;
         }

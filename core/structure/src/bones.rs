@@ -1,10 +1,11 @@
 //! From places of groups to bones of constant length that reach them.
 
+mod reach;
+
 use honami_model::skeleton::Joint;
 
-use super::Track;
-use super::reach::reach;
-use super::shift::distance;
+use self::reach::reach;
+use crate::filmed::Track;
 use crate::tree::Group;
 
 /// A fork is one with what bears it where its bone is shorter than this share of the mean bone that it bears.
@@ -17,22 +18,22 @@ const ROUNDS: u32 = 6;
 
 /// Joints and their motion.
 #[derive(Debug)]
-pub(super) struct Bones {
+pub(crate) struct Bones {
     /// Each after its parent, the root first.
-    pub(super) joints: Vec<Joint>,
+    pub(crate) joints: Vec<Joint>,
     /// Of every joint, a frame each, unit.
-    pub(super) directions: Vec<Track>,
+    pub(crate) directions: Vec<Track>,
     /// Where every joint is, a frame each.
-    pub(super) at: Vec<Track>,
+    pub(crate) at: Vec<Track>,
     /// The joint that each group has become.
-    pub(super) joint_of: Vec<u32>,
+    pub(crate) joint_of: Vec<u32>,
     /// Forks that were one with what bears them.
-    pub(super) n_collapsed: usize,
+    pub(crate) n_collapsed: usize,
 }
 
 impl Bones {
     /// Bones from a base that stays to where groups are.
-    pub(super) fn along(groups: &[Group], base: [f64; 3], at: &[Track]) -> Self {
+    pub(crate) fn along(groups: &[Group], base: [f64; 3], at: &[Track]) -> Self {
         let n_frames = at.first().map_or(0, Vec::len);
         let still = vec![base; n_frames];
         let farthest = at.iter().map(|track| mean_distance(&still, track)).fold(0.0, f64::max);
@@ -71,7 +72,9 @@ impl Bones {
         }
         for round in 0..ROUNDS {
             for (row, target) in target_of.iter().enumerate().skip(1).filter(|_| round > 0) {
-                let (Some(target), Some(parent)) = (target, self.joints[row].parent) else { continue };
+                let (Some(target), Some(parent)) = (target, self.joints[row].parent) else {
+                    continue;
+                };
                 let length = mean_distance(&self.at[parent as usize], target);
                 // One that would have none keeps what it has.
                 if length > TINY * self.joints[row].length {
@@ -101,8 +104,8 @@ impl Bones {
         }
     }
 
-    /// One more bone, aimed from where its base has come to be. Where it has no direction, for its ends are one, it points as in the frame before; in the first
-    /// frames, as when it first has one.
+    /// One more bone, aimed from where its base has come to be. Where it has no direction, for its ends are one, it points as
+    /// in the frame before; in the first frames, as when it first has one.
     fn aim(&mut self, parent: u32, length: f64, track: &Track) {
         let from = &self.at[parent as usize];
         let towards = |(from, to): (&[f64; 3], &[f64; 3])| {
@@ -129,7 +132,7 @@ impl Bones {
 
     /// Adds the mirror image behind the plane of the root, which both share; returns how many rows further on the image of
     /// a joint is.
-    pub(super) fn mirror(&mut self) -> u32 {
+    pub(crate) fn mirror(&mut self) -> u32 {
         let n = self.joints.len() - 1;
         let by = n as u32;
         for row in 1..=n {
@@ -146,4 +149,9 @@ impl Bones {
 
 fn mean_distance(a: &Track, b: &Track) -> f64 {
     a.iter().zip(b).map(|(a, b)| distance(*a, *b)).sum::<f64>() / a.len().max(1) as f64
+}
+
+/// From one place to another, pixels.
+pub(crate) fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    ((a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2) + (a[2] - b[2]).powi(2)).sqrt()
 }
