@@ -18,8 +18,6 @@ use realfft::{RealFftPlanner, RealToComplex};
 
 pub use peaks::Peak;
 
-use crate::accuracy;
-
 /// Fewer samples than this say nothing of frequencies.
 const FEWEST: usize = 8;
 /// Grid points for each resolution cell 1 / duration.
@@ -182,9 +180,11 @@ impl Spectrum {
             median.resolution_hz = median.resolution_hz.max(spectrum.resolution_hz);
             median.n_tracks += spectrum.n_tracks;
         }
+        let mut powers = vec![0.0; spectra.len()];
         for (bin, power) in median.power_px2.iter_mut().enumerate() {
-            let powers = spectra.iter().map(|spectrum| spectrum.power_px2[bin]).collect();
-            *power = accuracy::median(powers).unwrap_or(0.0);
+            powers.iter_mut().zip(spectra).for_each(|(power, spectrum)| *power = spectrum.power_px2[bin]);
+            powers.sort_by(f64::total_cmp);
+            *power = powers[powers.len() / 2];
         }
         Some(median)
     }

@@ -1,7 +1,6 @@
 //! Peaks of a spectrum: where, how strong, how far above the noise, and what they may be instead.
 
 use super::Spectrum;
-use crate::accuracy;
 
 /// Below this many resolution cells a peak is what detrending left of the drift.
 const LOWEST_CELLS: f64 = 1.5;
@@ -79,7 +78,9 @@ fn floor(spectrum: &Spectrum, top: usize, cell: f64) -> f64 {
     let (lobe, reach) = ((LOBE_CELLS * cell).ceil() as usize, (FLOOR_CELLS * cell).ceil() as usize);
     let below = top.saturating_sub(reach).max(1)..top.saturating_sub(lobe).max(1);
     let above = (top + lobe + 1).min(power.len())..(top + reach + 1).min(power.len());
-    let median = accuracy::median(below.chain(above).map(|k| power[k]).collect()).unwrap_or(0.0);
+    let mut around: Vec<f64> = below.chain(above).map(|k| power[k]).collect();
+    around.sort_by(f64::total_cmp);
+    let median = around.get(around.len() / 2).copied().unwrap_or(0.0);
     // Noise-free data has a floor of rounding.
     (median / (1.0 - 1.0 / (6.0 * spectrum.n_tracks as f64))).max(power[top] * 1e-12)
 }
