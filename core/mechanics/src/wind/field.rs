@@ -3,18 +3,21 @@
 
 use super::spectrum::Spectrum;
 use super::{Series, Wind};
-use nalgebra::{DMatrix, Vector3};
+use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use realfft::RealFftPlanner;
 use realfft::num_complex::Complex;
 use std::f64::consts::TAU;
 
-/// A turbulent wind over land, carried by its mean: between stations across it, it is read along a line.
+/// A turbulent wind over land, carried by its mean: at each place it is that of the nearest station across it. Between two
+/// stations there is no mean of both, which would swing less than either.
 #[derive(Clone, Debug)]
 pub struct Field {
     mean: Vector3<f64>,
-    /// Metres between stations, of which the middle is at the origin.
+    /// Of the first station, metres across the mean, to the left.
+    first: f64,
+    /// Metres between stations.
     spacing: f64,
     stations: Vec<Series>,
 }
@@ -26,9 +29,11 @@ pub struct Draw {
     pub mean: Vector3<f64>,
     /// c in the coherence exp(-c f d / U) of places d apart across the wind: 10 or so.
     pub decay: f64,
-    /// Stations across the wind, one at least.
+    /// Where the first station is, metres across the wind, to the left.
+    pub first: f64,
+    /// Stations across the wind, from there on, one at least.
     pub n_stations: usize,
-    /// Metres between them.
+    /// Metres between them, more than 0.
     pub spacing: f64,
     /// Samples in time; then it begins again.
     pub n_samples: usize,
@@ -54,7 +59,7 @@ impl Field {
                 station.samples.iter_mut().zip(samples).for_each(|(sum, v)| *sum += axis * v);
             }
         }
-        Self { mean: draw.mean, spacing: draw.spacing, stations }
+        Self { mean: draw.mean, first: draw.first, spacing: draw.spacing, stations }
     }
 
     /// What blows past each station.
@@ -75,15 +80,19 @@ fn component(draw: &Draw, spectrum: &dyn Spectrum, chance: &mut Pcg64) -> Vec<Ve
     let df = 1.0 / (n as f64 * draw.step);
     for k in 1..waves[0].len() {
         let hz = k as f64 * df;
-        let phases: Vec<Complex<f64>> =
-            (0..n_stations).map(|_| Complex::from_polar(1.0, chance.random_range(0.0..TAU))).collect();
-        let lower = root_of_coherence(draw, hz);
+        // exp(-a |i - j|) is a chain: of the stations before, each depends on the last alone. Neighbours that are alike to
+        // the last digit leave nothing of their own.
+        let near = (-draw.decay * hz * draw.spacing / draw.mean.norm()).exp();
+        let own = (1.0 - near.powi(2)).max(0.0).sqrt();
         let amplitude = (2.0 * spectrum.density(hz) * df).sqrt() / 2.0;
         let is_last = n.is_multiple_of(2) && k + 1 == waves[0].len();
-        for (row, wave) in waves.iter_mut().enumerate() {
-            let sum: Complex<f64> = (0..=row).map(|column| phases[column] * lower[(row, column)]).sum();
+        let mut before = None;
+        for wave in &mut waves {
+            let phase = Complex::from_polar(1.0, chance.random_range(0.0..TAU));
+            let unit = before.map_or(phase, |before: Complex<f64>| before * near + phase * own);
+            before = Some(unit);
             // The highest of an even number has no phase.
-            wave[k] = if is_last { Complex::new(sum.re, 0.0) } else { sum } * amplitude;
+            wave[k] = if is_last { Complex::new(unit.re, 0.0) } else { unit } * amplitude;
         }
     }
     let back = |mut waves: Vec<Complex<f64>>| {
@@ -97,32 +106,15 @@ fn component(draw: &Draw, spectrum: &dyn Spectrum, chance: &mut Pcg64) -> Vec<Ve
     waves.into_iter().map(back).collect()
 }
 
-/// L of the coherence C = L L^T of all stations at a frequency. Neighbours that are alike to the last digit leave
-/// nothing of their own.
-fn root_of_coherence(draw: &Draw, hz: f64) -> DMatrix<f64> {
-    let n = draw.n_stations.max(1);
-    // exp(-a |i - j|) is a chain: each depends on the one before alone, L is known in closed form.
-    let near = (-draw.decay * hz * draw.spacing / draw.mean.norm()).exp();
-    let own = (1.0 - near.powi(2)).max(0.0).sqrt();
-    DMatrix::from_fn(n, n, |row, column| match (row, column) {
-        (row, column) if column > row => 0.0,
-        (row, 0) => near.powi(row as i32),
-        (row, column) => own * near.powi((row - column) as i32),
-    })
-}
-
 impl Wind for Field {
     fn sample(&self, place: &Vector3<f64>, time: f64) -> Vector3<f64> {
         let (speed, last) = (self.mean.norm(), self.stations.len() - 1);
         let along = self.mean / speed;
         let across = Vector3::z().cross(&along);
-        let station = place.dot(&across) / self.spacing + last as f64 / 2.0;
-        let station = station.clamp(0.0, last as f64);
+        let station = (place.dot(&across) - self.first) / self.spacing;
         // What is here now was at the origin by so much earlier.
         let time = time - place.dot(&along) / speed;
-        let (first, share) = (station.floor() as usize, station.fract());
-        let at = |k: usize| self.stations[k.min(last)].at(time);
-        at(first).lerp(&at(first + 1), share)
+        self.stations[station.round().clamp(0.0, last as f64) as usize].at(time)
     }
 
     fn repeats(&self, seconds: f64) -> bool {

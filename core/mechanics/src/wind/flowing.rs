@@ -110,6 +110,9 @@ pub struct Flowing {
 }
 
 impl Flowing {
+    /// Cells around the trees, to each side.
+    pub const AROUND: usize = SIDES + FREE;
+
     /// Lets air flow over trees: from a uniform wind, for as long as it takes to cross them, and then for what is wanted.
     ///
     /// # Errors
@@ -171,7 +174,7 @@ fn ground(inflow: &Inflow<'_>) -> Result<(Vector2<f64>, usize), FlowingError> {
     if inflow.trees.is_empty() {
         (low, high) = (Vector2::zeros(), Vector2::zeros());
     }
-    let (cell, around) = (inflow.cell, 2 * (SIDES + FREE));
+    let (cell, around) = (inflow.cell, 2 * Flowing::AROUND);
     let wide = (high - low).amax();
     let n = (wide / cell).ceil() + around as f64;
     if n > MOST_CELLS as f64 {

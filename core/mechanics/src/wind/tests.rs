@@ -173,7 +173,16 @@ fn winds_that_repeat_say_after_how_long() {
     let recorded = Series { step: 0.75, samples: PLACES.map(Vector3::from).to_vec() };
     let kaimal = Kaimal::along(1.0, 5.0, 30.0);
     let mean = Vector3::new(3.0, 4.0, 0.0);
-    let draw = Draw { mean, decay: 10.0, n_stations: 4, spacing: 6.0, n_samples: 20, step: 0.1, seed: 1 };
+    let draw = Draw {
+        mean,
+        decay: 10.0,
+        first: -9.0,
+        n_stations: 4,
+        spacing: 6.0,
+        n_samples: 20,
+        step: 0.1,
+        seed: 1,
+    };
     let vortex = Primitive { shape: Shape::Vortex, centre: [0.5, -0.5], strength: 30.0, core: 0.1 };
     let mask = |pace| Mask { wind: Constant(mean), centre: [0.0; 2], velocity: [pace, 0.0], radius: 9.0 };
     type Case = (Box<dyn Wind>, &'static [f64], &'static [f64]);
@@ -212,8 +221,17 @@ fn places_across_the_wind_are_alike_as_far_as_davenport_says() {
     let (kaimal, power) = (Kaimal::along(1.0, 5.0, 30.0), Power { at_1_hz: 0.3, beta: 5.0 / 3.0 });
     are_alike(mean, n, step, &kaimal);
     are_alike(mean, n, step, &power);
-    let draw = Draw { mean, decay: 10.0, n_stations: 4, spacing: 6.0, n_samples: n, step, seed: 1 };
+    let draw =
+        Draw { mean, decay: 10.0, first: -9.0, n_stations: 4, spacing: 6.0, n_samples: n, step, seed: 1 };
     let field = Field::new(&draw, [&kaimal, &kaimal, &power]);
+    let across = Vector3::new(-0.8, 0.6, 0.0);
+    for (station, series) in field.stations().iter().enumerate() {
+        // Anywhere nearer to it than to another it is its own wind and no mean of two, and so beyond the last.
+        for off in [-2.9, 0.0, 2.9, if station == 3 { 100.0 } else { 1.0 }] {
+            let place = across * (-9.0 + 6.0 * station as f64 + off);
+            assert!((field.sample(&place, 7.0 * step) - series.samples[7]).norm() < 1e-9, "{station} {off}");
+        }
+    }
     for place in PLACES.map(Vector3::from) {
         for d in [0.1, 2.0, -5.0] {
             assert!((field.sample(&(place + mean * d), 3.0 + d) - field.sample(&place, 3.0)).norm() < 1e-9);
@@ -228,7 +246,8 @@ fn are_alike(mean: Vector3<f64>, n: usize, step: f64, spectrum: &dyn Spectrum) {
     let (mut cross, mut own) = ([[0.0; 3]; 3], [0.0; 3]);
     let n_draws = 3000;
     for seed in 0..n_draws {
-        let draw = Draw { mean, decay: 10.0, n_stations: 4, spacing: 6.0, n_samples: n, step, seed };
+        let draw =
+            Draw { mean, decay: 10.0, first: -9.0, n_stations: 4, spacing: 6.0, n_samples: n, step, seed };
         let field = Field::new(&draw, [spectrum; 3]);
         let along = mean.normalize();
         let waves: Vec<_> = [0, 1, 3]

@@ -4,6 +4,8 @@
 mod tests;
 mod typed;
 
+use std::f64::consts::SQRT_2;
+
 use honami_mechanics::Direction;
 use honami_mechanics::wind::{
     Constant, Draw, Field, Flowing, Frozen, Growth, Inflow, Kaimal, Mask, Noise, Power, Primitive, Profile,
@@ -20,9 +22,9 @@ pub use typed::{Typed, read};
 /// Samples of a turbulent wind in time, and seconds between them: it begins again after seven minutes, which is told.
 const N_SAMPLES: usize = 8192;
 const STEP_S: f64 = 0.05;
-/// Stations across a turbulent wind, and metres between them.
-const N_STATIONS: usize = 24;
-const SPACING_M: f64 = 20.0;
+/// Metres between stations across a turbulent wind, if no more of them are needed than so many.
+const SPACING_M: f64 = 2.0;
+const MOST_STATIONS: usize = 512;
 
 /// A wind: its name, what it is, and its values with their defaults.
 pub struct Weather {
@@ -72,6 +74,27 @@ impl Ground {
     }
 }
 
+impl Ground {
+    /// From where to where trees stand across a wind, metres to the left of it; the origin, where there are none.
+    fn across(&self, along: &Direction) -> [f64; 2] {
+        let left = Direction::z().cross(along);
+        let places = self.trees.iter().map(|([x, y], _)| x * left.x + y * left.y);
+        let ends = places.fold(None, |ends: Option<[f64; 2]>, at| {
+            Some(ends.map_or([at; 2], |[low, high]| [low.min(at), high.max(at)]))
+        });
+        ends.unwrap_or_default()
+    }
+
+    /// Side of the square that all trees stand in, metres.
+    fn side(&self) -> f64 {
+        let side = |axis: usize| {
+            let places = || self.trees.iter().map(|(place, _)| place[axis]);
+            places().fold(f64::NEG_INFINITY, f64::max) - places().fold(f64::INFINITY, f64::min)
+        };
+        side(0).max(side(1)).max(0.0)
+    }
+}
+
 const GUSTS: &str = "turbulence of Kaimal's spectrum, alike at places near one another (Davenport)";
 
 /// All winds that have a name. Metres, seconds, hertz; directions in degrees: 0 towards x, 90 towards y.
@@ -88,10 +111,10 @@ pub const WEATHERS: &[Weather] = &[
         values: &[("speed", 8.0), ("towards", 0.0)],
         make: Make::Alone(|v| Box::new(Constant(v.blowing()))),
     },
-    Weather { name: "calm", doc: "gusts of 3 m/s", values: &gusty(3.0, 0.6), make: Make::Alone(gusts) },
-    Weather { name: "wind", doc: "gusts of 8 m/s", values: &gusty(8.0, 1.6), make: Make::Alone(gusts) },
-    Weather { name: "storm", doc: "gusts of 18 m/s", values: &gusty(18.0, 3.6), make: Make::Alone(gusts) },
-    Weather { name: "gusts", doc: GUSTS, values: &gusty(8.0, 1.6), make: Make::Alone(gusts) },
+    Weather { name: "calm", doc: "gusts of 3 m/s", values: &gusty(3.0, 0.6), make: Make::Over(gusts) },
+    Weather { name: "wind", doc: "gusts of 8 m/s", values: &gusty(8.0, 1.6), make: Make::Over(gusts) },
+    Weather { name: "storm", doc: "gusts of 18 m/s", values: &gusty(18.0, 3.6), make: Make::Over(gusts) },
+    Weather { name: "gusts", doc: GUSTS, values: &gusty(8.0, 1.6), make: Make::Over(gusts) },
     Weather {
         name: "rough",
         doc: "turbulence of spectrum density / f^beta about a mean",
@@ -103,9 +126,9 @@ pub const WEATHERS: &[Weather] = &[
             ("decay", 10.0),
             ("seed", 1.0),
         ],
-        make: Make::Alone(|v| {
+        make: Make::Over(|v, ground| {
             let power = Power { at_1_hz: v.of("density"), beta: v.of("beta") };
-            turbulent(v, [&power, &power, &power])
+            Ok(Box::new(turbulent(v, [&power, &power, &power], ground.across(&v.along()))))
         }),
     },
     Weather {
@@ -274,22 +297,30 @@ const fn gusty(speed: f64, deviation: f64) -> [(&'static str, f64); 6] {
     ]
 }
 
+fn gusts(v: &Values, ground: &Ground) -> Blown {
+    Ok(Box::new(gusting(v, ground.across(&v.along()))))
+}
+
 /// Across and up it swings less than along the mean (Burton and others, Wind Energy Handbook, 2.6).
-fn gusts(v: &Values) -> Box<dyn Wind> {
+fn gusting(v: &Values, across: [f64; 2]) -> Field {
     let spectra =
         [1.0, 0.8, 0.5].map(|share| Kaimal::along(share * v.of("deviation"), v.of("speed"), v.of("scale")));
-    turbulent(v, [&spectra[0], &spectra[1], &spectra[2]])
+    turbulent(v, [&spectra[0], &spectra[1], &spectra[2]], across)
 }
 
 /// Air over trees: what each holds back is its mass times the drag, square metres of ground a kilogram and second.
 fn flowing(v: &Values, ground: &Ground) -> Blown {
     let held = |&(place, mass): &([f64; 2], f64)| (place, v.of("drag") * mass);
     let trees: Vec<([f64; 2], f64)> = ground.trees.iter().map(held).collect();
+    let cell = v.of("cell");
+    // Of a square from whichever side, half of its diagonal.
+    let beyond = (ground.side() + 2.0 * Flowing::AROUND as f64 * cell) / SQRT_2;
+    let [low, high] = ground.across(&v.along());
     let air = Flowing::new(&Inflow {
         mean: v.blowing(),
-        gusts: &*gusts(v),
+        gusts: &gusting(v, [low - beyond, high + beyond]),
         trees: &trees,
-        cell: v.of("cell"),
+        cell,
         viscosity: v.of("viscosity"),
         seconds: ground.seconds,
         most_bytes: free(),
@@ -297,19 +328,20 @@ fn flowing(v: &Values, ground: &Ground) -> Blown {
     Ok(Box::new(air?))
 }
 
-fn turbulent(v: &Values, spectra: [&dyn Spectrum; 3]) -> Box<dyn Wind> {
-    Box::new(Field::new(
-        &Draw {
-            mean: v.blowing(),
-            decay: v.of("decay"),
-            n_stations: N_STATIONS,
-            spacing: SPACING_M,
-            n_samples: N_SAMPLES,
-            step: STEP_S,
-            seed: v.of("seed") as u64,
-        },
-        spectra,
-    ))
+/// Turbulence over all that lies between two places across the wind.
+fn turbulent(v: &Values, spectra: [&dyn Spectrum; 3], [low, high]: [f64; 2]) -> Field {
+    let spacing = f64::max(SPACING_M, (high - low) / (MOST_STATIONS - 1) as f64);
+    let draw = Draw {
+        mean: v.blowing(),
+        decay: v.of("decay"),
+        first: low,
+        n_stations: ((high - low) / spacing).ceil() as usize + 1,
+        spacing,
+        n_samples: N_SAMPLES,
+        step: STEP_S,
+        seed: v.of("seed") as u64,
+    };
+    Field::new(&draw, spectra)
 }
 
 /// All winds, their values and defaults, a line each: the end of the command's help.

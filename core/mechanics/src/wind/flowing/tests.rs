@@ -12,8 +12,16 @@ fn inflow<'a>(gusts: &'a dyn Wind, trees: &'a [([f64; 2], f64)]) -> Inflow<'a> {
 
 fn gusts() -> Field {
     let kaimal = Kaimal::along(1.5, MEAN.norm(), 60.0);
-    let draw =
-        Draw { mean: MEAN, decay: 10.0, n_stations: 5, spacing: 20.0, n_samples: 512, step: 0.1, seed: 3 };
+    let draw = Draw {
+        mean: MEAN,
+        decay: 10.0,
+        first: -40.0,
+        n_stations: 5,
+        spacing: 20.0,
+        n_samples: 512,
+        step: 0.1,
+        seed: 3,
+    };
     Field::new(&draw, [&kaimal; 3])
 }
 

@@ -1,9 +1,9 @@
 //! Winds as typed.
 
-use super::{Ground, WEATHERS, read};
+use super::{Ground, N_SAMPLES, STEP_S, WEATHERS, read};
 use crate::error::WorkbenchError;
 use honami_mechanics::Direction;
-use honami_mechanics::wind::Wind;
+use honami_mechanics::wind::{Kaimal, Spectrum, Wind};
 
 /// Over a few trees, for two seconds.
 fn blow(typed: &str) -> Result<Box<dyn Wind>, WorkbenchError> {
@@ -102,9 +102,38 @@ fn winds_that_end_before_the_motion_are_told() {
                 recorded("500.0"),
             ],
         ),
-        ("noise+steady+frozen+storm".to_owned(), 1e6, vec![]),
+        (format!("noise+steady+frozen+{file}"), 1e6, vec![]),
     ] {
         assert_eq!(read(&typed).unwrap().again(seconds), wanted);
+    }
+}
+
+/// Wherever a tree stands it swings as much as was asked for, less what is slower or faster than is drawn: the sum of the
+/// spectrum over the frequencies.
+#[test]
+fn gusts_deviate_at_every_tree_as_they_are_told_to() {
+    let (n, step) = (N_SAMPLES as i32, STEP_S);
+    let kaimal = Kaimal::along(1.6, 8.0, 60.0);
+    let df = 1.0 / (f64::from(n) * step);
+    let wanted: f64 = (1..n / 2).map(|k| kaimal.density(f64::from(k) * df) * df).sum();
+    assert!((0.9..1.0).contains(&(wanted.sqrt() / 1.6)), "{wanted}");
+    let variance = |typed: &str, place: Direction, along: Direction| {
+        let wind = blow(typed).unwrap();
+        let gust = |k: i32| wind.sample(&place, f64::from(k) * step).dot(&along) - 8.0;
+        (0..n).map(|k| gust(k).powi(2)).sum::<f64>() / f64::from(n)
+    };
+    for towards in [0, 30, 90] {
+        let (sin, cos) = f64::from(towards).to_radians().sin_cos();
+        let (along, typed) =
+            (Direction::new(cos, sin, 0.0), |seed: i32| format!("wind:towards={towards},seed={seed}"));
+        for [x, y] in [[0.0, 0.0], [6.0, 6.0], [12.0, 0.0], [0.0, 12.0]] {
+            // On a sample of the station, whatever the way to it takes.
+            let tree = Direction::new(x, y, 0.0);
+            let far = tree.dot(&along);
+            let place = tree + along * ((far / 8.0 / step).round() * step * 8.0 - far);
+            let mean = (1..=4).map(|seed| variance(&typed(seed), place, along)).sum::<f64>() / 4.0;
+            assert!((0.8..1.25).contains(&(mean / wanted)), "{towards} {x} {y}: {mean} of {wanted}");
+        }
     }
 }
 
@@ -141,6 +170,7 @@ fn what_is_no_wind_is_told_what_there_is() {
         ("wind:speed=8,speed=9", "wind is told its speed twice"),
         ("air:drag=-1", "drag of air is a number from 0 to 1000000, not \"-1\""),
         ("gusts:speed=0", "gusts is carried by its mean: speed is a number above 0, not 0"),
+        ("noise+frozen+steady+storm", "storm is carried by a mean of its own: frozen carries what stays"),
         ("wind+frozen", "frozen carries what follows it: frozen+noise:speed=0, for instance"),
         ("power+wind+log", "log carries what follows it: log+noise:speed=0, for instance"),
         (

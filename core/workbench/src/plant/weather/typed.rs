@@ -19,6 +19,18 @@ enum Part {
     Recorded(PathBuf, Series),
 }
 
+impl Part {
+    /// The name of turbulence that is drawn once and carried by its mean.
+    fn drawn(&self) -> Option<&'static str> {
+        match self {
+            Self::Named(Values { weather, .. }) => {
+                weather.values.iter().any(|(known, _)| *known == "decay").then_some(weather.name)
+            }
+            Self::Recorded(..) => None,
+        }
+    }
+}
+
 fn wrong(what: String) -> WorkbenchError {
     WorkbenchError::Weather { what }
 }
@@ -35,12 +47,16 @@ pub fn read(typed: &str) -> Result<Typed, WorkbenchError> {
         Part::Named(values) if matches!(values.weather.make, Make::Carrying(_)) => Some(values.weather.name),
         Part::Named(_) | Part::Recorded(..) => None,
     };
-    match parts.last().and_then(carries) {
-        Some(name) => {
-            Err(wrong(format!("{name} carries what follows it: {name}+noise:speed=0, for instance")))
-        }
-        None => Ok(Typed(parts)),
+    if let Some(name) = parts.last().and_then(carries) {
+        return Err(wrong(format!("{name} carries what follows it: {name}+noise:speed=0, for instance")));
     }
+    let frozen = parts.iter().skip_while(|part| carries(part) != Some("frozen"));
+    if let Some(name) = frozen.filter_map(Part::drawn).next() {
+        return Err(wrong(format!(
+            "{name} is carried by a mean of its own: frozen carries what stays where it is, frozen+noise:speed=0"
+        )));
+    }
+    Ok(Typed(parts))
 }
 
 fn apart(typed: &str) -> Vec<&str> {
@@ -88,14 +104,13 @@ fn part(typed: &str) -> Result<Part, WorkbenchError> {
         )));
     }
     // What is carried by its mean stands still without one.
-    let is_carried = weather.values.iter().any(|(known, _)| *known == "decay");
-    if is_carried && values.of("speed") <= 0.0 {
-        return Err(wrong(format!(
-            "{name} is carried by its mean: speed is a number above 0, not {}",
-            values.of("speed")
-        )));
+    let (speed, part) = (values.of("speed"), Part::Named(values));
+    match part.drawn() {
+        Some(name) if speed <= 0.0 => {
+            Err(wrong(format!("{name} is carried by its mean: speed is a number above 0, not {speed}")))
+        }
+        _ => Ok(part),
     }
-    Ok(Part::Named(values))
 }
 
 fn number(name: &str, key: &str, value: &str) -> Result<f64, WorkbenchError> {
@@ -134,10 +149,7 @@ impl Typed {
             Part::Recorded(path, series) => {
                 Some((format!("{}, a recording,", path.display()), series.period()))
             }
-            Part::Named(values) => {
-                let is_drawn = values.weather.values.iter().any(|(known, _)| *known == "decay");
-                is_drawn.then(|| (values.weather.name.to_owned(), N_SAMPLES as f64 * STEP_S))
-            }
+            Part::Named(_) => part.drawn().map(|name| (name.to_owned(), N_SAMPLES as f64 * STEP_S)),
         };
         // What is frozen has stopped.
         let runs =
