@@ -394,10 +394,8 @@ fn a_forest_in_the_wind_is_the_same_on_any_number_of_threads() {
     assert!(one == three && one.len() == 32 + 50 * 200 * 60 * 12);
 }
 
-/// A simulator of one's own moves the same plant, is told what it can be told, and refuses the rest.
-#[test]
-fn another_simulator_takes_the_place_of_the_one_that_ships() {
-    let bench = Bench::new();
+/// Compiles a simulator of one's own, `bad`, to `own.so`, where there is a compiler.
+pub(super) fn own_simulator(bench: &Bench) -> bool {
     let (source, header) = (root().join("core/check/tests/bad/simulator.c"), root().join("core/abi/include"));
     let built = std::process::Command::new("cc")
         .args(["-shared", "-fPIC", "-O1", "-DFAULT=NONE", "-o"])
@@ -405,8 +403,19 @@ fn another_simulator_takes_the_place_of_the_one_that_ships() {
         .arg(format!("-I{}", header.display()))
         .arg("-lm")
         .status();
-    if !built.is_ok_and(|status| status.success()) {
-        return missing("C compiler (cc)");
+    let is_built = built.is_ok_and(|status| status.success());
+    if !is_built {
+        missing("C compiler (cc)");
+    }
+    is_built
+}
+
+/// A simulator of one's own moves the same plant, is told what it can be told, and refuses the rest.
+#[test]
+fn another_simulator_takes_the_place_of_the_one_that_ships() {
+    let bench = Bench::new();
+    if !own_simulator(&bench) {
+        return;
     }
     let line = "simulate synth::tree:40,1 --modes 3 --wind wind --forest 3 --seconds 1";
     let own = format!("--plugin own.so {line} --with bad");
@@ -428,4 +437,23 @@ fn another_simulator_takes_the_place_of_the_one_that_ships() {
     }
     let set = bench.json(&format!("{line} --set alpha=2"));
     assert!(set["motion"]["deviation_m"] != bench.json(line)["motion"]["deviation_m"]);
+}
+
+/// Beyond what vibration modes know of, it is said once and how far; of another simulator's motion nothing is known.
+#[test]
+fn motion_that_is_too_large_for_modes_is_warned_of() {
+    let bench = Bench::new();
+    let mut cases = vec![("--pull 1", false), ("--pull 4", true)];
+    if own_simulator(&bench) {
+        cases.push(("--wind steady:speed=2000 --plugin own.so --with bad", false));
+    }
+    for (begun, is_told) in cases {
+        let ran = bench.line(&format!("simulate synth::tree:30,1 {begun} --seconds 0.2 --json"));
+        let said = ran.stderr.lines().filter(|line| line.contains("% of the plant's height")).count();
+        assert_eq!(said, usize::from(is_told), "{ran:?}");
+        let motion = &ran.json()["motion"];
+        let share = motion["farthest_of_height"].as_f64().unwrap();
+        assert!((share > 0.3) == (is_told || begun.contains("bad")), "{begun}: {share}");
+        assert_eq!(motion["warnings"].to_string().contains("vibration modes are right for little"), is_told);
+    }
 }

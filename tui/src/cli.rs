@@ -196,7 +196,7 @@ fn run(command: Command, common: &Common) -> anyhow::Result<Outcome> {
         Command::Simulate(args) => simulate::simulate(&args, common)?,
         Command::Export(args) => exchange::export(&args)?,
         Command::Import(args) => exchange::import(&args)?,
-        Command::Synth(args) => synth::synth(&args)?,
+        Command::Synth(args) => synth::synth(&args, common)?,
         Command::Demo(args) => return synth::demo(&args, common),
         Command::Tutorial => return show(Some(synth::lesson(common)), common).map(Outcome::Exit),
         Command::Plugin(args) => return help::plugin(&args, common),

@@ -6,44 +6,11 @@ use serde_json::{Value, json};
 use crate::BUILD;
 use crate::shell::{self, Step, cargo};
 
-/// Cells of table 6.1 and the largest forest, and of table 6.2.
-const TABLES: [(&str, &[&str]); 2] = [
-    (
-        "table_6_1",
-        &[
-            "100x1000x25",
-            "100x2000x25",
-            "100x8000x25",
-            "1000x100x25",
-            "1000x500x25",
-            "1000x1000x25",
-            "1000x2000x25",
-            "1000x8000x25",
-            "8000x20x25",
-            "8000x100x25",
-            "8000x500x25",
-            "8000x1000x25",
-            "10000x3437x25",
-        ],
-    ),
-    (
-        "table_6_2",
-        &[
-            "500x3437x5",
-            "1000x3437x5",
-            "2000x3437x5",
-            "4000x3437x5",
-            "500x3437x15",
-            "1000x3437x15",
-            "2000x3437x15",
-            "4000x3437x15",
-            "500x3437x25",
-            "1000x3437x25",
-            "2000x3437x25",
-            "4000x3437x25",
-        ],
-    ),
-];
+#[expect(unreachable_pub, reason = "it is the workbench's, where it is public")]
+#[path = "../../core/workbench/src/plant/bench/cells.rs"]
+mod cells;
+
+use cells::{TABLE_6_1, TABLE_6_2};
 
 /// `bench forest [--json] [KxNxM…]`: honami and numpy take turns, cell by cell.
 pub(crate) fn run(args: &[&str]) -> anyhow::Result<()> {
@@ -52,18 +19,19 @@ pub(crate) fn run(args: &[&str]) -> anyhow::Result<()> {
     cargo(BUILD).args(["-p", "honami", "-p", "honami-simulator-modal"]).run()?;
     let mut tables = json!({});
     let mut roof = json!(null);
-    for (table, cells) in TABLES {
+    for (table, cells) in [("table_6_1", &TABLE_6_1[..]), ("table_6_2", &TABLE_6_2)] {
         let mut rows = Vec::new();
-        for cell in cells.iter().filter(|cell| wanted.is_empty() || wanted.contains(cell)) {
-            let args = ["bench", "forest", "--json", "--cell", cell];
+        let names = cells.iter().map(|(copies, nodes, modes, _)| format!("{copies}x{nodes}x{modes}"));
+        for cell in names.filter(|cell| wanted.is_empty() || wanted.contains(&cell.as_str())) {
+            let args = ["bench", "forest", "--json", "--cell", &cell];
             let ours = read(&shell::built("release", "honami")?.args(args).output()?)?;
-            let numpy = read(&Step::new("python3").args(["tests/peers/forest_numpy.py", cell]).output()?)?;
+            let numpy = read(&Step::new("python3").args(["tests/peers/forest_numpy.py", &cell]).output()?)?;
             let mut row = ours["cells"][0].clone();
-            row["numpy_fps"] = numpy[*cell].clone();
+            row["numpy_fps"] = numpy[&cell].clone();
             row["boundary"] = ours["boundary"].clone();
             roof = ours["roof"].clone();
             if !is_json {
-                println!("{}", line(cell, &row));
+                println!("{}", line(&cell, &row));
             }
             rows.push(row);
         }

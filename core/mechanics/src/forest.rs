@@ -23,12 +23,12 @@ use crate::oscillator::{Damping, Integrator, LimitError, Oscillator};
 use crate::rig::{BATCH, Rig};
 use crate::stirring::Stirring;
 use crate::threads::Threads;
+use crate::wind_basis::WindBasis;
 use honami_model::brief::Brief;
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use pulp::Arch;
 use std::collections::BTreeMap;
 use std::f64::consts::{SQRT_2, TAU};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 /// Copies that a thread takes at a time where none is posed.
@@ -143,7 +143,10 @@ pub enum ForestError {
 /// A forest at a time.
 #[derive(Debug)]
 pub struct Forest {
-    plant: Arc<Stirring>,
+    /// Of all modes of the plant, radians per second.
+    omegas: Vec<f64>,
+    /// What wind does to them.
+    by_wind: WindBasis,
     rig: Rig,
     /// Of every copy: sine and cosine of its turn, and its kind.
     copies: Vec<([f64; 2], u32)>,
@@ -180,16 +183,12 @@ struct Piece<'a> {
 }
 
 impl Forest {
-    /// A forest at rest at time 0, of which these nodes of the beams are written, in this order.
+    /// A forest at rest at time 0, of which these nodes of the beams are written, in this order. It keeps nothing of the plant
+    /// but what it moves by: of what is for every node nothing in double precision.
     ///
     /// # Errors
     /// [`ForestError`].
-    pub fn new(
-        plant: Arc<Stirring>,
-        nodes: &[u32],
-        stands: &[Stand],
-        pace: &Pace,
-    ) -> Result<Self, ForestError> {
+    pub fn new(plant: &Stirring, nodes: &[u32], stands: &[Stand], pace: &Pace) -> Result<Self, ForestError> {
         if stands.is_empty() {
             return Err(ForestError::Empty);
         }
@@ -222,9 +221,10 @@ impl Forest {
         let basis = (0..3).flat_map(axis).collect();
         let tensors = air::rows(&plant.basis);
         let rig = Rig::new(&plant.following, nodes);
-        let (pace_now, time) = (*pace, 0.0);
+        let (omegas, by_wind) = (plant.omegas.clone(), plant.basis.clone());
+        let (now, time) = (*pace, 0.0);
         let mut made =
-            Self { plant, rig, copies, kinds, basis, tensors, amplitudes, speeds, pace: pace_now, time };
+            Self { omegas, by_wind, rig, copies, kinds, basis, tensors, amplitudes, speeds, pace: now, time };
         made.retune(pace)?;
         Ok(made)
     }
@@ -259,7 +259,9 @@ impl Forest {
         let kinds: usize = self.kinds.iter().map(|kind| kind.steps.len()).sum();
         let numbers = self.amplitudes.capacity() + self.speeds.capacity() + kinds;
         let numbers = numbers + self.basis.len() + self.tensors.len();
-        numbers * size_of::<f32>() + size_of_val(self.copies.as_slice()) + self.rig.bytes()
+        let of_mode = size_of::<f64>() + size_of::<Vector3<f64>>() + size_of::<Matrix3<f64>>();
+        let of_plant = of_mode * self.omegas.len() + self.rig.bytes();
+        numbers * size_of::<f32>() + size_of_val(self.copies.as_slice()) + of_plant
     }
 
     /// From where it is it goes on at another pace.
@@ -273,7 +275,7 @@ impl Forest {
         if !is_plant {
             return Err(ForestError::Damping { mass, alpha, beta, air });
         }
-        let steps = self.kinds.iter().map(|kind| steps(&self.plant, kind, pace));
+        let steps = self.kinds.iter().map(|kind| steps(&self.omegas, kind, pace));
         let steps = steps.collect::<Result<Vec<_>, _>>()?;
         for (kind, steps) in self.kinds.iter_mut().zip(steps) {
             kind.steps = steps;
@@ -303,7 +305,7 @@ impl Forest {
         pose: Option<Pose<'_>>,
         threads: &Threads,
     ) -> Result<(), ForestError> {
-        let n_modes = self.plant.omegas.len();
+        let n_modes = self.omegas.len();
         let calm = AtomicUsize::new(usize::MAX);
         let (rig, copies, kinds) = (&self.rig, &self.copies, &self.kinds);
         let (basis, tensors) = (&self.basis, &self.tensors);
@@ -343,7 +345,7 @@ impl Forest {
     /// # Panics
     /// When there is not a detail a copy, or not room for just what is wanted.
     pub fn pose(&mut self, pose: Pose<'_>, threads: &Threads) {
-        let (n_modes, rig) = (self.plant.omegas.len(), &self.rig);
+        let (n_modes, rig) = (self.omegas.len(), &self.rig);
         let pieces = pieces(n_modes, rig, &mut self.amplitudes, &mut self.speeds, Some(pose));
         threads.each(pieces.into_iter(), |piece| piece.pose(rig, n_modes));
     }
@@ -351,13 +353,13 @@ impl Forest {
     /// Amplitudes of a copy's modes.
     #[must_use]
     pub fn amplitudes(&self, copy: usize) -> &[f32] {
-        let n_modes = self.plant.omegas.len();
+        let n_modes = self.omegas.len();
         &self.amplitudes[copy * n_modes..][..n_modes]
     }
 
     /// Puts a copy's modes where they are wanted, standing still.
     pub fn pull(&mut self, copy: usize, amplitudes: &[f32]) {
-        let n_modes = self.plant.omegas.len();
+        let n_modes = self.omegas.len();
         self.amplitudes[copy * n_modes..][..n_modes].copy_from_slice(amplitudes);
         self.speeds[copy * n_modes..][..n_modes].fill(0.0);
     }
@@ -433,12 +435,12 @@ fn pressed(v: &Vector3<f64>) -> [f32; 3] {
 
 impl Kind {
     /// The modes of a plant in copies of this kind, but for what the air takes.
-    fn oscillators(&self, plant: &Stirring, damping: &Damping) -> impl Iterator<Item = Oscillator> {
+    fn oscillators(&self, omegas: &[f64], damping: &Damping) -> impl Iterator<Item = Oscillator> {
         let damping = Damping { mass: damping.mass * self.mass, ..*damping };
         // Of an amplitude in the plant's own size: m s^3 of mass, s^2 of wind, and s of length.
         let mass = damping.mass * self.scale.powi(2);
         let of = move |omega: &f64| Oscillator { mass, ..Oscillator::new(omega / self.scale, &damping) };
-        plant.omegas.iter().map(of)
+        omegas.iter().map(of)
     }
 
     /// What the air takes from a mode, per second, by the damping of a mode of the plant: of s times the size the drag on
@@ -449,10 +451,10 @@ impl Kind {
 }
 
 /// The step of every mode of a kind.
-fn steps(plant: &Stirring, kind: &Kind, pace: &Pace) -> Result<Vec<f32>, LimitError> {
-    let n_modes = plant.omegas.len();
+fn steps(omegas: &[f64], kind: &Kind, pace: &Pace) -> Result<Vec<f32>, LimitError> {
+    let n_modes = omegas.len();
     let mut rows = vec![0.0; 6 * n_modes];
-    for (mode, oscillator) in kind.oscillators(plant, &pace.damping).enumerate() {
+    for (mode, oscillator) in kind.oscillators(omegas, &pace.damping).enumerate() {
         let step = oscillator.step_by(pace.integrator, pace.step)?;
         // Where the air takes all speed, every step, symplectic Euler bears less: of its trace 1 - (omega dt)^2 is left.
         let limit = SQRT_2 / oscillator.omega;

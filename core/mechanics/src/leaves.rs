@@ -25,16 +25,24 @@ pub struct LeavesError {
 }
 
 impl Leaves {
+    /// Refuses what no leaves are.
+    ///
+    /// # Errors
+    /// [`LeavesError`].
+    pub fn check(&self) -> Result<(), LeavesError> {
+        let Self { mass, drag } = *self;
+        let are_leaves = [mass, drag].iter().all(|v| v.is_finite() && *v >= 0.0);
+        if are_leaves { Ok(()) } else { Err(LeavesError { mass, drag }) }
+    }
+
     /// Hangs them on the beams; how hard air presses on both. An end is a node that bears no other: a twig of no length is
     /// none, whoever measured it, and so a plant has the same ends when its beams are made into beams again.
     ///
     /// # Errors
     /// [`LeavesError`].
     pub fn hang(&self, beams: &mut Beams) -> Result<Drag, LeavesError> {
+        self.check()?;
         let Self { mass, drag } = *self;
-        if ![mass, drag].iter().all(|v| v.is_finite() && *v >= 0.0) {
-            return Err(LeavesError { mass, drag });
-        }
         let ends = beams.ends();
         let share = 1.0 / ends.len().max(1) as f64;
         beams.load(ends.iter().map(|end| (*end as usize, mass * share)));

@@ -60,7 +60,7 @@ pub enum ModesError {
     /// More than half of many.
     #[error(
         "{wanted} modes of {there} were asked for: more than half of them are worked out where there are {DENSE_MOST} at \
-         most, here {} can be had", there / 2
+         most, here {} can be had", there.div_ceil(2) - 1
     )]
     Half {
         /// Asked for.
@@ -143,6 +143,13 @@ impl Modes {
             few(&flexibility, &factor, &mass, (n_modes, seed), watch)?
         };
         Self::checked(&factor, &mass, &lambdas, vectors)
+    }
+
+    /// How many can be had of beams with so many nodes: of a small plant all, of others less than half.
+    #[must_use]
+    pub fn most(n_nodes: usize) -> usize {
+        let there = DOF * n_nodes.saturating_sub(1);
+        if there > DENSE_MOST { there.div_ceil(2) - 1 } else { there }
     }
 
     /// What it takes to find so many modes of beams with so many nodes, bytes, about.

@@ -367,6 +367,19 @@ pub enum WorkbenchError {
         /// Free.
         there: usize,
     },
+    /// More modes than there are, or than can be found.
+    #[error(
+        "{asked} modes were asked for, and of this plant {most} can be had: --modes {most} is the greatest number"
+    )]
+    TooManyModes {
+        /// Asked for.
+        asked: usize,
+        /// Of the plant.
+        most: usize,
+    },
+    /// No shapes of numbers that are none.
+    #[error(transparent)]
+    Shapes(#[from] honami_mechanics::ShapesError),
     /// Modes for which there is no room.
     #[error(
         "to find {modes} modes of {nodes} nodes of beams takes {} MB, and there are {}: fewer modes are wanted, or a plant of \
@@ -468,9 +481,6 @@ pub enum WorkbenchError {
         /// Metres.
         pull: f64,
     },
-    /// Or its slowest mode moves nothing.
-    #[error(transparent)]
-    Unpullable(#[from] honami_mechanics::PullError),
     /// A sensor on no node.
     #[error("there is no node {node}: the beams have nodes 0 to {}, as --beams lists them", there - 1)]
     Sensor {
@@ -529,7 +539,7 @@ impl WorkbenchError {
     #[must_use]
     pub fn is_of_plant_as_typed(&self) -> bool {
         use honami_mechanics::wind::FlowingError::{Cells, Numbers};
-        use honami_mechanics::{BeamsError, ModesError};
+        use honami_mechanics::{BeamsError, ForestError};
         if let Self::PlantFile(error) = self {
             return error.is_as_typed();
         }
@@ -548,7 +558,8 @@ impl WorkbenchError {
                 | Self::NoMeaning { .. }
                 | Self::Drag { .. }
                 | Self::Beams(BeamsError::Material(_) | BeamsError::Longest(_))
-                | Self::Modes(ModesError::TooMany { .. } | ModesError::Half { .. })
+                | Self::TooManyModes { .. }
+                | Self::Forest(ForestError::Damping { .. })
                 | Self::Air(Numbers { .. } | Cells { .. })
         )
     }

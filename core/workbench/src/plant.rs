@@ -37,6 +37,9 @@ const MOST_DRAG: f64 = 1e4;
 /// What makes a tree to calculate with, in place of a file: `synth::tree:NODES,SEED`.
 const GENERATED: &str = "synth::tree:";
 
+/// Modes, where nobody says how many.
+pub const USUAL_MODES: usize = 25;
+
 /// What is wanted of a plant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wish {
@@ -56,8 +59,8 @@ pub struct Wish {
     pub drag: f64,
     /// Density of the air, kilograms per cubic metre.
     pub air_density: f64,
-    /// How many modes.
-    pub n_modes: usize,
+    /// How many modes; `None`: [`USUAL_MODES`], or as many as a small plant has.
+    pub n_modes: Option<usize>,
     /// Of the search for modes; they do not depend on it but for the last digits.
     pub seed: u64,
 }
@@ -65,7 +68,7 @@ pub struct Wish {
 impl Wish {
     /// Of a plant, as it is, with so many modes.
     #[must_use]
-    pub fn of(source: &str, n_modes: usize) -> Self {
+    pub fn of(source: &str, n_modes: Option<usize>) -> Self {
         Self {
             source: source.to_owned(),
             unit: None,
@@ -78,6 +81,21 @@ impl Wish {
             n_modes,
             seed: 1,
         }
+    }
+}
+
+impl Wish {
+    /// Whether its wood, its leaves and the air about it can be.
+    ///
+    /// # Errors
+    /// [`BeamsError::Material`], [`WorkbenchError::Leaves`], [`WorkbenchError::Drag`].
+    pub fn check(&self) -> Result<(), WorkbenchError> {
+        let (branches, density) = (self.drag, self.air_density);
+        if ![branches, density].iter().all(|v| (0.0..=MOST_DRAG).contains(v)) {
+            return Err(WorkbenchError::Drag { branches, density });
+        }
+        self.beams.material.check().map_err(BeamsError::from)?;
+        Ok(self.leaves.check()?)
     }
 }
 
@@ -100,15 +118,22 @@ pub struct Vibrating {
     pub seconds: f64,
 }
 
+impl Vibrating {
+    /// How large it is, metres: its height, or, of what hangs, how far it reaches from its root.
+    #[must_use]
+    pub fn size(&self) -> f64 {
+        let root = self.beams.position(0);
+        let reach = || (0..self.beams.len()).map(|node| (self.beams.position(node) - root).norm());
+        if self.height > 0.0 { self.height } else { reach().fold(0.0, f64::max) }
+    }
+}
+
 /// Reads a plant and finds its modes.
 ///
 /// # Errors
 /// What is wrong with the file or with numbers of the wish; [`WorkbenchError::Stopped`].
 pub fn vibrate(wish: &Wish, progress: &dyn Progress) -> Result<Vibrating, WorkbenchError> {
-    let (branches, density) = (wish.drag, wish.air_density);
-    if ![branches, density].iter().all(|v| (0.0..=MOST_DRAG).contains(v)) {
-        return Err(WorkbenchError::Drag { branches, density });
-    }
+    wish.check()?;
     let Measured { plant, mut notes } = read(wish)?;
     notes.extend(hint(&wish.source).and_then(|hint| sizes::odd(&plant, &wish.beams.material, hint)));
     let mut beams = Beams::new(&plant, &wish.beams)?;
@@ -127,11 +152,12 @@ pub fn vibrate(wish: &Wish, progress: &dyn Progress) -> Result<Vibrating, Workbe
         "segment is thicker than long, of which a beam is a rough model",
         "segments are thicker than long, of which beams are a rough model",
     );
-    let drag = Drag { branches, density, ..wish.leaves.hang(&mut beams)? };
-    room(beams.len(), wish.n_modes, sway::free())?;
+    let drag = Drag { branches: wish.drag, density: wish.air_density, ..wish.leaves.hang(&mut beams)? };
+    let n_modes = n_modes(wish.n_modes, &beams)?;
+    room(beams.len(), n_modes, sway::free())?;
     let begun = Instant::now();
-    let found = |n: usize| progress.report(n as u64, wish.n_modes as u64, "modes") == Flow::Continue;
-    let modes = Modes::watched(&beams, wish.n_modes, wish.seed, &found);
+    let found = |n: usize| progress.report(n as u64, n_modes as u64, "modes") == Flow::Continue;
+    let modes = Modes::watched(&beams, n_modes, wish.seed, &found);
     let modes = modes.map_err(|error| match error {
         ModesError::Stopped => WorkbenchError::Stopped,
         error => error.into(),
@@ -140,6 +166,15 @@ pub fn vibrate(wish: &Wish, progress: &dyn Progress) -> Result<Vibrating, Workbe
     let basis = WindBasis::new(&beams, &modes, &drag);
     let (n_measured, height) = (plant.nodes().len(), plant.height());
     Ok(Vibrating { n_measured, height, beams, modes, basis, notes, seconds })
+}
+
+/// As many as were asked for, or as are usual and there.
+fn n_modes(asked: Option<usize>, beams: &Beams) -> Result<usize, WorkbenchError> {
+    let most = Modes::most(beams.len());
+    match asked {
+        Some(asked) if asked > most => Err(WorkbenchError::TooManyModes { asked, most }),
+        asked => Ok(asked.unwrap_or(USUAL_MODES.min(most))),
+    }
 }
 
 /// Whether modes can be sought in so many bytes that are free.

@@ -5,8 +5,6 @@ mod settings;
 #[cfg(test)]
 mod tests;
 
-use std::sync::Arc;
-
 use honami_mechanics::{
     Beams, Detail, Direction, Drag, Forest, Integrator, Leaves, Modes, Pace, Pose, Stand, Stirring, Threads,
     WindBasis,
@@ -23,7 +21,7 @@ struct Modal {
     forest: Forest,
     /// As it was chosen; how long a step is, each call says.
     pace: Pace,
-    modes: Modes,
+    modes: Vec<Mode>,
     pulled: Vec<f32>,
     threads: Threads,
     details: Vec<Detail>,
@@ -52,13 +50,17 @@ impl Simulator for Modal {
         let modes = Modes::new(&beams, n_modes, plant.seed).map_err(unusable)?;
         cx.progress(0.8, "curves")?;
         let basis = WindBasis::new(&beams, &modes, &drag);
-        let stirring = Arc::new(Stirring::new(&beams, &modes, basis, settings.form()));
+        let stirring = Stirring::new(&beams, &modes, basis, settings.form());
         let pulled = stirring.pulled(settings.pull).map_err(unusable)?;
         let stands: Vec<Stand> = plant.instances.iter().map(stand).collect();
         let pace = settings.pace();
         // Whatever a method bears: there is no step yet.
         let any = Pace { integrator: Integrator::Exact, ..pace };
-        let forest = Forest::new(stirring, beams.of_plant(), &stands, &any).map_err(unusable)?;
+        let forest = Forest::new(&stirring, beams.of_plant(), &stands, &any).map_err(unusable)?;
+        // A search that is not certain is an error. What modes look like in double precision is left behind here.
+        let mode =
+            |mode: usize| Mode { hz: modes.hz(mode), residual: modes.residuals[mode], certified: true };
+        let modes = (0..modes.len()).map(mode).collect();
         let threads = Threads::new(plant.max_threads as usize)?;
         let mut made = Self { forest, pace, modes, pulled, threads, details: Vec::new() };
         made.reset();
@@ -66,11 +68,7 @@ impl Simulator for Modal {
     }
 
     fn modes(&self) -> Vec<Mode> {
-        let residuals = self.modes.residuals.iter().enumerate();
-        // A search that is not certain is an error.
-        residuals
-            .map(|(mode, &residual)| Mode { hz: self.modes.hz(mode), residual, certified: true })
-            .collect()
+        self.modes.clone()
     }
 
     fn retune(&mut self, settings: &Settings) -> Result<()> {

@@ -117,10 +117,10 @@ fn the_plugin_moves_as_the_forest_does() {
     assert_eq!(drag.leaves.len(), 2, "the end of the rod, and of its twig");
     let modes = Modes::new(&beams, 6, 1).unwrap();
     let basis = WindBasis::new(&beams, &modes, &drag);
-    let stirring = Arc::new(Stirring::new(&beams, &modes, basis, settings.form()));
+    let stirring = Stirring::new(&beams, &modes, basis, settings.form());
     let stands: Vec<Stand> = instances.iter().map(stand).collect();
     let pace = Pace { step: 0.02, ..settings.pace() };
-    let mut forest = Forest::new(Arc::clone(&stirring), beams.of_plant(), &stands, &pace).unwrap();
+    let mut forest = Forest::new(&stirring, beams.of_plant(), &stands, &pace).unwrap();
     forest.pull_all(&stirring.pulled(0.05).unwrap());
 
     let threads = Threads::new(1).unwrap();
@@ -136,4 +136,29 @@ fn the_plugin_moves_as_the_forest_does() {
     }
     assert_eq!(modal.save().unwrap(), forest.save());
     assert!(ours.as_flattened().iter().any(|v| v.abs() > 1e-3), "they move");
+}
+
+/// Everything that is kept while plants move, and what is written of them: positions, the matrix of the plant, two numbers a
+/// mode, and a tenth of it for the rest.
+#[test]
+fn a_running_plant_keeps_little_more_than_its_positions() {
+    let (k, n, m) = (1500, 60, 10);
+    let nodes: Vec<Node> =
+        (0..n as u32).map(|k| node(k.checked_sub(1), [0.0, 0.0, k as f32 / 60.0], 0.02)).collect();
+    for bend in [settings::Bend::Turn, settings::Bend::S3, settings::Bend::Linear] {
+        let settings = Settings { modes: m as i64, bend, ..Settings::default() };
+        let mut modal = prepared(&settings, &nodes, &vec![Instance::default(); k]).unwrap();
+        let mut out = vec![[0.0; 3]; k * n];
+        go(&mut modal, 1, 0.01, &mut out).unwrap();
+        let Modal { forest, pace, modes, pulled, threads, details } = &modal;
+        let bytes = forest.bytes()
+            + size_of_val(modes.as_slice())
+            + size_of_val(pulled.as_slice())
+            + size_of_val(details.as_slice())
+            + size_of_val(pace)
+            + size_of_val(threads)
+            + size_of_val(out.as_slice());
+        let bound = 1.1 * ((k * n * 3 + n * m * 9 + k * m * 2) * 4) as f64;
+        assert!((bytes as f64) < bound, "{bytes} of {bound}");
+    }
 }

@@ -360,15 +360,21 @@ pub(super) struct Synth {
     /// The same seed gives the same clip.
     #[arg(long, value_name = "S", default_value_t = 1)]
     pub(super) seed: u64,
-    /// Film this plant as it moves by its own modes, with leaves on the ends of its branches: what `simulate` takes.
+    /// Film this plant as a simulator moves it, with leaves on the ends of its branches: what `simulate` takes.
     #[arg(long, value_name = "PLANT")]
     pub(super) plant: Option<String>,
     /// Of a .mtg plant: only parts of these classes, such as S.
     #[arg(long, value_name = "C,…", value_delimiter = ',', requires = "plant")]
     pub(super) classes: Vec<String>,
-    /// Of a plant: how many modes, the slowest first.
-    #[arg(long, value_name = "M", default_value_t = 25, requires = "plant")]
-    pub(super) modes: u32,
+    /// Of a plant: how many modes, the slowest first (default: 25, or as many as a small plant has).
+    #[arg(long, value_name = "M", requires = "plant", value_parser = clap::value_parser!(u32).range(1..=5000))]
+    pub(super) modes: Option<u32>,
+    /// Of a plant: who moves it, a simulator's short name or full id.
+    #[arg(long, value_name = "NAME", requires = "plant")]
+    pub(super) with: Option<String>,
+    /// Of a plant: set a parameter of its simulator; `honami plugin info NAME` lists them.
+    #[arg(long = "set", value_name = "K=V", requires = "plant")]
+    pub(super) set: Vec<String>,
     /// Of a plant: in still air, the slowest mode pulled out by so many metres and let go.
     #[arg(
         long,

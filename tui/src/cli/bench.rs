@@ -1,7 +1,8 @@
 //! `bench`: how fast it is here what the thesis has tables of.
 
 use honami_workbench::mechanics::Roof;
-use honami_workbench::plant::bench::{self, Boundary, Cell, Rate, Runs, Speed, TABLE_6_1, TABLE_6_2};
+use honami_workbench::plant::bench::cells::{Cell, TABLE_6_1, TABLE_6_2};
+use honami_workbench::plant::bench::{self, Boundary, Rate, Runs, Speed};
 use honami_workbench::plant::{self, forms};
 use honami_workbench::plugins::Kind;
 use serde_json::{Value, json};

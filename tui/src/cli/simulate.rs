@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use honami_model::brief::Brief;
 use honami_model::plant::RadiusRule;
 use honami_workbench::mechanics::{Damping, Form, Integrator, Leaves, Material, Options};
 use honami_workbench::plant::glb::Made;
@@ -34,45 +33,41 @@ pub(super) fn simulate(args: &Simulate, common: &Common) -> anyhow::Result<Answe
             args.seconds, args.fps
         )
     })?;
-    let is_plant = args.heavier.is_finite()
-        && args.heavier > 0.0
-        && [args.alpha, args.beta, args.air_damping].iter().all(|v| v.is_finite() && *v >= 0.0);
-    want(is_plant, || {
-        format!(
-            "a plant is {} times as heavy, with damping {}, {} and {} times that of the air: masses are more than 0, damping is not negative",
-            Brief(args.heavier),
-            Brief(args.alpha),
-            Brief(args.beta),
-            Brief(args.air_damping)
-        )
-    })?;
     want(args.sensors > 0, || "one sensor at least is wanted".to_owned())?;
     let wind = weather::read(&args.wind)?;
     let replaced = replaced(args, &wind)?;
-    let wish = wish(&args.plant);
-    let damping = Damping { alpha: args.alpha, beta: args.beta, mass: args.heavier, air: args.air_damping };
-    let motion = motion(args, n_frames as u32, damping);
+    let (mut wish, mut motion) = (wish(&args.plant), motion(args, n_frames as u32));
     motion.check()?;
+    let options = told_options(common);
+    let registry = options.registry();
+    let mut simulator = None;
+    // Modes alone are found without one, unless it is one that is asked.
+    if is_moved(args, &motion) || args.plugin.with.is_some() || !args.plugin.set.is_empty() {
+        let plugin = registry.find(Kind::Simulator, args.plugin.with.as_deref().unwrap_or(DEFAULT))?;
+        let told = told::told(&wish, &motion, plugin, Chosen::Only(&args.typed.0), &args.plugin.set)?;
+        (wish, motion) = (told.wish, told.motion);
+        simulator = Some((plugin, told.values, told.notes));
+    }
     let bar = report::Bar::with(common);
     let plant = plant::vibrate(&wish, &bar)?;
-    let (mut text, mut json) = describe(&wish, &plant, &damping);
-    if is_moved(args) {
-        let options = told_options(common);
-        let registry = options.registry();
-        let plugin = registry.find(Kind::Simulator, args.plugin.with.as_deref().unwrap_or(DEFAULT))?;
-        let chosen = Chosen::Only(&args.typed.0);
-        let simulator = told::told(&wish, &motion, plugin, chosen, &args.plugin.set)?;
-        let mover = Mover { host: &options.host, plugin, values: &simulator.values };
+    let (mut text, mut json) = describe(&wish, &plant, &motion.damping);
+    let simulator = simulator.filter(|_| is_moved(args, &motion));
+    if let Some((plugin, values, notes)) = simulator {
+        let mover = Mover { host: &options.host, plugin, values: &values };
         let [table, cache, glb, beams] =
             [&args.out, &args.cache, &args.glb, &args.beams].map(|path| path.as_deref());
         let outs = Outs { table, cache, glb, beams };
         let again = wind.again(f64::from(motion.n_frames - 1) / motion.fps);
         let wind = wind.over(&Ground::of(&plant, &motion))?;
         let mut moved = sway::sway(&plant, &mover, &*wind, &motion, outs, &bar)?;
-        moved.warnings.splice(0..0, simulator.notes.into_iter().chain(again));
+        moved.warnings.splice(0..0, notes.into_iter().chain(again));
         let spans = Spans::of(&plant, &motion);
         let told = told(args, &motion, &moved, &spans);
         text += &format!("\n{}", report::with_warnings(&told, &moved.warnings));
+        if let Some(too_far) = moved.too_far.take() {
+            report::say(&format!("warning: {too_far}"));
+            moved.warnings.push(too_far);
+        }
         json["motion"] = entry(&motion, &moved, args);
         json["motion"]["copies_span"] =
             json!({ "hz": spans.hz, "height_m": spans.height, "kg": spans.kilograms });
@@ -89,9 +84,9 @@ pub(super) fn simulate(args: &Simulate, common: &Common) -> anyhow::Result<Answe
 }
 
 /// Whether more than modes is wanted.
-fn is_moved(args: &Simulate) -> bool {
+fn is_moved(args: &Simulate, motion: &Motion) -> bool {
     let is_written = args.out.is_some() || args.cache.is_some() || args.glb.is_some();
-    args.wind != "still" || args.pull.abs() > 0.0 || args.forest.is_some() || is_written
+    args.wind != "still" || motion.pull.abs() > 0.0 || args.forest.is_some() || is_written
 }
 
 /// Files that are wanted, with what each is and how its name ends.
@@ -131,7 +126,7 @@ fn place(path: &Path) -> PathBuf {
 }
 
 /// What is asked for of a motion.
-fn motion(args: &Simulate, n_frames: u32, damping: Damping) -> Motion {
+fn motion(args: &Simulate, n_frames: u32) -> Motion {
     let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     Motion {
         n_copies: args.forest.unwrap_or(1) as usize,
@@ -143,7 +138,7 @@ fn motion(args: &Simulate, n_frames: u32, damping: Damping) -> Motion {
             Method::Symplectic => Integrator::Symplectic,
             Method::Newmark => Integrator::Newmark,
         },
-        damping,
+        damping: Damping { alpha: args.alpha, beta: args.beta, mass: args.heavier, air: args.air_damping },
         form: match args.bend {
             Bend::Turn => Form::Turn,
             Bend::Linear => Form::Linear,
@@ -177,7 +172,7 @@ pub(super) fn wish(args: &Plant) -> Wish {
         leaves: Leaves { mass: args.leaf_mass, drag: args.leaf_drag },
         drag: args.drag,
         air_density: args.air_density,
-        ..Wish::of(&args.source, args.modes as usize)
+        ..Wish::of(&args.source, args.modes.map(|modes| modes as usize))
     }
 }
 
@@ -305,6 +300,7 @@ fn entry(motion: &Motion, moved: &Moved, args: &Simulate) -> serde_json::Value {
         "sensors": moved.sensors,
         "deviation_m": moved.deviation,
         "farthest_m": moved.farthest,
+        "farthest_of_height": moved.share,
         "frame_ms": moved.frame_s * 1e3,
         "threads": motion.n_threads,
         "bytes": moved.bytes,

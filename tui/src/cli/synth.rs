@@ -1,17 +1,19 @@
 //! `synth` and `demo`: clips with known truth, and the whole job on one of them.
 
+use std::f64::consts::TAU;
 use std::fs;
 use std::io::IsTerminal as _;
 use std::path::Path;
 
 use anyhow::Context as _;
 use honami_workbench::generate::{self, Generated};
-use honami_workbench::mechanics::Damping;
 use honami_workbench::media;
+use honami_workbench::plant::mover::Mover;
 use honami_workbench::plant::sway::Motion;
+use honami_workbench::plant::told::{self, Chosen};
 use honami_workbench::plant::weather::{self, Ground};
-use honami_workbench::plant::{self, Wish};
-use honami_workbench::plugins::quoted;
+use honami_workbench::plant::{self, Wish, film};
+use honami_workbench::plugins::{Kind, quoted};
 use honami_workbench::progress::{Flow, Progress};
 use honami_workbench::session::Session;
 use honami_workbench::synth::{Level, Settings};
@@ -19,12 +21,12 @@ use honami_workbench::track::PointSource;
 use serde_json::json;
 
 use super::args::{Common, Demo, Synth, Wind};
-use super::{Answer, Outcome, groups, options, project, report, show, track};
+use super::{Answer, Outcome, groups, options, project, report, show, simulate, told_options, track};
 use crate::app::Plan;
 use crate::app::opening::Tell;
 
 /// Renders a clip and its truth.
-pub(super) fn synth(args: &Synth) -> anyhow::Result<Answer> {
+pub(super) fn synth(args: &Synth, common: &Common) -> anyhow::Result<Answer> {
     let level = match args.wind {
         Wind::Calm => Level::Calm,
         Wind::Wind => Level::Wind,
@@ -44,37 +46,53 @@ pub(super) fn synth(args: &Synth) -> anyhow::Result<Answer> {
     }
     anyhow::ensure!(!args.out.exists(), "{} is there already: choose another name", args.out.display());
     if let Some(source) = &args.plant {
-        return film(args, source, &settings);
+        return film(args, source, &settings, common);
     }
     Ok(describe(&generate::generate(&settings, &args.out, &report::Bar::new())?))
 }
 
-/// Films a plant that moves by its own modes.
-fn film(args: &Synth, source: &str, settings: &Settings) -> anyhow::Result<Answer> {
-    let wish = Wish { classes: args.classes.clone(), ..Wish::of(source, args.modes as usize) };
-    let bar = report::Bar::new();
-    let plant = plant::vibrate(&wish, &bar)?;
-    let weather = match (args.pull, args.wind) {
-        (Some(_), _) => "still",
-        (None, Wind::Calm) => "calm",
-        (None, Wind::Wind) => "wind",
-        (None, Wind::Storm) => "storm",
+/// Films a plant as a simulator moves it.
+fn film(args: &Synth, source: &str, settings: &Settings, common: &Common) -> anyhow::Result<Answer> {
+    let n_modes = args.modes.map(|modes| modes as usize);
+    let wish = Wish { classes: args.classes.clone(), ..Wish::of(source, n_modes) };
+    let (weather, pull) = match (args.pull, args.wind) {
+        (Some(pull), _) => ("still".to_owned(), pull),
+        (None, Wind::Calm) => (format!("calm:seed={}", args.seed), 0.0),
+        (None, Wind::Wind) => (format!("wind:seed={}", args.seed), 0.0),
+        (None, Wind::Storm) => (format!("storm:seed={}", args.seed), 0.0),
     };
-    let wind = weather::read(&format!(
-        "{weather}{}",
-        if args.pull.is_none() { format!(":seed={}", args.seed) } else { String::new() }
-    ))?;
-    // The damping that is told is all there is: the air's would be another in every gust.
-    let damping = Damping { air: 0.0, ..Damping::default() };
-    let (fps, pull) = (args.fps, args.pull.unwrap_or(0.0));
-    let motion = Motion { n_frames: args.frames, fps, pull, damping, ..Motion::default() };
-    let wind = wind.over(&Ground::of(&plant, &motion))?;
-    let moving = plant::film::film(&plant, &*wind, &motion, &bar)?;
-    let mut answer = describe(&generate::film(settings, &moving, &args.out, &bar)?);
-    let (hz, omega) = (plant.modes.hz(0), plant.modes.omegas[0]);
-    let ratio = (damping.alpha + damping.beta * omega.powi(2)) / (2.0 * omega);
+    let motion = Motion { n_frames: args.frames, fps: args.fps, pull, ..Motion::default() };
+    let options = told_options(common);
+    let registry = options.registry();
+    let plugin = registry.find(Kind::Simulator, args.with.as_deref().unwrap_or(simulate::DEFAULT))?;
+    let typed = [(n_modes.is_some(), "modes"), (args.pull.is_some(), "pull")];
+    let typed: Vec<String> =
+        typed.into_iter().filter(|(is, _)| *is).map(|(_, name)| name.to_owned()).collect();
+    let told = told::told(&wish, &motion, plugin, Chosen::Only(&typed), &args.set)?;
+    let bar = report::Bar::new();
+    let plant = plant::vibrate(&told.wish, &bar)?;
+    let wind = weather::read(&weather)?.over(&Ground::of(&plant, &told.motion))?;
+    let mover = Mover { host: &options.host, plugin, values: &told.values };
+    let film = film::film(&plant, &mover, &*wind, &told.motion, &bar)?;
+    let mut answer = describe(&generate::film(settings, &film.filmed, &args.out, &bar)?);
+    let damping = told.motion.damping;
+    let omega = plant.modes.omegas[0] / damping.mass.sqrt();
+    let (hz, ratio) = (omega / TAU, (damping.alpha + damping.beta * omega.powi(2)) / (2.0 * omega));
     answer.text += &format!("\nslowest mode: {hz:.4} Hz, damping {:.2} %", 100.0 * ratio);
-    answer.json["plant"] = json!({ "source": source, "hz": hz, "damping": ratio, "notes": plant.notes });
+    if args.pull.is_none() && damping.air > 0.0 {
+        answer.text += " and what the wind adds; --set air_damping=0 leaves that out";
+    }
+    let warnings = [told.notes, film.warnings].concat();
+    answer.text = report::with_warnings(&answer.text, &warnings);
+    answer.json["plant"] = json!({
+        "source": source,
+        "hz": hz,
+        "damping": ratio,
+        "air_damping": damping.air,
+        "simulator": plugin.id,
+        "notes": plant.notes,
+        "warnings": warnings,
+    });
     Ok(answer)
 }
 

@@ -148,13 +148,15 @@ pub fn write_glb(
     };
     sizes.bytes()?;
     check(body, copies, n_frames)?;
+    // What cannot move has no frames: the standard has no animations of nothing.
     let times: Vec<f32> = (0..n_frames).map(|frame| (frame as f64 / fps) as f32).collect();
     let mut layout = Layout::default();
     let mesh = mesh(&mut layout, name, body);
-    let animation = animation(&mut layout, &times, copies);
+    let animations: Vec<Value> =
+        (n_targets > 0).then(|| animation(&mut layout, &times, copies)).into_iter().collect();
     let nodes: Vec<Value> = (1..).zip(copies).map(|(k, copy)| node(k, copy)).collect();
     let (buffers, views, accessors) = layout.finish();
-    let root = json!({
+    let mut root = json!({
         "asset": { "version": "2.0", "generator": concat!("honami ", env!("CARGO_PKG_VERSION")) },
         "scene": 0,
         "scenes": [{ "nodes": (0..nodes.len()).collect::<Vec<_>>() }],
@@ -166,11 +168,13 @@ pub fn write_glb(
                 "baseColorFactor": COLOUR, "metallicFactor": 0.0, "roughnessFactor": ROUGHNESS,
             },
         }],
-        "animations": [animation],
         "buffers": buffers,
         "bufferViews": views,
         "accessors": accessors,
     });
+    if !animations.is_empty() {
+        root["animations"] = animations.into();
+    }
     let n_bytes = root["buffers"][0]["byteLength"].as_u64().unwrap_or_default() as u32;
     let mut words = root.to_string().into_bytes();
     // Chunks begin and end at whole words; JSON is filled up with blanks.
@@ -227,18 +231,21 @@ fn mesh(layout: &mut Layout, name: &str, body: &Body) -> Value {
     let targets: Vec<Value> =
         body.targets.iter().map(|target| json!({ "POSITION": layout.vertices(&target.moved) })).collect();
     let names: Vec<&str> = body.targets.iter().map(|target| target.name.as_str()).collect();
-    json!({
+    let mut mesh = json!({
         "name": name,
         "primitives": [{
             "attributes": { "POSITION": position, "NORMAL": normal },
             "indices": indices,
             "material": 0,
-            "targets": targets,
         }],
-        "weights": vec![0.0; targets.len()],
+    });
+    if !targets.is_empty() {
+        mesh["weights"] = vec![0.0; targets.len()].into();
+        mesh["primitives"][0]["targets"] = targets.into();
         // Not of the standard, but where most readers look for names.
-        "extras": { "targetNames": names },
-    })
+        mesh["extras"] = json!({ "targetNames": names });
+    }
+    mesh
 }
 
 fn animation(layout: &mut Layout, times: &[f32], copies: &[Placed]) -> Value {
@@ -286,7 +293,8 @@ fn check(body: &Body, copies: &[Placed], n_frames: usize) -> Result<(), GlbError
     }
     let wanted = n_frames * body.targets.len();
     for copy in copies {
-        if wanted == 0 || copy.weights.len() != wanted || !copy.weights.iter().all(|v| v.is_finite()) {
+        let is_empty = wanted == 0 && !body.targets.is_empty();
+        if is_empty || copy.weights.len() != wanted || !copy.weights.iter().all(|v| v.is_finite()) {
             return Err(uneven("a copy", copy.weights.len(), wanted.max(1)));
         }
     }

@@ -65,7 +65,7 @@ impl Forest {
         threads: &Threads,
     ) -> Result<Round, ForestError> {
         assert!(n_frames > 0 && n_substeps > 0, "a step at least");
-        let (copies, n_modes) = (self.len(), self.plant.omegas.len());
+        let (copies, n_modes) = (self.len(), self.omegas.len());
         let bytes = self.round_bytes(n_frames, n_substeps, 1);
         let full = |_| ForestError::Memory { copies, modes: n_modes, bytes };
         let mut states = Vec::new();
@@ -101,7 +101,7 @@ impl Forest {
         waves: &Waves,
         (rows, every): (&mut [[f32; 2]], usize),
     ) -> Result<(), ForestError> {
-        let (basis, n_modes, damping) = (&self.plant.basis, self.plant.omegas.len(), &self.pace.damping);
+        let (basis, n_modes, damping) = (&self.by_wind, self.omegas.len(), &self.pace.damping);
         let kind = &self.kinds[self.copies[copy].1 as usize];
         let pressed = [0, 1, 2].map(|axis| waves.of(record.iter().map(|v| v.norm() * v[axis])));
         let takes = |v: &Vector3<f64>| {
@@ -109,7 +109,7 @@ impl Forest {
         };
         let by_air =
             record.iter().map(takes).sum::<Matrix3<f64>>() / record.len() as f64 * kind.by_air(damping);
-        for (mode, mut oscillator) in kind.oscillators(&self.plant, damping).enumerate() {
+        for (mode, mut oscillator) in kind.oscillators(&self.omegas, damping).enumerate() {
             oscillator.gamma += basis.dampings[mode].dot(&by_air);
             if oscillator.gamma <= 0.0 {
                 return Err(ForestError::Undamped { hz: oscillator.omega / TAU });

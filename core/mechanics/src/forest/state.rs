@@ -35,7 +35,7 @@ impl Forest {
     /// Time, amplitudes and speeds: the same bytes for the same state.
     #[must_use]
     pub fn save(&self) -> Vec<u8> {
-        let sizes = [self.copies.len() as u64, self.plant.omegas.len() as u64];
+        let sizes = [self.copies.len() as u64, self.omegas.len() as u64];
         let numbers = self.amplitudes.iter().chain(&self.speeds).flat_map(|v| v.to_le_bytes());
         let head = sizes.into_iter().flat_map(u64::to_le_bytes).chain(self.time.to_le_bytes());
         head.chain(numbers).collect()
@@ -46,7 +46,7 @@ impl Forest {
     /// # Errors
     /// [`StateError`]; it then goes on as before.
     pub fn load(&mut self, bytes: &[u8]) -> Result<(), StateError> {
-        let (copies, modes) = (self.copies.len(), self.plant.omegas.len());
+        let (copies, modes) = (self.copies.len(), self.omegas.len());
         let number = |k: usize| bytes.get(8 * k..8 * k + 8).and_then(|bytes| bytes.try_into().ok());
         let [came_copies, came_modes, time] = [0, 1, 2].map(|k| number(k).map_or(0, u64::from_le_bytes));
         let wanted = HEAD_BYTES + 2 * copies * modes * size_of::<f32>();

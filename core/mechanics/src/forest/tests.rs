@@ -5,7 +5,6 @@ use crate::wind::{Noise, Wind};
 use crate::{Beams, Damping, Drag, Form, Integrator, Modes, Options, Stirring, Threads, WindBasis};
 use nalgebra::{Rotation3, Vector3};
 use std::f64::consts::PI;
-use std::sync::Arc;
 
 pub(super) const PACE: Pace = Pace {
     step: 0.02,
@@ -13,14 +12,14 @@ pub(super) const PACE: Pace = Pace {
     damping: Damping { alpha: 0.3, beta: 0.008, mass: 1.0, air: 1.0 },
 };
 
-fn stirring(plant: &honami_model::plant::Plant, n_modes: usize, form: Form) -> Arc<Stirring> {
+fn stirring(plant: &honami_model::plant::Plant, n_modes: usize, form: Form) -> Stirring {
     let beams = Beams::new(plant, &Options::default()).unwrap();
     let modes = Modes::new(&beams, n_modes, 1).unwrap();
     let basis = WindBasis::new(&beams, &modes, &Drag::default());
-    Arc::new(Stirring::new(&beams, &modes, basis, form))
+    Stirring::new(&beams, &modes, basis, form)
 }
 
-pub(super) fn plant(n_nodes: usize, n_modes: usize, form: Form) -> Arc<Stirring> {
+pub(super) fn plant(n_nodes: usize, n_modes: usize, form: Form) -> Stirring {
     stirring(&honami_synth::tree(n_nodes, 1).unwrap(), n_modes, form)
 }
 
@@ -40,9 +39,9 @@ fn place(copy: usize) -> Vector3<f64> {
     Vector3::new((copy % 20) as f64 * 10.0, (copy / 20) as f64 * 10.0, 0.0)
 }
 
-pub(super) fn forest(plant: &Arc<Stirring>, stands: &[Stand], pace: &Pace) -> Forest {
+pub(super) fn forest(plant: &Stirring, stands: &[Stand], pace: &Pace) -> Forest {
     let nodes: Vec<u32> = (0..plant.n_nodes() as u32).collect();
-    Forest::new(Arc::clone(plant), &nodes, stands, pace).unwrap()
+    Forest::new(plant, &nodes, stands, pace).unwrap()
 }
 
 /// So many steps in a wind that blows at every place as it does.
@@ -98,7 +97,7 @@ fn equal_modes_are_pulled_to_the_same_place_whichever_were_found() {
     for seed in [1, 2, 3, 4] {
         let modes = Modes::new(&beams, 4, seed).unwrap();
         let basis = WindBasis::new(&beams, &modes, &Drag::default());
-        let plant = Arc::new(Stirring::new(&beams, &modes, basis, Form::Linear));
+        let plant = Stirring::new(&beams, &modes, basis, Form::Linear);
         let mut forest = forest(&plant, &[Stand::default()], &PACE);
         forest.pull(0, &plant.pulled(0.25).unwrap());
         let [x, y, z] = posed(&mut forest, None, &threads(1))[5];
@@ -301,7 +300,7 @@ fn a_forest_takes_little_more_memory_than_its_positions() {
 fn what_is_no_forest_is_named() {
     let plant = plant(20, 3, Form::Linear);
     let of = |stands: &[Stand], pace: &Pace| {
-        Forest::new(Arc::clone(&plant), &[0, 5], stands, pace).err().map(|error| error.to_string())
+        Forest::new(&plant, &[0, 5], stands, pace).err().map(|error| error.to_string())
     };
     let one = [Stand::default()];
     assert_eq!(of(&one, &PACE), None);
@@ -331,8 +330,7 @@ fn steps_beyond_the_limit_of_a_method_are_refused_with_it() {
     let fastest = plant.omegas[2];
     let damping = Damping { alpha: 0.0, beta: 0.0, mass: 1.0, air: 0.0 };
     let of = |step: f64, integrator: Integrator| {
-        Forest::new(Arc::clone(&plant), &[0], &[Stand::default()], &Pace { step, integrator, damping })
-            .map(|_| ())
+        Forest::new(&plant, &[0], &[Stand::default()], &Pace { step, integrator, damping }).map(|_| ())
     };
     let limit = 2.0 / fastest;
     assert!(of(limit * 0.99, Integrator::Symplectic).is_ok());

@@ -265,7 +265,10 @@ fn more_than_half_of_the_modes_of_a_large_plant_is_an_error_with_the_figure() {
     let beams = Beams::new(&honami_synth::tree(300, 1).unwrap(), &Options::default()).unwrap();
     let error = Modes::new(&beams, 1000, 1).unwrap_err();
     assert_eq!(error, ModesError::Half { wanted: 1000, there: 1794 });
-    assert!(error.to_string().ends_with("where there are 1500 at most, here 897 can be had"), "{error}");
+    assert!(error.to_string().ends_with("where there are 1500 at most, here 896 can be had"), "{error}");
+    let most = [2, 251, 252, 300].map(Modes::most);
+    assert_eq!(most, [6, 1500, 752, 896]);
+    assert!(matches!(Modes::new(&beams, most[3] + 1, 1), Err(ModesError::Half { .. })));
 }
 
 /// Masses that vanish to the digits that there are, of a plant that is worked out all at once and of one that is not; what

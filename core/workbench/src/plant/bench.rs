@@ -1,8 +1,8 @@
 //! The tables 6.1 and 6.2 of the thesis, cell by cell, on this machine.
 
+pub mod cells;
 mod crowd;
 
-use std::sync::Arc;
 use std::time::Instant;
 
 use honami_host::{CallContext, Host, PluginInfo, Steps, WindRows};
@@ -11,6 +11,7 @@ use honami_mechanics::{
 };
 use honami_motion::accuracy;
 
+use self::cells::Cell;
 use self::crowd::Crowd;
 use super::mover::{Mover, start};
 use super::sway::Motion;
@@ -18,43 +19,6 @@ use super::told::{Chosen, told};
 use super::{Wish, sway, vibrate};
 use crate::error::WorkbenchError;
 use crate::progress::{Flow, Progress};
-
-/// A cell: copies, nodes, modes, and the frames per second that the thesis has (GeForce 8800 GTS; table 6.2 with
-/// rendering).
-pub type Cell = (usize, usize, usize, Option<f64>);
-
-/// Table 6.1: 25 modes, without rendering.
-pub const TABLE_6_1: [Cell; 13] = [
-    (100, 1000, 25, Some(712.0)),
-    (100, 2000, 25, Some(385.0)),
-    (100, 8000, 25, Some(103.0)),
-    (1000, 100, 25, Some(690.0)),
-    (1000, 500, 25, Some(169.0)),
-    (1000, 1000, 25, Some(87.0)),
-    (1000, 2000, 25, Some(43.0)),
-    (1000, 8000, 25, Some(11.0)),
-    (8000, 20, 25, Some(426.0)),
-    (8000, 100, 25, Some(102.0)),
-    (8000, 500, 25, Some(21.0)),
-    (8000, 1000, 25, Some(11.0)),
-    (10_000, 3437, 25, None),
-];
-
-/// Table 6.2: 3437 nodes.
-pub const TABLE_6_2: [Cell; 12] = [
-    (500, 3437, 5, Some(73.0)),
-    (1000, 3437, 5, Some(39.0)),
-    (2000, 3437, 5, Some(19.0)),
-    (4000, 3437, 5, Some(10.0)),
-    (500, 3437, 15, Some(57.0)),
-    (1000, 3437, 15, Some(29.0)),
-    (2000, 3437, 15, Some(14.0)),
-    (4000, 3437, 15, Some(7.0)),
-    (500, 3437, 25, Some(43.0)),
-    (1000, 3437, 25, Some(22.0)),
-    (2000, 3437, 25, Some(11.0)),
-    (4000, 3437, 25, Some(6.0)),
-];
 
 /// The thesis's forest with less of what is farther away: more than 4000 trees at 30 frames per second at least, with
 /// rendering (6.6).
@@ -152,12 +116,12 @@ fn measured(
         if progress.report(k as u64, cells.len() as u64, "cell") == Flow::Stop {
             return Err(WorkbenchError::Stopped);
         }
-        let plant = vibrate(&Wish::of(&format!("synth::tree:{n_nodes},1"), n_modes), &())?;
+        let plant = vibrate(&Wish::of(&format!("synth::tree:{n_nodes},1"), Some(n_modes)), &())?;
         let nodes = plant.beams.coarse_to_fine();
         let rate = |form: Form| {
             let stirring = Stirring::new(&plant.beams, &plant.modes, plant.basis.clone(), form);
             let crowd = crowd(&stirring, n_copies)?;
-            rate(&Arc::new(stirring), &nodes, &crowd, runs, &threads)
+            rate(&stirring, &nodes, &crowd, runs, &threads)
         };
         let (linear, squared, cubed) = (rate(Form::Linear)?, rate(Form::Mode(2))?, rate(Form::Mode(3))?);
         let turned = rate(Form::Turn)?;
@@ -167,7 +131,7 @@ fn measured(
 }
 
 fn rate(
-    plant: &Arc<Stirring>,
+    plant: &Stirring,
     nodes: &[u32],
     crowd: &Crowd,
     runs: &Runs,
@@ -177,7 +141,7 @@ fn rate(
     sway::room(n_copies, nodes.len(), plant.n_modes())?;
     let damping = Damping::default();
     let pace = Pace { step: 1.0 / 30.0, integrator: Integrator::Exact, damping };
-    let mut forest = Forest::new(Arc::clone(plant), nodes, &crowd.stands, &pace)?;
+    let mut forest = Forest::new(plant, nodes, &crowd.stands, &pace)?;
     let whole = Detail { n_nodes: nodes.len() as u32, n_modes: plant.n_modes() as u32 };
     let details = crowd.details(plant).unwrap_or_else(|| vec![whole; n_copies]);
     let n_moved: usize = details.iter().map(|detail| detail.n_nodes as usize).sum();
@@ -242,13 +206,13 @@ pub fn boundary(
     host: &Host,
     plugin: &PluginInfo,
 ) -> Result<Boundary, WorkbenchError> {
-    let wish = Wish::of(&format!("synth::tree:{n_nodes},1"), n_modes);
+    let wish = Wish::of(&format!("synth::tree:{n_nodes},1"), Some(n_modes));
     let plant = vibrate(&wish, &())?;
     sway::room(n_copies, 2 * n_nodes, 2 * n_modes)?;
     let stands: Vec<Stand> = (0..n_copies).map(|k| Stand { turn: k as f32, ..Stand::default() }).collect();
     let stirring = Stirring::new(&plant.beams, &plant.modes, plant.basis.clone(), Form::Turn);
     let pace = Pace { step: 1.0 / 30.0, integrator: Integrator::Exact, damping: Damping::default() };
-    let mut forest = Forest::new(Arc::new(stirring), &plant.beams.coarse_to_fine(), &stands, &pace)?;
+    let mut forest = Forest::new(&stirring, &plant.beams.coarse_to_fine(), &stands, &pace)?;
     let (mut motion, threads) = (vec![[0.0; 3]; n_copies * n_nodes], Threads::new(runs.n_threads)?);
     let told = told(&wish, &Motion::default(), plugin, Chosen::All, &[])?;
     let (cx, mover) = (CallContext::silent(), Mover { host, plugin, values: &told.values });

@@ -1,27 +1,37 @@
 //! A plant that is filmed while it moves, from the side on which it moves most.
 
-use std::sync::Arc;
-
+use honami_mechanics::Direction;
 use honami_mechanics::wind::Wind;
-use honami_mechanics::{Direction, Pose, Stand, Stirring, Threads};
-use honami_synth::Moving;
+use honami_synth::Moving as Filmed;
 
 use super::Vibrating;
 use super::grove::Grove;
+use super::mover::{Mover, Moving};
 use super::sway::{Motion, free};
+use crate::ear::Ear;
 use crate::error::WorkbenchError;
-use crate::progress::{Flow, Progress};
+use crate::progress::Progress;
 
-/// Where all nodes are in every frame of a motion, in the plane in which they move most.
+/// A plant before the camera.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Film {
+    /// Where all its nodes are in every frame, in the plane in which they move most.
+    pub filmed: Filmed,
+    /// What the simulator warned of, and what there is to warn of its motion.
+    pub warnings: Vec<String>,
+}
+
+/// Moves a plant by a simulator and looks at it.
 ///
 /// # Errors
-/// What [`Forest`](honami_mechanics::Forest) refuses, and [`WorkbenchError::Stopped`].
+/// What the simulator refuses, [`WorkbenchError::FilmMemory`], and [`WorkbenchError::Stopped`].
 pub fn film(
     plant: &Vibrating,
+    mover: &Mover<'_>,
     wind: &dyn Wind,
     motion: &Motion,
     progress: &dyn Progress,
-) -> Result<Moving, WorkbenchError> {
+) -> Result<Film, WorkbenchError> {
     motion.check()?;
     let n_nodes = plant.beams.len();
     // Where every node is in every frame, in space and in the picture.
@@ -30,39 +40,30 @@ pub fn film(
     if bytes > there {
         return Err(WorkbenchError::FilmMemory { frames, nodes: n_nodes, bytes, there });
     }
-    let stirring = Arc::new(Stirring::new(&plant.beams, &plant.modes, plant.basis.clone(), motion.form));
-    let grove =
-        Grove { places: vec![Direction::zeros()], stands: vec![Stand::default()], height: plant.height };
-    let nodes: Vec<u32> = (0..n_nodes as u32).collect();
-    let mut forest = grove.forest(&stirring, &nodes, motion)?;
-    let threads = Threads::new(motion.n_threads)?;
-    let mut moved = vec![[0.0; 3]; n_nodes];
+    let grove = Grove::new(plant.height, motion);
+    let ear = Ear::new(&mover.plugin.short_name, progress);
+    let root = plant.beams.position(0);
     let mut frames: Vec<Vec<Direction>> = Vec::new();
     // Sums over all nodes and frames: of x x, y y and x y of displacements.
     let mut spread = [0.0; 3];
-    for frame in 0..motion.n_frames {
-        if progress.report(u64::from(frame), u64::from(motion.n_frames), "motion") == Flow::Stop {
-            return Err(WorkbenchError::Stopped);
-        }
-        forest.pose(Pose { details: None, motion: &mut moved }, &threads);
-        let places = moved.iter().zip(stirring.rest()).map(|(moved, rest)| {
-            let [x, y, z] = moved.map(f64::from);
-            spread = [spread[0] + x * x, spread[1] + y * y, spread[2] + x * y];
-            rest + Direction::new(x, y, z)
-        });
-        frames.push(places.collect());
-        for _ in 0..motion.n_substeps {
-            let time = forest.time();
-            forest.step(&|copy| grove.blowing(wind, copy, time), None, &threads)?;
-        }
-    }
+    let played = Moving::new(plant, mover, &grove, motion, &ear)?.play(wind, &ear, |_, moved| {
+        let place = |node: usize| {
+            let by = moved.of(0, node);
+            spread = [spread[0] + by.x * by.x, spread[1] + by.y * by.y, spread[2] + by.x * by.y];
+            plant.beams.position(node) - root + by
+        };
+        frames.push((0..n_nodes).map(place).collect());
+        Ok(())
+    })?;
     // The longer axis of the ellipse of displacements.
     let angle = (2.0 * spread[2]).atan2(spread[0] - spread[1]) / 2.0;
     let (sin, cos) = angle.sin_cos();
     let seen = |at: &Direction| [cos * at.x + sin * at.y, at.z];
-    Ok(Moving {
+    let filmed = Filmed {
         parents: (0..n_nodes).map(|node| plant.beams.parent(node)).collect(),
         radii: (0..n_nodes).map(|node| plant.beams.radius(node)).collect(),
         frames: frames.iter().map(|frame| frame.iter().map(seen).collect()).collect(),
-    })
+    };
+    let warnings = ear.warnings().into_iter().chain(played.too_far(plant)).collect();
+    Ok(Film { filmed, warnings })
 }

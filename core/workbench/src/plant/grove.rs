@@ -1,14 +1,11 @@
 //! Where the copies of a forest stand, which wind they feel there, and where their nodes are.
 
-use std::sync::Arc;
-
 use honami_mechanics::wind::Wind;
-use honami_mechanics::{Direction, Forest, Stand, Stirring};
+use honami_mechanics::{Direction, Stand};
 use rand::{RngExt as _, SeedableRng as _};
 
 use super::Vibrating;
 use super::sway::Motion;
-use crate::error::WorkbenchError;
 
 /// Metres between copies of a plant of height 1, unless others are wanted; each stands up to a quarter of that off.
 const APART: f64 = 0.8;
@@ -79,18 +76,6 @@ impl Grove {
         };
         let (places, stands) = (0..motion.n_copies).map(&mut stand).unzip();
         Self { places, stands, height }
-    }
-
-    /// All copies where a motion begins, at rest or pulled, of which these nodes are posed.
-    pub(super) fn forest(
-        &self,
-        plant: &Arc<Stirring>,
-        nodes: &[u32],
-        motion: &Motion,
-    ) -> Result<Forest, WorkbenchError> {
-        let mut forest = Forest::new(Arc::clone(plant), nodes, &self.stands, &motion.pace())?;
-        forest.pull_all(&plant.pulled(motion.pull)?);
-        Ok(forest)
     }
 
     /// The wind at a copy's crown.

@@ -4,6 +4,8 @@ use honami_host::draft::Node;
 use honami_host::{
     CallContext, Host, HostError, PlantInstance, PluginInfo, Simulator, Steps, Values, WindRows,
 };
+use std::time::Instant;
+
 use honami_mechanics::wind::Wind;
 use honami_mechanics::{Direction, Stand};
 use rayon::prelude::*;
@@ -16,6 +18,8 @@ use crate::error::WorkbenchError;
 
 /// Copies whose wind is worked out at a time.
 const SOME: usize = 256;
+/// Nodes that a thread looks at, at a time.
+const MANY: usize = 1 << 14;
 
 /// Who moves plants.
 #[derive(Clone, Copy, Debug)]
@@ -36,6 +40,7 @@ pub(super) struct Moving<'a> {
     pool: rayon::ThreadPool,
     /// Where a node of the beams is among those that were handed over: coarse before fine.
     rows: Vec<u32>,
+    is_by_modes: bool,
     winds: Vec<[f32; 3]>,
     times: Vec<f64>,
 }
@@ -43,7 +48,18 @@ pub(super) struct Moving<'a> {
 /// Displacements of all nodes of all copies, in the axes and the size of the plant.
 pub(super) struct Displacements<'a> {
     rows: &'a [u32],
-    motion: &'a [[f32; 3]],
+    /// Node after node as they were handed over, copy after copy.
+    pub(super) motion: &'a [[f32; 3]],
+}
+
+/// What there is to say of a motion that is over.
+pub(super) struct Played {
+    /// Seconds that frames took, ascending.
+    pub(super) took: Vec<f64>,
+    /// How far a node of any copy was from rest at most, in the size of the plant, metres.
+    pub(super) farthest: f64,
+    /// Whether it was vibration modes that moved.
+    pub(super) is_by_modes: bool,
 }
 
 impl Displacements<'_> {
@@ -51,6 +67,13 @@ impl Displacements<'_> {
     pub(super) fn of(&self, copy: usize, node: usize) -> Direction {
         let row = copy * self.rows.len() + self.rows[node] as usize;
         Direction::from(self.motion[row].map(f64::from))
+    }
+
+    /// Of any node, metres.
+    fn farthest(&self) -> f32 {
+        let most = |most: f32, [x, y, z]: &[f32; 3]| most.max(x * x + y * y + z * z);
+        let some = self.motion.par_chunks(MANY).map(|some| some.iter().fold(0.0, most));
+        some.reduce(|| 0.0, f32::max).sqrt()
     }
 }
 
@@ -67,18 +90,42 @@ impl<'a> Moving<'a> {
         let pool = pool.map_err(|source| WorkbenchError::Pool { n: motion.n_threads, source })?;
         let started =
             ear.whole("modes", |cx| start(plant, mover, &grove.stands, motion.n_threads, motion.seed, cx));
-        let (simulator, rows) = started.map_err(stopped)?;
-        Ok(Self { simulator, grove, motion, pool, rows, winds: Vec::new(), times: Vec::new() })
+        let (simulator, is_by_modes) = started.map_err(stopped)?;
+        let rows = rows(&plant.beams.coarse_to_fine());
+        let (winds, times) = (Vec::new(), Vec::new());
+        Ok(Self { simulator, grove, motion, pool, rows, is_by_modes, winds, times })
+    }
+
+    /// Goes through all frames and shows each: the only way in which plants move, whatever is made of it.
+    pub(super) fn play(
+        mut self,
+        wind: &dyn Wind,
+        ear: &Ear<'_>,
+        mut see: impl FnMut(u32, &Displacements<'_>) -> Result<(), WorkbenchError>,
+    ) -> Result<Played, WorkbenchError> {
+        let (mut took, mut farthest) = (Vec::new(), 0.0_f32);
+        for frame in 0..self.motion.n_frames {
+            if ear.is_told_to_stop(u64::from(frame), u64::from(self.motion.n_frames)) {
+                return Err(WorkbenchError::Stopped);
+            }
+            let begun = Instant::now();
+            let moved = self.frame(frame, wind, ear)?;
+            took.push(begun.elapsed().as_secs_f64());
+            farthest = farthest.max(moved.farthest());
+            see(frame, &moved)?;
+        }
+        took.sort_by(f64::total_cmp);
+        Ok(Played { took, farthest: f64::from(farthest), is_by_modes: self.is_by_modes })
     }
 
     /// Goes on to a frame, from the one before; the first is where it begins.
-    pub(super) fn frame(
+    fn frame(
         &mut self,
         frame: u32,
         wind: &dyn Wind,
         ear: &Ear<'_>,
     ) -> Result<Displacements<'_>, WorkbenchError> {
-        let (dt, each) = (self.motion.pace().step, self.motion.n_substeps);
+        let (dt, each) = (self.motion.step(), self.motion.n_substeps);
         let n = if frame == 0 { 0 } else { each };
         self.times.clear();
         let first = u64::from(frame.saturating_sub(1)) * u64::from(each);
@@ -98,8 +145,15 @@ impl<'a> Moving<'a> {
     }
 }
 
-/// Starts a simulator and hands a plant over, with the root at 0; where each node of the beams is among those that it was
-/// given, coarse before fine.
+/// Where each node of the beams is in an order of them.
+pub(super) fn rows(order: &[u32]) -> Vec<u32> {
+    let mut rows = vec![0; order.len()];
+    (0..).zip(order).for_each(|(row, node)| rows[*node as usize] = row);
+    rows
+}
+
+/// Starts a simulator and hands a plant over, with the root at 0 and coarse nodes before fine ones; whether it moves by
+/// vibration modes.
 pub(super) fn start(
     plant: &Vibrating,
     mover: &Mover<'_>,
@@ -107,10 +161,9 @@ pub(super) fn start(
     n_threads: usize,
     seed: u64,
     cx: &CallContext<'_>,
-) -> Result<(Simulator, Vec<u32>), HostError> {
+) -> Result<(Simulator, bool), HostError> {
     let order = plant.beams.coarse_to_fine();
-    let mut rows = vec![0; order.len()];
-    (0..).zip(&order).for_each(|(row, node)| rows[*node as usize] = row);
+    let rows = rows(&order);
     let root = plant.beams.position(0);
     let node = |&node: &u32| Node {
         parent: plant.beams.parent(node as usize).map(|parent| rows[parent as usize]),
@@ -123,8 +176,8 @@ pub(super) fn start(
     let instance = |stand: &Stand| PlantInstance { yaw: stand.turn, scale: stand.scale, mass: stand.mass };
     let instances: Vec<PlantInstance> = stands.iter().map(instance).collect();
     let (mut simulator, _) = mover.host.simulator(mover.plugin, mover.values, cx)?;
-    simulator.prepare(&nodes, &instances, n_threads as u32, seed, cx)?;
-    Ok((simulator, rows))
+    let modes = simulator.prepare(&nodes, &instances, n_threads as u32, seed, cx)?;
+    Ok((simulator, !modes.is_empty()))
 }
 
 /// One who was stopped is no failure of the simulator.

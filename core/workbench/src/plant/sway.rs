@@ -1,16 +1,15 @@
 //! How a plant, or a forest of it, moves in a wind: positions of sensors over time.
 
 use std::ops::RangeInclusive;
-use std::time::Instant;
 
 use honami_exchange::plant::SwayRow;
 use honami_mechanics::wind::Wind;
-use honami_mechanics::{Damping, Form, Integrator, Pace};
+use honami_mechanics::{Damping, ForestError, Form, Integrator};
 
 use super::Vibrating;
-use super::glb::{self, Made};
+use super::glb::{Gathering, Made};
 use super::grove::Grove;
-use super::mover::{Mover, Moving};
+use super::mover::{Mover, Moving, Played};
 use super::outs::{Files, Outs, check_room, free_in};
 use crate::ear::Ear;
 use crate::error::WorkbenchError;
@@ -25,6 +24,8 @@ const SPREADS: RangeInclusive<f64> = 0.0..=4.0;
 const SPACINGS: RangeInclusive<f64> = 1e-3..=1e5;
 /// Metres by which a plant may be pulled.
 const FARTHEST_PULL: f64 = 1000.0;
+/// Vibration modes are of small motion: of the height, so far may a node be moved without a word.
+const FAR: f64 = 0.3;
 /// Memory is left to others: so much of what is free.
 const SHARE_OF_FREE: f64 = 0.8;
 /// Where the system does not say what is free, bytes.
@@ -92,7 +93,8 @@ impl Motion {
     /// Whether it can be.
     ///
     /// # Errors
-    /// [`WorkbenchError::Pace`], [`WorkbenchError::Spread`], [`WorkbenchError::Spacing`], [`WorkbenchError::Pull`].
+    /// [`WorkbenchError::Pace`], [`WorkbenchError::Spread`], [`WorkbenchError::Spacing`], [`WorkbenchError::Pull`],
+    /// [`ForestError::Damping`].
     pub fn check(&self) -> Result<(), WorkbenchError> {
         let Self { fps, n_substeps, n_frames, pull, size_spread: size, mass_spread: mass, .. } = *self;
         if ![size, mass].iter().all(|spread| SPREADS.contains(spread)) {
@@ -101,6 +103,11 @@ impl Motion {
         if let Some(metres) = self.spacing.filter(|metres| !SPACINGS.contains(metres)) {
             return Err(WorkbenchError::Spacing { metres });
         }
+        let Damping { alpha, beta, mass: heavier, air } = self.damping;
+        let is_damped = [alpha, beta, air].iter().all(|v| v.is_finite() && *v >= 0.0);
+        if !(is_damped && heavier.is_finite() && heavier > 0.0) {
+            return Err(ForestError::Damping { mass: heavier, alpha, beta, air }.into());
+        }
         if !(FPS.contains(&fps) && SUBSTEPS.contains(&n_substeps) && n_frames > 0) {
             return Err(WorkbenchError::Pace { fps, n_substeps });
         }
@@ -108,10 +115,9 @@ impl Motion {
         if pull.abs() <= FARTHEST_PULL { Ok(()) } else { Err(WorkbenchError::Pull { pull }) }
     }
 
-    /// How a forest goes on by it.
-    pub(super) fn pace(&self) -> Pace {
-        let step = 1.0 / (self.fps * f64::from(self.n_substeps));
-        Pace { step, integrator: self.integrator, damping: self.damping }
+    /// Seconds of a step.
+    pub(super) fn step(&self) -> f64 {
+        1.0 / (self.fps * f64::from(self.n_substeps))
     }
 }
 
@@ -124,6 +130,10 @@ pub struct Moved {
     pub deviation: f64,
     /// Metres.
     pub farthest: f64,
+    /// How far any node of any copy was from rest at most, as a share of the plant's height.
+    pub share: f64,
+    /// What there is to warn of that.
+    pub too_far: Option<String>,
     /// Frames that were done.
     pub n_frames: u32,
     /// Seconds for a frame: all steps, and where all nodes of all copies are; the median.
@@ -154,22 +164,14 @@ pub fn sway(
     let bytes = room(n_copies, n_nodes, plant.modes.len())?;
     let sizes = [n_copies.saturating_mul(n_nodes), sensors.len()];
     check_room(&outs, sizes, motion.n_frames, free_in, progress)?;
+    let mut gathering = outs.glb.map(|_path| Gathering::new(plant, motion)).transpose()?;
     let mut files = Files::create(plant, motion, outs)?;
     let grove = Grove::new(plant.height, motion);
     let ear = Ear::new(&mover.plugin.short_name, progress);
-    let mut moving = Moving::new(plant, mover, &grove, motion, &ear)?;
     let root = plant.beams.position(0);
     let rest = |node: usize| plant.beams.position(node) - root;
-    let scene = outs.glb.map(|_path| glb::scene(plant, wind, motion, progress)).transpose()?;
     let mut first: Vec<[f64; 3]> = Vec::new();
-    let mut times = Vec::new();
-    for frame in 0..motion.n_frames {
-        if ear.is_told_to_stop(u64::from(frame), u64::from(motion.n_frames)) {
-            return Err(WorkbenchError::Stopped);
-        }
-        let begun = Instant::now();
-        let moved = moving.frame(frame, wind, &ear)?;
-        times.push(begun.elapsed().as_secs_f64());
+    let played = Moving::new(plant, mover, &grove, motion, &ear)?.play(wind, &ear, |frame, moved| {
         let place = |copy: usize, node: usize| grove.shown(copy, &(rest(node) + moved.of(copy, node)));
         for (sensor, &node) in (0..).zip(&sensors) {
             let at = place(0, node as usize);
@@ -186,14 +188,32 @@ pub fn sway(
                 cache.push(place(copy, node).cast::<f32>().into())?;
             }
         }
-    }
+        gathering.as_mut().map_or(Ok(()), |gathering| gathering.take(moved))
+    })?;
+    let scene = gathering.map(|gathering| gathering.scene(plant, &grove, motion.fps));
     let glb = files.finish(scene.as_ref())?;
-    times.sort_by(f64::total_cmp);
     let rest = sensors.first().map_or([0.0; 3], |node| rest(*node as usize).into());
     let (deviation, farthest) = spread(&first, rest);
-    let (n_frames, frame_s) = (motion.n_frames, times[times.len() / 2]);
+    let (share, too_far) = (played.farthest / plant.size(), played.too_far(plant));
+    let (n_frames, frame_s) = (motion.n_frames, played.took[played.took.len() / 2]);
     let warnings = ear.warnings();
-    Ok(Moved { sensors, deviation, farthest, n_frames, frame_s, bytes, warnings, glb })
+    Ok(Moved { sensors, deviation, farthest, share, too_far, n_frames, frame_s, bytes, warnings, glb })
+}
+
+impl Played {
+    /// What there is to warn of where modes have moved a plant farther than they know of.
+    pub(super) fn too_far(&self, plant: &Vibrating) -> Option<String> {
+        let share = self.farthest / plant.size();
+        (self.is_by_modes && share > FAR).then(|| {
+            format!(
+                "nodes are moved by up to {:.0} % of the plant's height, and vibration modes are right for little motion: at \
+                 {:.0} % a rod's tip is off by a twentieth of its way, beyond it by more. Less wind or pull, stiffer wood or \
+                 more damping keeps to what they can say",
+                100.0 * share,
+                100.0 * FAR
+            )
+        })
+    }
 }
 
 /// Root of the mean square about the mean, and the farthest from rest.

@@ -5,9 +5,10 @@ mod tests;
 
 use honami_host::{HostError, Param, ParamKind, PluginInfo, Value, Values};
 use honami_mechanics::{Form, Integrator};
+use honami_model::plant::RadiusRule;
 
-use super::Wish;
 use super::sway::Motion;
+use super::{USUAL_MODES, Wish};
 use crate::error::WorkbenchError;
 
 /// What of a plant and its motion was chosen, not left as it is.
@@ -28,23 +29,28 @@ impl Chosen<'_> {
     }
 }
 
-/// Values of a simulator's parameters, and what there is to say of them.
+/// What a simulator goes by, and what there is to say of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Told {
-    /// The rest take their defaults.
+    /// Values of its parameters; the rest take their defaults.
     pub values: Values,
-    /// Where it goes by another value than is shown here, a sentence each.
+    /// The plant as it is then,
+    pub wish: Wish,
+    /// and its motion.
+    pub motion: Motion,
+    /// Where it goes by another value than these, a sentence each.
     pub notes: Vec<String>,
 }
 
 /// Values of a simulator's parameters, by what is wanted of a plant and of its motion and by `name=value`.
 ///
 /// What was chosen goes by the name of its option, and whoever has no such parameter refuses it; but for modes, of which not
-/// all make use. The rest is left to the simulator. The nodes that it is given have the radius of the segment that leads to
-/// them: one that can be told so is.
+/// all make use. The rest is left to the simulator. What is set by the name of an option is that option: the plant is then
+/// what was set, whoever asks. The nodes that a simulator is given have the radius of the segment that leads to them, and lie
+/// no farther apart than is wanted: one that can be told so is.
 ///
 /// # Errors
-/// What is no motion, and the first value that it has no parameter for or that is out of range.
+/// What is no wood, no leaves or no motion, and the first value that it has no parameter for or that is out of range.
 pub fn told(
     wish: &Wish,
     motion: &Motion,
@@ -52,8 +58,11 @@ pub fn told(
     chosen: Chosen<'_>,
     set: &[String],
 ) -> Result<Told, WorkbenchError> {
+    wish.check()?;
     motion.check()?;
-    Ok(values(wish, motion, (&plugin.short_name, &plugin.params), chosen, set)?)
+    let told = values(wish, motion, (&plugin.short_name, &plugin.params), chosen, set)?;
+    told.motion.check()?;
+    Ok(told)
 }
 
 fn values(
@@ -76,17 +85,24 @@ fn values(
             _ => values.set(params, id, value)?,
         }
     }
+    set.iter().try_for_each(|assignment| values.set_text(params, assignment))?;
+    let is_set = |id: &str| set.iter().any(|text| text.split('=').next().is_some_and(|key| key.trim() == id));
+    let (mut wish, mut motion) = (wish.clone(), motion.clone());
+    for (id, value) in values.iter().filter(|(id, _)| is_set(id)) {
+        settle(&mut wish, &mut motion, id, value);
+    }
     let tip = Value::Text("tip".to_owned());
-    let is_of_tips = |param: &&Param| {
+    let is_of_tips = |param: &Param| {
         param.id == "radius"
             && matches!(param.kind, ParamKind::Enum { .. })
             && param.check(tip.clone()).is_ok()
     };
-    if let Some(param) = params.iter().find(is_of_tips) {
-        values.set(params, &param.id, tip)?;
+    if params.iter().any(is_of_tips) {
+        values.set(params, "radius", tip)?;
     }
-    set.iter().try_for_each(|assignment| values.set_text(params, assignment))?;
-    let is_set = |id: &str| set.iter().any(|text| text.split('=').next().is_some_and(|key| key.trim() == id));
+    if wish.beams.longest.is_some() && is_set("longest") {
+        values.set(params, "longest", Value::Float(0.0))?;
+    }
     for (param, ours) in left {
         let (id, own) = (&param.id, param.default());
         if own != ours && !is_set(id) {
@@ -96,23 +112,21 @@ fn values(
             ));
         }
     }
-    Ok(Told { values, notes })
+    Ok(Told { values, wish, motion, notes })
 }
 
-/// Names of options, and what they are.
+/// Words for how modes go on in time,
+const METHODS: [(&str, Integrator); 3] =
+    [("exact", Integrator::Exact), ("symplectic", Integrator::Symplectic), ("newmark", Integrator::Newmark)];
+/// and for how nodes follow them.
+const BENDS: [(&str, Form); 4] =
+    [("turn", Form::Turn), ("linear", Form::Linear), ("s2", Form::Mode(2)), ("s3", Form::Mode(3))];
+/// And for how thick a segment is.
+const RADII: [(&str, RadiusRule); 2] = [("mean", RadiusRule::Mean), ("tip", RadiusRule::Tip)];
+
+/// Names of options that a simulator is told, and what they are.
 fn options(wish: &Wish, motion: &Motion) -> [(&'static str, Value); 15] {
     let (wood, leaves, damping) = (wish.beams.material, wish.leaves, motion.damping);
-    let method = match motion.integrator {
-        Integrator::Exact => "exact",
-        Integrator::Symplectic => "symplectic",
-        Integrator::Newmark => "newmark",
-    };
-    let bend = match motion.form {
-        Form::Turn => "turn",
-        Form::Linear => "linear",
-        Form::Mode(3) => "s3",
-        Form::Node | Form::Mode(_) => "s2",
-    };
     [
         ("young", Value::Float(wood.young)),
         ("poisson", Value::Float(wood.poisson)),
@@ -126,8 +140,45 @@ fn options(wish: &Wish, motion: &Motion) -> [(&'static str, Value); 15] {
         ("air_damping", Value::Float(damping.air)),
         ("heavier", Value::Float(damping.mass)),
         ("pull", Value::Float(motion.pull)),
-        ("modes", Value::Int(wish.n_modes as i64)),
-        ("method", Value::Text(method.to_owned())),
-        ("bend", Value::Text(bend.to_owned())),
+        ("modes", Value::Int(wish.n_modes.unwrap_or(USUAL_MODES) as i64)),
+        ("method", word(&METHODS, motion.integrator)),
+        // The thesis's has no product of matrices; this is nearest to it.
+        ("bend", word(&BENDS, if motion.form == Form::Node { Form::Mode(2) } else { motion.form })),
     ]
+}
+
+fn word<T: PartialEq>(words: &[(&str, T)], of: T) -> Value {
+    let known = words.iter().find(|(_, value)| *value == of);
+    Value::Text(known.map_or_else(String::new, |(word, _)| (*word).to_owned()))
+}
+
+/// Takes a simulator's value for the option of its name. Of another kind it is none, nor a word that only it knows.
+fn settle(wish: &mut Wish, motion: &mut Motion, id: &str, value: &Value) {
+    let (wood, leaves, damping) = (&mut wish.beams.material, &mut wish.leaves, &mut motion.damping);
+    match (id, value) {
+        ("young", Value::Float(v)) => wood.young = *v,
+        ("poisson", Value::Float(v)) => wood.poisson = *v,
+        ("density", Value::Float(v)) => wood.density = *v,
+        ("leaf_mass", Value::Float(v)) => leaves.mass = *v,
+        ("leaf_drag", Value::Float(v)) => leaves.drag = *v,
+        ("drag", Value::Float(v)) => wish.drag = *v,
+        ("air_density", Value::Float(v)) => wish.air_density = *v,
+        ("alpha", Value::Float(v)) => damping.alpha = *v,
+        ("beta", Value::Float(v)) => damping.beta = *v,
+        ("air_damping", Value::Float(v)) => damping.air = *v,
+        ("heavier", Value::Float(v)) => damping.mass = *v,
+        ("pull", Value::Float(v)) => motion.pull = *v,
+        ("longest", Value::Float(v)) => wish.beams.longest = (*v > 0.0).then_some(*v),
+        ("modes", Value::Int(v)) => wish.n_modes = usize::try_from(*v).ok(),
+        ("method", Value::Text(word)) => choose(&METHODS, word, &mut motion.integrator),
+        ("bend", Value::Text(word)) => choose(&BENDS, word, &mut motion.form),
+        ("radius", Value::Text(word)) => choose(&RADII, word, &mut wish.beams.rule),
+        _ => (),
+    }
+}
+
+fn choose<T: Copy>(words: &[(&str, T)], word: &str, into: &mut T) {
+    if let Some((_, value)) = words.iter().find(|(known, _)| *known == word) {
+        *into = *value;
+    }
 }

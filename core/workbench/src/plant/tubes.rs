@@ -1,7 +1,7 @@
 //! The skin of a plant: tubes along its branches, each from where it leaves what bears it to its tip.
 //!
-//! Tubes are rings of vertices, a ring a node, upright on the branch. A ring moves as its node does and turns with it, to
-//! the first order of how far it turns; so the middle of a ring is where its node is.
+//! Tubes are rings of vertices, a ring a node, upright on the branch. A ring moves as its node does and turns with the
+//! segments beside it, to the first order of how far these turn; so the middle of a ring is where its node is.
 
 #[cfg(test)]
 mod tests;
@@ -20,6 +20,8 @@ pub(super) struct Ring {
     pub(super) radius: f64,
     /// At right angles to the branch and to each other, of length 1.
     across: [Direction; 2],
+    /// Segments before and after it: from node to node, and which way by metres of their length.
+    beside: [([u32; 2], Direction); 2],
 }
 
 /// Rings of all branches, branch after branch.
@@ -60,11 +62,12 @@ impl Tubes {
 
     /// A branch by its nodes, the first of which bears it.
     fn add(&mut self, beams: &Beams, nodes: &[u32]) {
-        let segments: Vec<(Direction, f64)> = nodes
+        let segments: Vec<(Direction, f64, ([u32; 2], Direction))> = nodes
             .windows(2)
             .map(|pair| {
                 let [base, tip] = [0, 1].map(|k| pair[k] as usize);
-                ((beams.position(tip) - beams.position(base)).normalize(), beams.radius(tip))
+                let way = beams.position(tip) - beams.position(base);
+                (way.normalize(), beams.radius(tip), ([pair[0], pair[1]], way / way.norm_squared()))
             })
             .collect();
         let mut side = beside(&segments[0].0);
@@ -75,7 +78,8 @@ impl Tubes {
             // The ring before, turned as little as can be: tubes do not twist.
             side = (side - along * side.dot(&along)).try_normalize(1e-6).unwrap_or_else(|| beside(&along));
             let radius = f64::midpoint(before.1, after.1);
-            self.rings.push(Ring { node, radius, across: [side, along.cross(&side)] });
+            let (across, beside) = ([side, along.cross(&side)], [before.2, after.2]);
+            self.rings.push(Ring { node, radius, across, beside });
         }
         self.lengths.push(nodes.len());
     }
@@ -114,6 +118,12 @@ impl Tubes {
 }
 
 impl Ring {
+    /// By what it turns when nodes are moved so, radians about an axis.
+    pub(super) fn turn(&self, moved: impl Fn(u32) -> Direction) -> Direction {
+        let turn = |([base, tip], along): &([u32; 2], Direction)| along.cross(&(moved(*tip) - moved(*base)));
+        self.beside.iter().map(turn).sum::<Direction>() / 2.0
+    }
+
     /// From the node to each vertex, of length 1.
     pub(super) fn outward(&self) -> impl Iterator<Item = Direction> {
         let [side, other] = self.across;

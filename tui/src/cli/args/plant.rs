@@ -79,9 +79,9 @@ pub(in crate::cli) struct Simulate {
     /// Write where all nodes of all copies are in every frame, as a point cache (PC2).
     #[arg(long, value_name = "FILE.pc2")]
     pub(in crate::cli) cache: Option<PathBuf>,
-    /// Write the plant with its motion, and all copies, for viewers, engines and modellers (glTF 2.0): by their
-    /// modes, which no other simulator need have.
-    #[arg(long, value_name = "FILE.glb", conflicts_with_all = ["with", "set"])]
+    /// Write the plant with its motion, and all copies, for viewers, engines and modellers (glTF 2.0): as sums of few
+    /// shapes, in every frame within a thousandth of the plant's height.
+    #[arg(long, value_name = "FILE.glb")]
     pub(in crate::cli) glb: Option<PathBuf>,
     /// Write the beams that the plant was made into, metres: node,parent,x,y,z,radius.
     #[arg(long, value_name = "FILE.csv")]
@@ -128,9 +128,9 @@ pub(in crate::cli) struct Plant {
     /// (.honami), as `grow` makes it, or synth::tree:NODES,SEED, a tree to calculate with.
     #[arg(value_name = "PLANT")]
     pub(in crate::cli) source: String,
-    /// How many modes, the slowest first.
-    #[arg(long, value_name = "M", default_value_t = 25, value_parser = clap::value_parser!(u32).range(1..=5000))]
-    pub(in crate::cli) modes: u32,
+    /// How many modes, the slowest first (default: 25, or as many as a small plant has).
+    #[arg(long, value_name = "M", value_parser = clap::value_parser!(u32).range(1..=5000))]
+    pub(in crate::cli) modes: Option<u32>,
     /// Of a multiscale tree graph: only parts of these classes, such as S.
     #[arg(long, value_name = "C,…", value_delimiter = ',')]
     pub(in crate::cli) classes: Vec<String>,

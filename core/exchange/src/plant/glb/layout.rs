@@ -68,11 +68,14 @@ impl Layout {
     /// Buffers, views and accessors.
     pub(super) fn finish(self) -> (Value, Value, Value) {
         let [indices, vertices, numbers] = self.views;
-        let views = json!([
-            { "buffer": 0, "byteOffset": 0, "byteLength": indices, "target": INDICES },
-            { "buffer": 0, "byteOffset": indices, "byteLength": vertices, "byteStride": 12, "target": ARRAY },
-            { "buffer": 0, "byteOffset": indices + vertices, "byteLength": numbers },
-        ]);
-        (json!([{ "byteLength": indices + vertices + numbers }]), views, self.accessors.into())
+        let mut views = vec![
+            json!({ "buffer": 0, "byteOffset": 0, "byteLength": indices, "target": INDICES }),
+            json!({ "buffer": 0, "byteOffset": indices, "byteLength": vertices, "byteStride": 12, "target": ARRAY }),
+        ];
+        // A view of nothing is none.
+        if numbers > 0 {
+            views.push(json!({ "buffer": 0, "byteOffset": indices + vertices, "byteLength": numbers }));
+        }
+        (json!([{ "byteLength": indices + vertices + numbers }]), views.into(), self.accessors.into())
     }
 }

@@ -69,6 +69,24 @@ fn another_reader_finds_the_mesh_its_targets_and_the_motion_of_every_copy() {
     }
 }
 
+/// What stands still has no targets and no animation, which the standard has none of without any.
+#[test]
+fn what_cannot_move_is_a_mesh() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("still.glb");
+    let body = Body { targets: Vec::new(), ..body() };
+    let copies: Vec<Placed> =
+        copies().into_iter().map(|copy| Placed { weights: Vec::new(), ..copy }).collect();
+    write_glb(AtomicFile::create(&path, |_| true).unwrap(), "plant", 10.0, &body, &copies).unwrap();
+    let read = gltf::Gltf::open(&path).unwrap();
+    let primitive = read.meshes().next().unwrap().primitives().next().unwrap();
+    assert_eq!(
+        (read.animations().count(), primitive.morph_targets().count(), read.nodes().count()),
+        (0, 0, 2)
+    );
+    assert!(read.views().all(|view| view.length() > 0));
+}
+
 #[test]
 fn what_readers_cannot_hold_is_refused_before_it_is_made() {
     let sizes =

@@ -6,7 +6,6 @@ use crate::forest::{Forest, Pace, Stand};
 use crate::wind::{Noise, Wind};
 use crate::{Damping, Form, Integrator, Stirring};
 use nalgebra::Vector3;
-use std::sync::Arc;
 
 /// Little by the wood, so that the most of it is the air's.
 const DAMPING: Damping = Damping { alpha: 0.1, beta: 5e-4, mass: 1.0, air: 1.0 };
@@ -181,7 +180,7 @@ fn the_thesiss_method_has_another_limit_in_the_air() {
     let of = |share: f64, air: f64| {
         let damping = Damping { air, ..damping };
         let pace = Pace { step: share * limit, integrator: Integrator::Symplectic, damping };
-        Forest::new(Arc::clone(&plant), &[0], &[Stand::default()], &pace)
+        Forest::new(&plant, &[0], &[Stand::default()], &pace)
     };
     assert!(of(1.01, 0.0).is_ok());
     let error = of(1.01, 1000.0).unwrap_err().to_string();

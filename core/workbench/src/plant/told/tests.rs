@@ -17,7 +17,7 @@ const OWN: &str = r#"[
 fn asked(params: &[Param], chosen: &[&str], set: &[&str]) -> Result<Told, HostError> {
     let [chosen, set] =
         [chosen, set].map(|words| words.iter().map(|word| (*word).to_owned()).collect::<Vec<_>>());
-    values(&Wish::of("", 25), &Motion::default(), ("own", params), Chosen::Only(&chosen), &set)
+    values(&Wish::of("", None), &Motion::default(), ("own", params), Chosen::Only(&chosen), &set)
 }
 
 #[test]
@@ -77,4 +77,22 @@ fn radii_of_tips_are_named_to_those_who_have_the_choice() {
         assert_eq!(told.values.get("radius").unwrap().to_string(), wanted);
         assert!(told.notes.is_empty(), "{:?}", told.notes);
     }
+}
+
+/// What is set by the name of an option is that option; what only the simulator knows is its own.
+#[test]
+fn what_is_set_is_what_the_plant_is() {
+    let own = params(OWN);
+    let told = asked(&own, &[], &["alpha=0.2", "leaf_mass=1", "method=exact"]).unwrap();
+    let (damping, usual) = (told.motion.damping, Motion::default().damping);
+    assert_eq!((damping.alpha, damping.beta, told.wish.leaves.mass), (0.2, usual.beta, 1.0));
+    assert_eq!(asked(&own, &[], &["method=verlet"]).unwrap().motion, Motion::default());
+    // Segments are divided before they are handed over, once.
+    let longest = params(r#"[{"id": "longest", "type": "float", "default": 0}]"#);
+    let told = asked(&longest, &[], &["longest=0.1"]).unwrap();
+    assert_eq!((told.wish.beams.longest, told.values.get("longest")), (Some(0.1), Some(&Value::Float(0.0))));
+    let radius =
+        r#"[{"id": "radius", "type": "enum", "default": "tip", "entries": [{"id": "mean"}, {"id": "tip"}]}]"#;
+    let told = asked(&params(radius), &[], &["radius=tip"]).unwrap();
+    assert_eq!(told.wish.beams.rule, RadiusRule::Tip);
 }
