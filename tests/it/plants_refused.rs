@@ -161,7 +161,7 @@ const CASES: &[(&str, i32, &str)] = &[
     ("simulate two.mtg --modes 2 --unit=-1e300", 2, "not -1e300 m of length"),
     ("simulate two.mtg --modes 2 --young=-1e300", 2, "not of -1e300"),
     ("simulate two.mtg --modes 2 --longest 1e-300", 1, "e299 nodes of beams, and 4000000 are the most"),
-    ("simulate two.mtg --modes 2 --heavier=-1e300", 2, "a plant is -1e300 times as heavy"),
+    ("simulate two.mtg --modes 2 --heavier=-1e300", 2, "plants are -1e300 times as heavy"),
     // Air and room.
     (
         "simulate two.mtg --modes 2 --drag=-1",
