@@ -20,6 +20,7 @@ mod plants;
 mod plants_bending;
 mod plants_glb;
 mod plants_refused;
+mod plants_round;
 mod python;
 mod real_clips;
 mod rebuilt;

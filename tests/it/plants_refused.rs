@@ -86,7 +86,24 @@ const CASES: &[(&str, i32, &str)] = &[
     ("simulate two.mtg --modes 2 --young=-1", 2, "a Young's modulus of more than 0 Pa, not of -1"),
     ("simulate two.mtg --modes 2 --wind gale", 2, "\"gale\" is no wind and no file: there are still"),
     ("simulate two.mtg --modes 2 --wind nan.csv", 1, "line 3: \"NaN\" is no number"),
-    ("simulate two.mtg --modes 2 --wind calm --method symplectic", 1, "is wanted, or another method"),
+    (
+        "simulate two.mtg --modes 2 --wind calm --method symplectic",
+        2,
+        "is wanted, or another method, or --substeps ",
+    ),
+    ("simulate two.mtg --modes 2 --wind squall --method spectrum", 2, "squall is not after 20 s what it was"),
+    ("simulate two.mtg --modes 2 --wind air --method spectrum", 2, "air is not after 20 s what it was"),
+    ("simulate two.mtg --modes 2 --wind calm --pull 1 --method spectrum", 2, "leave out --pull"),
+    (
+        "simulate two.mtg --modes 2 --wind calm --with modal --method spectrum",
+        2,
+        "leave out --with and --set",
+    ),
+    (
+        "simulate two.mtg --modes 2 --forest 2 --alpha 0 --beta 0 --method spectrum",
+        1,
+        "that nothing damps has no motion by the spectrum",
+    ),
     ("simulate two.mtg --modes 2 --heavier 0", 2, "masses are more than 0"),
     ("simulate two.mtg --modes 2 --wind calm --heavier 1000", 2, "heavier: wanted a number, 0.01 to 100"),
     ("simulate two.mtg --modes 2 --wind calm --with klt", 2, "no simulator \"klt\""),
@@ -196,9 +213,13 @@ const CASES: &[(&str, i32, &str)] = &[
     (
         "simulate two.mtg --modes 2 --seconds 1e300 --fps 1e-300",
         2,
-        "a motion has 0.001 to 1000000 frames per second",
+        "a motion has 0.001 to 100000 frames a second",
     ),
-    ("simulate two.mtg --modes 2 --substeps 100000", 2, "100000 is not in 1..=10000"),
+    (
+        "simulate two.mtg --modes 2 --substeps 100000",
+        2,
+        "100000 steps a second at most: of shorter ones single precision loses",
+    ),
     (
         "simulate stub.swc --modes 2 --pull 0.1",
         1,

@@ -275,6 +275,7 @@ impl Forest {
         if !is_plant {
             return Err(ForestError::Damping { mass, alpha, beta, air });
         }
+        pace.bears_kinds(&self.omegas, &self.kinds)?;
         let steps = self.kinds.iter().map(|kind| steps(&self.omegas, kind, pace));
         let steps = steps.collect::<Result<Vec<_>, _>>()?;
         for (kind, steps) in self.kinds.iter_mut().zip(steps) {
@@ -433,6 +434,39 @@ fn pressed(v: &Vector3<f64>) -> [f32; 3] {
     (v * v.norm()).map(|v| v as f32).into()
 }
 
+impl Pace {
+    /// Whether its method bears its steps in all copies of a plant with modes of these angular frequencies.
+    ///
+    /// # Errors
+    /// [`LimitError`], with the limit of the mode and the copy that bear least.
+    pub fn bears(&self, omegas: &[f64], stands: &[Stand]) -> Result<(), LimitError> {
+        let kind = |stand: &Stand| Kind {
+            scale: stand.scale.into(),
+            mass: stand.mass.into(),
+            steps: Vec::new(),
+            air: 0.0,
+        };
+        self.bears_kinds(omegas, &stands.iter().map(kind).collect::<Vec<_>>())
+    }
+
+    fn bears_kinds(&self, omegas: &[f64], kinds: &[Kind]) -> Result<(), LimitError> {
+        if self.integrator != Integrator::Symplectic {
+            return Ok(());
+        }
+        let limit = |mode: Oscillator| {
+            // Where the air takes all speed, every step, it bears less: of its trace 1 - (omega dt)^2 is left.
+            let limit = if self.damping.air > 0.0 { SQRT_2 / mode.omega } else { f64::INFINITY };
+            (limit.min(mode.symplectic_limit()), mode.omega / TAU)
+        };
+        let modes = kinds.iter().flat_map(|kind| kind.oscillators(omegas, &self.damping));
+        let least = modes.map(limit).min_by(|a, b| a.0.total_cmp(&b.0));
+        match least {
+            Some((limit, hz)) if self.step >= limit => Err(LimitError::Limit { step: self.step, limit, hz }),
+            _ => Ok(()),
+        }
+    }
+}
+
 impl Kind {
     /// The modes of a plant in copies of this kind, but for what the air takes.
     fn oscillators(&self, omegas: &[f64], damping: &Damping) -> impl Iterator<Item = Oscillator> {
@@ -456,11 +490,6 @@ fn steps(omegas: &[f64], kind: &Kind, pace: &Pace) -> Result<Vec<f32>, LimitErro
     let mut rows = vec![0.0; 6 * n_modes];
     for (mode, oscillator) in kind.oscillators(omegas, &pace.damping).enumerate() {
         let step = oscillator.step_by(pace.integrator, pace.step)?;
-        // Where the air takes all speed, every step, symplectic Euler bears less: of its trace 1 - (omega dt)^2 is left.
-        let limit = SQRT_2 / oscillator.omega;
-        if pace.integrator == Integrator::Symplectic && pace.damping.air > 0.0 && pace.step >= limit {
-            return Err(LimitError::Limit { step: pace.step, limit, hz: oscillator.omega / TAU });
-        }
         for (row, number) in step.numbers().into_iter().enumerate() {
             rows[row * n_modes + mode] = number as f32;
         }

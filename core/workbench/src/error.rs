@@ -451,12 +451,21 @@ pub enum WorkbenchError {
     Leaves(#[from] honami_mechanics::LeavesError),
     /// Frames that do not follow one another.
     #[error(
-        "a motion has 0.001 to 1000000 frames per second and 1 to 10000 steps a frame, not {fps:?} and {n_substeps}"
+        "a motion has 0.001 to 100000 frames a second, each of a step or more, and 100000 steps a second at most: of \
+         shorter ones single precision loses a hundredth of the damping; not {fps:?} frames of {n_substeps} steps"
     )]
     Pace {
         /// Asked for.
         fps: f64,
         /// Steps a frame.
+        n_substeps: u32,
+    },
+    /// Steps that a method does not bear, though shorter ones.
+    #[error("{source}, or --substeps {n_substeps}")]
+    Substeps {
+        /// The limit.
+        source: honami_mechanics::LimitError,
+        /// Steps a frame that it bears.
         n_substeps: u32,
     },
     /// Sizes or masses out of all proportion.
@@ -550,6 +559,7 @@ impl WorkbenchError {
                 | Self::Units { .. }
                 | Self::Pixels
                 | Self::Pace { .. }
+                | Self::Substeps { .. }
                 | Self::Pull { .. }
                 | Self::Spread { .. }
                 | Self::Spacing { .. }

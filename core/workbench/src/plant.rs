@@ -1,6 +1,7 @@
 //! Plants: from whatever they were measured as to their vibration modes, and how they move in the wind.
 
 pub mod bench;
+mod circling;
 pub mod film;
 pub mod forms;
 pub mod glb;

@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use honami_model::plant::RadiusRule;
-use honami_workbench::mechanics::{Damping, Form, Integrator, Leaves, Material, Options};
+use honami_workbench::mechanics::{Damping, Form, Integrator, Leaves, Material, Options, Oscillator};
 use honami_workbench::plant::glb::Made;
 use honami_workbench::plant::grove::Spans;
-use honami_workbench::plant::mover::Mover;
+use honami_workbench::plant::mover::{Mover, Way};
 use honami_workbench::plant::outs::Outs;
 use honami_workbench::plant::sway::{self, Motion, Moved};
 use honami_workbench::plant::told::{self, Chosen};
@@ -34,6 +34,15 @@ pub(super) fn simulate(args: &Simulate, common: &Common) -> anyhow::Result<Answe
         )
     })?;
     want(args.sensors > 0, || "one sensor at least is wanted".to_owned())?;
+    let is_round = args.method == Method::Spectrum;
+    want(!is_round || args.pull == 0.0, || {
+        "what goes round by --method spectrum has no beginning at which it could be pulled: leave out --pull, or the method"
+            .to_owned()
+    })?;
+    want(!is_round || (args.plugin.with.is_none() && args.plugin.set.is_empty()), || {
+        "--method spectrum moves a plant by its own modes, not by a simulator: leave out --with and --set"
+            .to_owned()
+    })?;
     let wind = weather::read(&args.wind)?;
     let replaced = replaced(args, &wind)?;
     let (mut wish, mut motion) = (wish(&args.plant), motion(args, n_frames as u32));
@@ -42,7 +51,8 @@ pub(super) fn simulate(args: &Simulate, common: &Common) -> anyhow::Result<Answe
     let registry = options.registry();
     let mut simulator = None;
     // Modes alone are found without one, unless it is one that is asked.
-    if is_moved(args, &motion) || args.plugin.with.is_some() || !args.plugin.set.is_empty() {
+    let is_wanted = args.plugin.with.is_some() || !args.plugin.set.is_empty();
+    if !is_round && (is_wanted || is_moved(args, &motion)) {
         let plugin = registry.find(Kind::Simulator, args.plugin.with.as_deref().unwrap_or(DEFAULT))?;
         let told = told::told(&wish, &motion, plugin, Chosen::Only(&args.typed.0), &args.plugin.set)?;
         (wish, motion) = (told.wish, told.motion);
@@ -51,16 +61,20 @@ pub(super) fn simulate(args: &Simulate, common: &Common) -> anyhow::Result<Answe
     let bar = report::Bar::with(common);
     let plant = plant::vibrate(&wish, &bar)?;
     let (mut text, mut json) = describe(&wish, &plant, &motion.damping);
-    let simulator = simulator.filter(|_| is_moved(args, &motion));
-    if let Some((plugin, values, notes)) = simulator {
-        let mover = Mover { host: &options.host, plugin, values: &values };
+    if is_moved(args, &motion) {
+        let way = simulator.as_ref().map_or(Way::Spectrum, |(plugin, values, _)| {
+            Way::Steps(Mover { host: &options.host, plugin, values })
+        });
         let [table, cache, glb, beams] =
             [&args.out, &args.cache, &args.glb, &args.beams].map(|path| path.as_deref());
         let outs = Outs { table, cache, glb, beams };
         let again = wind.again(f64::from(motion.n_frames - 1) / motion.fps);
-        let wind = wind.over(&Ground::of(&plant, &motion))?;
-        let mut moved = sway::sway(&plant, &mover, &*wind, &motion, outs, &bar)?;
-        moved.warnings.splice(0..0, notes.into_iter().chain(again));
+        let ground = Ground::of(&plant, &motion);
+        let wind = wind.over(&if is_round { ground.round() } else { ground })?;
+        let mut moved = sway::sway(&plant, &way, &*wind, &motion, outs, &bar)?;
+        let notes = simulator.iter().flat_map(|(_, _, notes)| notes.clone());
+        // What goes round is drawn to its own length.
+        moved.warnings.splice(0..0, notes.chain(again.into_iter().filter(|_| !is_round)));
         let spans = Spans::of(&plant, &motion);
         let told = told(args, &motion, &moved, &spans);
         text += &format!("\n{}", report::with_warnings(&told, &moved.warnings));
@@ -71,7 +85,8 @@ pub(super) fn simulate(args: &Simulate, common: &Common) -> anyhow::Result<Answe
         json["motion"] = entry(&motion, &moved, args);
         json["motion"]["copies_span"] =
             json!({ "hz": spans.hz, "height_m": spans.height, "kg": spans.kilograms });
-        json["motion"]["simulator"] = plugin.id.clone().into();
+        json["motion"]["simulator"] = simulator.map(|(plugin, ..)| plugin.id.clone()).into();
+        json["motion"]["goes_round"] = is_round.into();
     } else if let Some(beams) = &args.beams {
         plant::write_beams(&plant, beams)?;
     }
@@ -134,7 +149,8 @@ fn motion(args: &Simulate, n_frames: u32) -> Motion {
         fps: args.fps,
         n_substeps: args.substeps,
         integrator: match args.method {
-            Method::Exact => Integrator::Exact,
+            // What goes round takes no step.
+            Method::Exact | Method::Spectrum => Integrator::Exact,
             Method::Symplectic => Integrator::Symplectic,
             Method::Newmark => Integrator::Newmark,
         },
@@ -188,10 +204,7 @@ fn describe(wish: &Wish, plant: &Vibrating, damping: &Damping) -> (String, serde
     );
     notes.iter().for_each(|note| text += &format!("\nnote: {note}"));
     let heavier = damping.mass.sqrt();
-    let ratio = |omega: f64| {
-        let omega = omega / heavier;
-        (damping.alpha + damping.beta * omega.powi(2)) / (2.0 * omega)
-    };
+    let ratio = |omega: f64| Oscillator::new(omega, damping).damping();
     let head = ["mode", "Hz", "damping %", "residual", "by wind x", "y", "z"];
     let mut rows = vec![head.map(str::to_owned).to_vec()];
     for mode in 0..modes.len().min(LISTED) {
@@ -215,6 +228,15 @@ fn describe(wish: &Wish, plant: &Vibrating, damping: &Damping) -> (String, serde
         plant.seconds * 1e3,
         modes.hz(modes.len() - 1) / heavier
     );
+    let creeping = modes.omegas.iter().filter(|omega| ratio(**omega) >= 1.0).count();
+    if creeping > 0 {
+        text += &format!(
+            "\nnote: {} damped by 100 % or more, beyond critical: pulled, {} back and {} not swing",
+            if creeping == 1 { "1 mode is".to_owned() } else { format!("{creeping} modes are") },
+            if creeping == 1 { "it creeps" } else { "they creep" },
+            if creeping == 1 { "does" } else { "do" },
+        );
+    }
     let entries: Vec<_> = (0..modes.len())
         .map(|mode| {
             let (hz, residual) = (modes.hz(mode) / heavier, modes.residuals[mode]);
@@ -258,6 +280,10 @@ fn told(args: &Simulate, motion: &Motion, moved: &Moved, spans: &Spans) -> Strin
             }
         });
         text += &format!("\ncopies: slowest mode {hz} Hz, {metres} m high, {kg} kg");
+    }
+    if args.method == Method::Spectrum {
+        let seconds = f64::from(moved.n_frames) / motion.fps;
+        text += &format!("\nit goes round: after {seconds} s it is where it begins, and as fast");
     }
     text += &format!(
         "\n{:.2} ms a frame on {}, {:.1} MB",

@@ -332,7 +332,14 @@ fn steps_beyond_the_limit_of_a_method_are_refused_with_it() {
     let of = |step: f64, integrator: Integrator| {
         Forest::new(&plant, &[0], &[Stand::default()], &Pace { step, integrator, damping }).map(|_| ())
     };
+    // The limit of the fastest, though slower ones are beyond theirs, too.
     let limit = 2.0 / fastest;
+    let refused = of(10.0, Integrator::Symplectic).unwrap_err();
+    assert!(refused.to_string().contains(&format!("less than {limit:.6} s")), "{refused}");
+    let pace = Pace { step: limit / 1.9, integrator: Integrator::Symplectic, damping };
+    let stands = [1.0, 0.5].map(|scale| Stand { scale, ..Stand::default() });
+    assert!(pace.bears(&plant.omegas, &stands[..1]).is_ok(), "half of the limit");
+    assert!(pace.bears(&plant.omegas, &stands).is_err(), "what is half as large swings twice as fast");
     assert!(of(limit * 0.99, Integrator::Symplectic).is_ok());
     let error = of(limit * 1.01, Integrator::Symplectic).unwrap_err().to_string();
     let wanted = format!("less than {limit:.6} s is wanted, or another method");

@@ -6,7 +6,7 @@ use honami_synth::Moving as Filmed;
 
 use super::Vibrating;
 use super::grove::Grove;
-use super::mover::{Mover, Moving};
+use super::mover::{Mover, Moving, Way};
 use super::sway::{Motion, free};
 use crate::ear::Ear;
 use crate::error::WorkbenchError;
@@ -46,7 +46,8 @@ pub fn film(
     let mut frames: Vec<Vec<Direction>> = Vec::new();
     // Sums over all nodes and frames: of x x, y y and x y of displacements.
     let mut spread = [0.0; 3];
-    let played = Moving::new(plant, mover, &grove, motion, &ear)?.play(wind, &ear, |_, moved| {
+    let way = Way::Steps(*mover);
+    let played = Moving::new(plant, &way, &grove, wind, motion, &ear)?.play(&ear, |_, moved| {
         let place = |node: usize| {
             let by = moved.of(0, node);
             spread = [spread[0] + by.x * by.x, spread[1] + by.y * by.y, spread[2] + by.x * by.y];

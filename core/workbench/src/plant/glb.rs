@@ -49,18 +49,18 @@ pub(super) struct Scene {
 }
 
 impl Gathering {
-    /// Before the first frame.
+    /// Before the first of so many frames.
     ///
     /// # Errors
     /// More than readers of such files or this machine can hold, whatever moves.
-    pub(super) fn new(plant: &Vibrating, motion: &Motion) -> Result<Self, WorkbenchError> {
+    pub(super) fn new(plant: &Vibrating, motion: &Motion, n_frames: u32) -> Result<Self, WorkbenchError> {
         let tubes = Tubes::new(&plant.beams);
         let sizes = Sizes {
             n_vertices: tubes.n_vertices(),
             n_triangles: tubes.triangles().len(),
             n_targets: 1,
             n_copies: motion.n_copies,
-            n_frames: motion.n_frames,
+            n_frames,
         };
         let shapes = Shapes::new(plant.beams.len(), NEAR * plant.size());
         let made = Self { tubes, shapes, sizes, threads: Threads::new(motion.n_threads)? };

@@ -1,8 +1,7 @@
-//! A plant in the hands of a simulator plugin: what it is given, and what it gives back.
+//! A plant on its way: in the hands of a simulator plugin, what that is given and gives back; or going round by itself.
 
-use honami_host::draft::Node;
 use honami_host::{
-    CallContext, Host, HostError, PlantInstance, PluginInfo, Simulator, Steps, Values, WindRows,
+    CallContext, Host, HostError, Node, PlantInstance, PluginInfo, Simulator, Steps, Values, WindRows,
 };
 use std::time::Instant;
 
@@ -11,6 +10,7 @@ use honami_mechanics::{Direction, Stand};
 use rayon::prelude::*;
 
 use super::Vibrating;
+use super::circling::Circling;
 use super::grove::Grove;
 use super::sway::Motion;
 use crate::ear::Ear;
@@ -32,15 +32,46 @@ pub struct Mover<'a> {
     pub values: &'a Values,
 }
 
+/// How plants move.
+#[derive(Clone, Copy, Debug)]
+pub enum Way<'a> {
+    /// Step by step, from where they begin.
+    Steps(Mover<'a>),
+    /// Round and round by their own modes, by the spectrum of a wind that begins again after the motion.
+    Spectrum,
+}
+
+impl Way<'_> {
+    /// What moves them.
+    pub(super) fn name(&self) -> &str {
+        match self {
+            Self::Steps(mover) => &mover.plugin.short_name,
+            Self::Spectrum => "spectrum",
+        }
+    }
+}
+
 /// A plant and its copies on their way.
 pub(super) struct Moving<'a> {
-    simulator: Simulator,
-    grove: &'a Grove,
+    by: By<'a>,
     motion: &'a Motion,
-    pool: rayon::ThreadPool,
-    /// Where a node of the beams is among those that were handed over: coarse before fine.
+    /// Where a node of the beams is among those that are moved: coarse before fine.
     rows: Vec<u32>,
     is_by_modes: bool,
+}
+
+enum By<'a> {
+    Steps(Box<Stepping<'a>>),
+    Spectrum(Box<Circling>),
+}
+
+/// A simulator at work.
+struct Stepping<'a> {
+    simulator: Simulator,
+    grove: &'a Grove,
+    wind: &'a dyn Wind,
+    motion: &'a Motion,
+    pool: rayon::ThreadPool,
     winds: Vec<[f32; 3]>,
     times: Vec<f64>,
 }
@@ -78,28 +109,37 @@ impl Displacements<'_> {
 }
 
 impl<'a> Moving<'a> {
-    /// Starts the simulator and hands the plant over.
+    /// Hands the plant over to a simulator, or works out how it goes round.
     pub(super) fn new(
         plant: &Vibrating,
-        mover: &Mover<'_>,
+        way: &Way<'_>,
         grove: &'a Grove,
+        wind: &'a dyn Wind,
         motion: &'a Motion,
         ear: &Ear<'_>,
     ) -> Result<Self, WorkbenchError> {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(motion.n_threads).build();
-        let pool = pool.map_err(|source| WorkbenchError::Pool { n: motion.n_threads, source })?;
-        let started =
-            ear.whole("modes", |cx| start(plant, mover, &grove.stands, motion.n_threads, motion.seed, cx));
-        let (simulator, is_by_modes) = started.map_err(stopped)?;
-        let rows = rows(&plant.beams.coarse_to_fine());
-        let (winds, times) = (Vec::new(), Vec::new());
-        Ok(Self { simulator, grove, motion, pool, rows, is_by_modes, winds, times })
+        let (by, is_by_modes) = match way {
+            Way::Steps(mover) => {
+                motion.bears(plant, &grove.stands)?;
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(motion.n_threads).build();
+                let pool = pool.map_err(|source| WorkbenchError::Pool { n: motion.n_threads, source })?;
+                let start = |cx: &CallContext<'_>| {
+                    start(plant, mover, &grove.stands, motion.n_threads, motion.seed, cx)
+                };
+                let (simulator, is_by_modes) = ear.whole("modes", start).map_err(stopped)?;
+                let (winds, times) = (Vec::new(), Vec::new());
+                let stepping = Stepping { simulator, grove, wind, motion, pool, winds, times };
+                (By::Steps(Box::new(stepping)), is_by_modes)
+            }
+            Way::Spectrum => (By::Spectrum(Box::new(Circling::new(plant, grove, wind, motion)?)), true),
+        };
+        Ok(Self { by, motion, rows: rows(&plant.beams.coarse_to_fine()), is_by_modes })
     }
 
-    /// Goes through all frames and shows each: the only way in which plants move, whatever is made of it.
+    /// Goes through all frames and shows each: the only way in which plants move, whatever is made of it. What goes round
+    /// shows the first once more, after the last.
     pub(super) fn play(
         mut self,
-        wind: &dyn Wind,
         ear: &Ear<'_>,
         mut see: impl FnMut(u32, &Displacements<'_>) -> Result<(), WorkbenchError>,
     ) -> Result<Played, WorkbenchError> {
@@ -109,28 +149,37 @@ impl<'a> Moving<'a> {
                 return Err(WorkbenchError::Stopped);
             }
             let begun = Instant::now();
-            let moved = self.frame(frame, wind, ear)?;
+            let moved = self.frame(frame, ear)?;
             took.push(begun.elapsed().as_secs_f64());
             farthest = farthest.max(moved.farthest());
             see(frame, &moved)?;
+        }
+        if let By::Spectrum(circling) = &mut self.by {
+            see(self.motion.n_frames, &Displacements { rows: &self.rows, motion: circling.frame(0) })?;
         }
         took.sort_by(f64::total_cmp);
         Ok(Played { took, farthest: f64::from(farthest), is_by_modes: self.is_by_modes })
     }
 
+    fn frame(&mut self, frame: u32, ear: &Ear<'_>) -> Result<Displacements<'_>, WorkbenchError> {
+        let motion = match &mut self.by {
+            By::Steps(stepping) => stepping.frame(frame, ear)?,
+            By::Spectrum(circling) => circling.frame(frame),
+        };
+        Ok(Displacements { rows: &self.rows, motion })
+    }
+}
+
+impl Stepping<'_> {
     /// Goes on to a frame, from the one before; the first is where it begins.
-    fn frame(
-        &mut self,
-        frame: u32,
-        wind: &dyn Wind,
-        ear: &Ear<'_>,
-    ) -> Result<Displacements<'_>, WorkbenchError> {
+    fn frame(&mut self, frame: u32, ear: &Ear<'_>) -> Result<&[[f32; 3]], WorkbenchError> {
         let (dt, each) = (self.motion.step(), self.motion.n_substeps);
         let n = if frame == 0 { 0 } else { each };
         self.times.clear();
         let first = u64::from(frame.saturating_sub(1)) * u64::from(each);
         self.times.extend((0..u64::from(n)).map(|k| (first + k) as f64 * dt));
-        let (grove, times, n_copies) = (self.grove, &self.times, self.grove.stands.len());
+        let (grove, wind, times) = (self.grove, self.wind, &self.times);
+        let n_copies = grove.stands.len();
         self.pool.install(|| {
             let blowing = |k: usize| grove.blowing(wind, k % n_copies, times[k / n_copies]);
             let places = (0..times.len() * n_copies).into_par_iter().with_min_len(SOME);
@@ -140,8 +189,7 @@ impl<'a> Moving<'a> {
         let steps = Steps { dt, n, wind, detail: None };
         let (done, total) = (u64::from(frame), u64::from(self.motion.n_frames));
         let simulator = &mut self.simulator;
-        let motion = ear.call(done, total, move |cx| simulator.step(&steps, cx)).map_err(stopped)?;
-        Ok(Displacements { rows: &self.rows, motion })
+        ear.call(done, total, move |cx| simulator.step(&steps, cx)).map_err(stopped)
     }
 }
 

@@ -1,23 +1,28 @@
 //! How a plant, or a forest of it, moves in a wind: positions of sensors over time.
 
+use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
 
 use honami_exchange::plant::SwayRow;
 use honami_mechanics::wind::Wind;
-use honami_mechanics::{Damping, ForestError, Form, Integrator};
+use honami_mechanics::{Damping, ForestError, Form, Integrator, LimitError, Oscillator, Pace, Stand};
 
 use super::Vibrating;
 use super::glb::{Gathering, Made};
 use super::grove::Grove;
-use super::mover::{Mover, Moving, Played};
+use super::mover::{Moving, Played, Way};
 use super::outs::{Files, Outs, check_room, free_in};
+use super::told::{METHODS, word};
 use crate::ear::Ear;
 use crate::error::WorkbenchError;
 use crate::progress::Progress;
 
-/// Frames per second, and steps a frame: of anything slower or faster numbers overflow or no frame ever comes.
-const FPS: RangeInclusive<f64> = 1e-3..=1e6;
-const SUBSTEPS: RangeInclusive<u32> = 1..=10_000;
+/// Steps a second: in shorter ones a state in single precision changes by too few of its last digits.
+const MOST_STEPS: f64 = 1e5;
+/// Frames per second: of anything slower numbers overflow or no frame ever comes.
+const FPS: RangeInclusive<f64> = 1e-3..=MOST_STEPS;
+/// A method may swing a mode too fast or too slowly by so much without a word.
+const OFF_PACE: f64 = 0.01;
 /// Copies are up to five times as large or heavy.
 const SPREADS: RangeInclusive<f64> = 0.0..=4.0;
 /// Metres between copies.
@@ -108,7 +113,8 @@ impl Motion {
         if !(is_damped && heavier.is_finite() && heavier > 0.0) {
             return Err(ForestError::Damping { mass: heavier, alpha, beta, air }.into());
         }
-        if !(FPS.contains(&fps) && SUBSTEPS.contains(&n_substeps) && n_frames > 0) {
+        let is_long = n_substeps > 0 && fps * f64::from(n_substeps) <= MOST_STEPS;
+        if !(FPS.contains(&fps) && is_long && n_frames > 0) {
             return Err(WorkbenchError::Pace { fps, n_substeps });
         }
         // Further than any plant bends, and nothing overflows.
@@ -118,6 +124,48 @@ impl Motion {
     /// Seconds of a step.
     pub(super) fn step(&self) -> f64 {
         1.0 / (self.fps * f64::from(self.n_substeps))
+    }
+
+    /// Whether its method bears its steps.
+    pub(super) fn bears(&self, plant: &Vibrating, stands: &[Stand]) -> Result<(), WorkbenchError> {
+        let pace = Pace { step: self.step(), integrator: self.integrator, damping: self.damping };
+        let refused = pace.bears(&plant.modes.omegas, stands);
+        refused.map_err(|source| match source {
+            LimitError::Limit { limit, .. } if 1.0 / limit < MOST_STEPS - self.fps => {
+                let n_substeps = (1.0 / (limit * self.fps)).floor() as u32 + 1;
+                WorkbenchError::Substeps { source, n_substeps }
+            }
+            source => ForestError::Limit(source).into(),
+        })
+    }
+
+    /// What there is to say of a method that swings modes too fast or too slowly.
+    fn off_pace(&self, plant: &Vibrating) -> Option<String> {
+        let modes =
+            || plant.modes.omegas.iter().map(|omega| Oscillator::new(*omega, &self.damping)).enumerate();
+        let off = |mode: &Oscillator, step: f64| {
+            mode.swings(self.integrator, step).map_or(0.0, |share| share - 1.0)
+        };
+        let apart = |a: &f64, b: &f64| a.abs().total_cmp(&b.abs());
+        let offs = modes().map(|(mode, own)| (mode, own.omega, off(&own, self.step())));
+        let (mode, omega, most) =
+            offs.max_by(|a, b| apart(&a.2, &b.2)).filter(|most| most.2.abs() > OFF_PACE)?;
+        let most_substeps = (MOST_STEPS / self.fps) as u32;
+        let is_near = |n: &u32| {
+            let step = 1.0 / (self.fps * f64::from(*n));
+            modes().all(|(_, own)| off(&own, step).abs() <= OFF_PACE)
+        };
+        let enough = (self.n_substeps..=most_substeps).find(is_near);
+        Some(format!(
+            "in steps of {} s --method {} swings modes too {}, mode {} of {:.3} Hz by {:.1} %{}",
+            self.step(),
+            word(&METHODS, self.integrator),
+            if most > 0.0 { "fast" } else { "slowly" },
+            mode + 1,
+            omega / TAU,
+            100.0 * most.abs(),
+            enough.map_or_else(String::new, |n| format!(": --substeps {n} leaves 1 %")),
+        ))
     }
 }
 
@@ -146,13 +194,13 @@ pub struct Moved {
     pub glb: Option<Made>,
 }
 
-/// Moves a plant by a simulator and writes what is wanted of it, where nothing of that is refused.
+/// Moves a plant and writes what is wanted of it, where nothing of that is refused.
 ///
 /// # Errors
 /// What the simulator refuses, [`WorkbenchError::Memory`], and what the disk says; nothing is left behind then.
 pub fn sway(
     plant: &Vibrating,
-    mover: &Mover<'_>,
+    way: &Way<'_>,
     wind: &dyn Wind,
     motion: &Motion,
     outs: Outs<'_>,
@@ -164,14 +212,22 @@ pub fn sway(
     let bytes = room(n_copies, n_nodes, plant.modes.len())?;
     let sizes = [n_copies.saturating_mul(n_nodes), sensors.len()];
     check_room(&outs, sizes, motion.n_frames, free_in, progress)?;
-    let mut gathering = outs.glb.map(|_path| Gathering::new(plant, motion)).transpose()?;
+    // What goes round ends where it begins, in a file that is played from key to key.
+    let n_keys = motion.n_frames.saturating_add(u32::from(matches!(way, Way::Spectrum)));
+    let mut gathering = outs.glb.map(|_path| Gathering::new(plant, motion, n_keys)).transpose()?;
     let mut files = Files::create(plant, motion, outs)?;
     let grove = Grove::new(plant.height, motion);
-    let ear = Ear::new(&mover.plugin.short_name, progress);
+    let ear = Ear::new(way.name(), progress);
     let root = plant.beams.position(0);
     let rest = |node: usize| plant.beams.position(node) - root;
     let mut first: Vec<[f64; 3]> = Vec::new();
-    let played = Moving::new(plant, mover, &grove, motion, &ear)?.play(wind, &ear, |frame, moved| {
+    let played = Moving::new(plant, way, &grove, wind, motion, &ear)?.play(&ear, |frame, moved| {
+        if let Some(gathering) = &mut gathering {
+            gathering.take(moved)?;
+        }
+        if frame == motion.n_frames {
+            return Ok(());
+        }
         let place = |copy: usize, node: usize| grove.shown(copy, &(rest(node) + moved.of(copy, node)));
         for (sensor, &node) in (0..).zip(&sensors) {
             let at = place(0, node as usize);
@@ -188,7 +244,7 @@ pub fn sway(
                 cache.push(place(copy, node).cast::<f32>().into())?;
             }
         }
-        gathering.as_mut().map_or(Ok(()), |gathering| gathering.take(moved))
+        Ok(())
     })?;
     let scene = gathering.map(|gathering| gathering.scene(plant, &grove, motion.fps));
     let glb = files.finish(scene.as_ref())?;
@@ -196,7 +252,8 @@ pub fn sway(
     let (deviation, farthest) = spread(&first, rest);
     let (share, too_far) = (played.farthest / plant.size(), played.too_far(plant));
     let (n_frames, frame_s) = (motion.n_frames, played.took[played.took.len() / 2]);
-    let warnings = ear.warnings();
+    let off_pace = if matches!(way, Way::Steps(_)) { motion.off_pace(plant) } else { None };
+    let warnings = off_pace.into_iter().chain(ear.warnings()).collect();
     Ok(Moved { sensors, deviation, farthest, share, too_far, n_frames, frame_s, bytes, warnings, glb })
 }
 

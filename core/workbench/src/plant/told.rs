@@ -116,7 +116,7 @@ fn values(
 }
 
 /// Words for how modes go on in time,
-const METHODS: [(&str, Integrator); 3] =
+pub(super) const METHODS: [(&str, Integrator); 3] =
     [("exact", Integrator::Exact), ("symplectic", Integrator::Symplectic), ("newmark", Integrator::Newmark)];
 /// and for how nodes follow them.
 const BENDS: [(&str, Form); 4] =
@@ -127,6 +127,8 @@ const RADII: [(&str, RadiusRule); 2] = [("mean", RadiusRule::Mean), ("tip", Radi
 /// Names of options that a simulator is told, and what they are.
 fn options(wish: &Wish, motion: &Motion) -> [(&'static str, Value); 15] {
     let (wood, leaves, damping) = (wish.beams.material, wish.leaves, motion.damping);
+    // The thesis's has no product of matrices; this is nearest to it.
+    let bend = if motion.form == Form::Node { Form::Mode(2) } else { motion.form };
     [
         ("young", Value::Float(wood.young)),
         ("poisson", Value::Float(wood.poisson)),
@@ -141,15 +143,14 @@ fn options(wish: &Wish, motion: &Motion) -> [(&'static str, Value); 15] {
         ("heavier", Value::Float(damping.mass)),
         ("pull", Value::Float(motion.pull)),
         ("modes", Value::Int(wish.n_modes.unwrap_or(USUAL_MODES) as i64)),
-        ("method", word(&METHODS, motion.integrator)),
-        // The thesis's has no product of matrices; this is nearest to it.
-        ("bend", word(&BENDS, if motion.form == Form::Node { Form::Mode(2) } else { motion.form })),
+        ("method", Value::Text(word(&METHODS, motion.integrator).to_owned())),
+        ("bend", Value::Text(word(&BENDS, bend).to_owned())),
     ]
 }
 
-fn word<T: PartialEq>(words: &[(&str, T)], of: T) -> Value {
-    let known = words.iter().find(|(_, value)| *value == of);
-    Value::Text(known.map_or_else(String::new, |(word, _)| (*word).to_owned()))
+/// The word for a value.
+pub(super) fn word<'a, T: PartialEq>(words: &[(&'a str, T)], of: T) -> &'a str {
+    words.iter().find(|(_, value)| *value == of).map_or("", |(word, _)| word)
 }
 
 /// Takes a simulator's value for the option of its name. Of another kind it is none, nor a word that only it knows.

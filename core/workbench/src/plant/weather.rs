@@ -22,6 +22,8 @@ pub use typed::{Typed, read};
 /// Samples of a turbulent wind in time, and seconds between them: it begins again after seven minutes, which is told.
 const N_SAMPLES: usize = 8192;
 const STEP_S: f64 = 0.05;
+/// Seconds after which a wind that goes round begins again at the latest: all of it is drawn.
+const LONGEST_ROUND_S: f64 = 3600.0;
 /// Metres between stations across a turbulent wind, if no more of them are needed than so many.
 const SPACING_M: f64 = 2.0;
 const MOST_STATIONS: usize = 512;
@@ -58,6 +60,8 @@ pub struct Ground {
     trees: Vec<([f64; 2], f64)>,
     /// From 0 on.
     seconds: f64,
+    /// Whether it is then to begin again.
+    is_round: bool,
 }
 
 impl Ground {
@@ -70,7 +74,19 @@ impl Ground {
         let tree = |(place, stand): (&Direction, &honami_mechanics::Stand)| {
             ([place.x, place.y], heavy * f64::from(stand.scale.powi(3) * stand.mass))
         };
-        Self { trees: copies.map(tree).collect(), seconds: f64::from(motion.n_frames) / motion.fps }
+        let seconds = f64::from(motion.n_frames) / motion.fps;
+        Self { trees: copies.map(tree).collect(), seconds, is_round: false }
+    }
+
+    /// The same for a motion that goes round.
+    #[must_use]
+    pub fn round(self) -> Self {
+        Self { is_round: true, ..self }
+    }
+
+    /// Seconds after which a wind begins again, where it has to.
+    fn period(&self) -> Option<f64> {
+        self.is_round.then_some(self.seconds)
     }
 }
 
@@ -128,7 +144,7 @@ pub const WEATHERS: &[Weather] = &[
         ],
         make: Make::Over(|v, ground| {
             let power = Power { at_1_hz: v.of("density"), beta: v.of("beta") };
-            Ok(Box::new(turbulent(v, [&power, &power, &power], ground.across(&v.along()))))
+            Ok(Box::new(turbulent(v, [&power, &power, &power], ground, ground.across(&v.along()))))
         }),
     },
     Weather {
@@ -142,10 +158,11 @@ pub const WEATHERS: &[Weather] = &[
             ("second", 2.0),
             ("seed", 1.0),
         ],
-        make: Make::Alone(|v| {
+        make: Make::Over(|v, ground| {
             let (speed, cell, second) = (v.of("swing"), v.of("cell"), v.of("second"));
-            let noise = Noise { speed, cell, second, seed: v.of("seed") as u64, n_cells: None };
-            Box::new(Sum(vec![Box::new(Constant(v.blowing())), Box::new(noise)]))
+            let n_cells = ground.period().map(|period| (period / second).round() as u32);
+            let noise = Noise { speed, cell, second, seed: v.of("seed") as u64, n_cells };
+            Ok(Box::new(Sum(vec![Box::new(Constant(v.blowing())), Box::new(noise)])))
         }),
     },
     Weather {
@@ -298,18 +315,21 @@ const fn gusty(speed: f64, deviation: f64) -> [(&'static str, f64); 6] {
 }
 
 fn gusts(v: &Values, ground: &Ground) -> Blown {
-    Ok(Box::new(gusting(v, ground.across(&v.along()))))
+    Ok(Box::new(gusting(v, ground, ground.across(&v.along()))))
 }
 
 /// Across and up it swings less than along the mean (Burton and others, Wind Energy Handbook, 2.6).
-fn gusting(v: &Values, across: [f64; 2]) -> Field {
+fn gusting(v: &Values, ground: &Ground, across: [f64; 2]) -> Field {
     let spectra =
         [1.0, 0.8, 0.5].map(|share| Kaimal::along(share * v.of("deviation"), v.of("speed"), v.of("scale")));
-    turbulent(v, [&spectra[0], &spectra[1], &spectra[2]], across)
+    turbulent(v, [&spectra[0], &spectra[1], &spectra[2]], ground, across)
 }
 
 /// Air over trees: what each holds back is its mass times the drag, square metres of ground a kilogram and second.
 fn flowing(v: &Values, ground: &Ground) -> Blown {
+    if let Some(period) = ground.period() {
+        return Err(typed::not_round(v.weather.name, period));
+    }
     let held = |&(place, mass): &([f64; 2], f64)| (place, v.of("drag") * mass);
     let trees: Vec<([f64; 2], f64)> = ground.trees.iter().map(held).collect();
     let cell = v.of("cell");
@@ -318,7 +338,7 @@ fn flowing(v: &Values, ground: &Ground) -> Blown {
     let [low, high] = ground.across(&v.along());
     let air = Flowing::new(&Inflow {
         mean: v.blowing(),
-        gusts: &gusting(v, [low - beyond, high + beyond]),
+        gusts: &gusting(v, ground, [low - beyond, high + beyond]),
         trees: &trees,
         cell,
         viscosity: v.of("viscosity"),
@@ -329,16 +349,17 @@ fn flowing(v: &Values, ground: &Ground) -> Blown {
 }
 
 /// Turbulence over all that lies between two places across the wind.
-fn turbulent(v: &Values, spectra: [&dyn Spectrum; 3], [low, high]: [f64; 2]) -> Field {
+fn turbulent(v: &Values, spectra: [&dyn Spectrum; 3], ground: &Ground, [low, high]: [f64; 2]) -> Field {
     let spacing = f64::max(SPACING_M, (high - low) / (MOST_STATIONS - 1) as f64);
+    let n_samples = ground.period().map_or(N_SAMPLES, |period| (period / STEP_S).ceil() as usize);
     let draw = Draw {
         mean: v.blowing(),
         decay: v.of("decay"),
         first: low,
         n_stations: ((high - low) / spacing).ceil() as usize + 1,
         spacing,
-        n_samples: N_SAMPLES,
-        step: STEP_S,
+        n_samples,
+        step: ground.period().map_or(STEP_S, |period| period / n_samples as f64),
         seed: v.of("seed") as u64,
     };
     Field::new(&draw, spectra)

@@ -8,7 +8,51 @@ use honami_mechanics::wind::{Kaimal, Spectrum, Wind};
 /// Over a few trees, for two seconds.
 fn blow(typed: &str) -> Result<Box<dyn Wind>, WorkbenchError> {
     let trees = (0..9).map(|k| ([f64::from(k % 3) * 6.0, f64::from(k / 3) * 6.0], 400.0)).collect();
-    read(typed)?.over(&Ground { trees, seconds: 2.0 })
+    read(typed)?.over(&Ground { trees, seconds: 2.0, is_round: false })
+}
+
+/// A wind that begins again after so many seconds.
+fn round(typed: &str, seconds: f64) -> Result<Box<dyn Wind>, WorkbenchError> {
+    read(typed)?.over(&Ground { seconds, ..Ground::default() }.round())
+}
+
+/// Each: what is typed, seconds for which it can begin again, and for which it cannot.
+#[test]
+fn winds_that_go_round_begin_again_and_others_are_refused() {
+    let cases: [(&str, &[f64], &[f64]); 9] = [
+        ("still", &[7.3], &[]),
+        ("steady+vortex", &[7.3], &[]),
+        ("storm", &[0.04, 7.3, 20.0], &[]),
+        ("rough:seed=4", &[7.3], &[]),
+        ("noise+calm", &[2.0, 20.0], &[0.5, 7.3]),
+        ("waves", &[10.0, 20.0], &[7.0]),
+        ("steady+squall", &[], &[20.0]),
+        ("frozen+noise", &[], &[20.0]),
+        ("air", &[], &[20.0]),
+    ];
+    for (typed, can, cannot) in cases {
+        for seconds in can {
+            let wind = round(typed, *seconds).unwrap();
+            for k in 0..9 {
+                let (place, t) = (Direction::new(f64::from(k) * 3.0, -4.0, 5.0), 0.37 * f64::from(k));
+                let off = (wind.sample(&place, t + seconds) - wind.sample(&place, t)).norm();
+                assert!(off < 1e-9, "{typed} {seconds} {t}: {off}");
+            }
+        }
+        for seconds in cannot {
+            let error = round(typed, *seconds).err().unwrap().to_string();
+            let wanted = format!("is not after {seconds} s what it was");
+            assert!(error.contains(&wanted), "{typed}: {error}");
+        }
+    }
+    // Of the spectrum that it was: the same mean, and of its gusts of 1.6 m/s what goes into a minute, read between stations.
+    let (wind, n) = (round("wind", 60.0).unwrap(), 6000);
+    let along: Vec<f64> = (0..n).map(|k| wind.sample(&Direction::zeros(), f64::from(k) * 0.01).x).collect();
+    let mean = along.iter().sum::<f64>() / f64::from(n);
+    let deviation = (along.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / f64::from(n)).sqrt();
+    assert!((mean - 8.0).abs() < 1e-9 && (0.8..1.6).contains(&deviation), "{mean} {deviation}");
+    let error = round("wind", 3601.0).err().unwrap().to_string();
+    assert_eq!(error, "a wind begins again after 3600 s at most, not 3601 s");
 }
 
 fn at(typed: &str, place: [f64; 3], time: f64) -> Direction {

@@ -8,7 +8,7 @@ use honami_exchange::plant::{PlantFileError, anemometer};
 use honami_mechanics::Direction;
 use honami_mechanics::wind::{Series, Sum, Wind};
 
-use super::{Ground, Make, N_SAMPLES, STEP_S, Values, WEATHERS, range};
+use super::{Ground, LONGEST_ROUND_S, Make, N_SAMPLES, STEP_S, Values, WEATHERS, range};
 use crate::error::WorkbenchError;
 
 /// Winds that were typed, one after the other; all there is to know of them but what they blow over.
@@ -20,6 +20,13 @@ enum Part {
 }
 
 impl Part {
+    fn name(&self) -> String {
+        match self {
+            Self::Named(values) => values.weather.name.to_owned(),
+            Self::Recorded(path, _) => path.display().to_string(),
+        }
+    }
+
     /// The name of turbulence that is drawn once and carried by its mean.
     fn drawn(&self) -> Option<&'static str> {
         match self {
@@ -29,6 +36,15 @@ impl Part {
             Self::Recorded(..) => None,
         }
     }
+}
+
+/// What does not begin again after so many seconds.
+pub(super) fn not_round(name: &str, period: f64) -> WorkbenchError {
+    wrong(format!(
+        "{name} is not after {period} s what it was, and what goes round wants a wind that is: steady winds are, gusts are \
+         made so, waves where their hz and noise where its second go into these seconds without a rest, a table that lasts \
+         for so long; what travels, or flows by itself, is not"
+    ))
 }
 
 fn wrong(what: String) -> WorkbenchError {
@@ -167,6 +183,11 @@ impl Typed {
     /// # Errors
     /// What cannot flow over it.
     pub fn over(&self, ground: &Ground) -> Result<Box<dyn Wind>, WorkbenchError> {
+        if let Some(period) = ground.period().filter(|period| *period > LONGEST_ROUND_S) {
+            return Err(wrong(format!(
+                "a wind begins again after {LONGEST_ROUND_S} s at most, not {period} s"
+            )));
+        }
         // From the last: what carries takes all that follows it.
         let mut winds: Vec<Box<dyn Wind>> = Vec::new();
         for part in self.0.iter().rev() {
@@ -178,6 +199,9 @@ impl Typed {
                     Make::Carrying(make) => make(values, together(std::mem::take(&mut winds))),
                 },
             };
+            if let Some(period) = ground.period().filter(|period| !wind.repeats(*period)) {
+                return Err(not_round(&part.name(), period));
+            }
             winds.push(wind);
         }
         winds.reverse();
