@@ -164,6 +164,7 @@ pub struct Document {
     pub(crate) runs: Vec<ShownRun>,
     pub(crate) clustering: Option<ShownClustering>,
     pub(crate) group_names: BTreeMap<(ClusteringId, u32), String>,
+    pub(crate) held: BTreeMap<ClusteringId, Vec<Vec<u32>>>,
 }
 
 impl Document {
@@ -176,6 +177,7 @@ impl Document {
             runs: Vec::new(),
             clustering: None,
             group_names: BTreeMap::new(),
+            held: BTreeMap::new(),
         }
     }
 
@@ -229,6 +231,13 @@ impl Document {
     #[must_use]
     pub fn group_name(&self, clustering: ClusteringId, node: u32) -> Option<&str> {
         self.group_names.get(&(clustering, node)).map(String::as_str)
+    }
+
+    /// The groups of a clustering that a person has made by hand, each the nodes of its dendrogram that it consists
+    /// of: they stay as they are wherever the cut is.
+    #[must_use]
+    pub fn held_groups(&self, clustering: ClusteringId) -> &[Vec<u32>] {
+        self.held.get(&clustering).map_or(&[], Vec::as_slice)
     }
 
     fn is_seen(&self, id: TrackId, track: &Track) -> bool {

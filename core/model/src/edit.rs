@@ -118,6 +118,13 @@ pub enum Edit {
         /// The name, not empty.
         name: Option<String>,
     },
+    /// A person says which groups of a clustering stay as they are wherever its cut is.
+    HoldGroups {
+        /// The clustering.
+        clustering: ClusteringId,
+        /// Of each group the nodes of the dendrogram that it consists of, at least one; no node is in two.
+        groups: Vec<Vec<u32>>,
+    },
 }
 
 /// Edits that are done and undone together, and one line that says what happened.
@@ -146,7 +153,8 @@ impl Edit {
             | Self::Judge { .. }
             | Self::ShowClustering { .. }
             | Self::SetCut { .. }
-            | Self::NameGroup { .. } => TrackSet::default(),
+            | Self::NameGroup { .. }
+            | Self::HoldGroups { .. } => TrackSet::default(),
         }
     }
 }
@@ -224,6 +232,14 @@ impl Document {
                     None => self.group_names.remove(&at),
                 };
                 Ok(Edit::NameGroup { clustering: *clustering, node: *node, name: old })
+            }
+            Edit::HoldGroups { clustering, groups } => {
+                check_groups(groups)?;
+                let old = match &groups[..] {
+                    [] => self.held.remove(clustering),
+                    groups => self.held.insert(*clustering, groups.to_vec()),
+                };
+                Ok(Edit::HoldGroups { clustering: *clustering, groups: old.unwrap_or_default() })
             }
         }
     }
@@ -382,6 +398,13 @@ fn check_name(name: Option<&str>) -> Result<(), EditError> {
 
 fn check_cut(k: Option<u32>) -> Result<(), EditError> {
     if k == Some(0) { Err(EditError::NoGroups) } else { Ok(()) }
+}
+
+fn check_groups(groups: &[Vec<u32>]) -> Result<(), EditError> {
+    let mut nodes: Vec<u32> = groups.concat();
+    nodes.sort_unstable();
+    let is_twice = nodes.windows(2).any(|pair| pair[0] == pair[1]);
+    if is_twice || groups.iter().any(Vec::is_empty) { Err(EditError::NotApart) } else { Ok(()) }
 }
 
 #[cfg(test)]

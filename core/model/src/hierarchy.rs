@@ -1,6 +1,10 @@
 //! Hierarchies of groups: a dendrogram where they came from merging, and its cuts.
 
-use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
+use std::collections::BinaryHeap;
+
+pub use groups::Groups;
+
+mod groups;
 
 /// One merge of a dendrogram: two clusters become one at a height.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,37 +85,21 @@ impl Dendrogram {
     /// contains (an inversion). Groups are numbered from 0 in the order in which their first leaf appears.
     #[must_use]
     pub fn cut(&self, k: u32) -> Vec<u32> {
-        let mut number_of = BTreeMap::new();
-        self.roots(k)
-            .into_iter()
-            .map(|root| {
-                let next = u32::try_from(number_of.len()).unwrap_or(u32::MAX);
-                *number_of.entry(root).or_insert(next)
-            })
-            .collect()
+        self.groups(k, &[]).of
     }
 
     /// The cluster that each group of [`cut`](Self::cut) is, numbered as in [`Merge`]: unlike a group's
     /// number it stays the same when the cut moves.
     #[must_use]
     pub fn nodes(&self, k: u32) -> Vec<u32> {
-        let mut seen = BTreeSet::new();
-        self.roots(k).into_iter().filter(|&root| seen.insert(root)).collect()
+        self.groups(k, &[]).mains().collect()
     }
 
-    /// The cluster of every leaf in a cut into `k` groups.
-    fn roots(&self, k: u32) -> Vec<u32> {
-        let n = self.n_leaves as usize;
-        let mut is_undone = vec![false; self.merges.len()];
-        self.undoing_order().take(k.saturating_sub(1) as usize).for_each(|row| is_undone[row] = true);
-        let mut roots: Vec<u32> = (0..).take(n + self.merges.len()).collect();
-        // A cluster comes after its parts: downwards, its own root is known first.
-        for (row, merge) in self.merges.iter().enumerate().rev().filter(|&(row, _)| !is_undone[row]) {
-            roots[merge.a as usize] = roots[n + row];
-            roots[merge.b as usize] = roots[n + row];
-        }
-        roots.truncate(n);
-        roots
+    /// The heights of the merges in the order in which cuts undo them: a cut into k groups lies between the
+    /// (k - 1)-th and the k-th.
+    #[must_use]
+    pub fn heights(&self) -> Vec<f64> {
+        self.undoing_order().map(|row| self.merges[row].height).collect()
     }
 
     /// The rows in the order in which cuts undo them.
@@ -136,7 +124,7 @@ impl Dendrogram {
     /// The smallest such number where several are equally clear.
     #[must_use]
     pub fn clearest_cut(&self, k_max: u32) -> u32 {
-        let heights: Vec<f64> = self.undoing_order().map(|row| self.merges[row].height).collect();
+        let heights = self.heights();
         let mut clearest = (1, 0.0);
         for (k, pair) in (2..=k_max).zip(heights.windows(2)) {
             let factor = pair[0] / pair[1].max(f64::MIN_POSITIVE);

@@ -17,6 +17,7 @@ pub mod over;
 pub mod picture;
 pub mod plant;
 pub mod provenance;
+pub mod regroup;
 pub mod skeleton;
 pub mod track;
 pub mod unfinished;

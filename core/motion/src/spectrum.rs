@@ -8,6 +8,7 @@
 //! the generalised Lomb-Scargle periodogram (Zechmeister and Kürster, Astron. Astrophys. 496 (2009) 577, eq.
 //! 4-12) with the same window as weights. Both are taken at the same frequencies, so tracks can be averaged.
 
+mod coherence;
 mod lomb;
 mod peaks;
 

@@ -69,7 +69,7 @@ pub struct Grouping {
     pub clustering: ClusteringId,
     /// The group of each track it knows, 0 to the number of groups.
     pub group_of: BTreeMap<TrackId, u32>,
-    /// The dendrogram's node of every group: what a group's name hangs on.
+    /// The dendrogram's node of every group, of one made by hand its largest: what a group's name hangs on.
     pub nodes: Vec<u32>,
 }
 
@@ -132,18 +132,18 @@ impl Project {
         rows.map(|row| row?).collect()
     }
 
-    /// The shown clustering at its cut; `None` when none is shown.
+    /// The shown clustering at its cut, with the groups that were made by hand; `None` when none is shown.
     ///
     /// # Errors
     /// What SQLite met.
     pub fn grouping(&self) -> Result<Option<Grouping>, StoreError> {
         let Some(shown) = self.document().clustering() else { return Ok(None) };
         let clustering = self.clustering(shown.id)?;
-        let groups = clustering.dendrogram.cut(shown.k);
+        let groups = clustering.dendrogram.groups(shown.k, self.document().held_groups(shown.id));
         Ok(Some(Grouping {
             clustering: shown.id,
-            group_of: clustering.tracks.into_iter().zip(groups).collect(),
-            nodes: clustering.dendrogram.nodes(shown.k),
+            nodes: groups.mains().collect(),
+            group_of: clustering.tracks.into_iter().zip(groups.of).collect(),
         }))
     }
 

@@ -3,7 +3,7 @@
 #[cfg(test)]
 mod tests;
 
-use honami_model::hierarchy::Dendrogram;
+use honami_model::hierarchy::{Dendrogram, Groups};
 
 /// A group of the tree.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -12,21 +12,41 @@ pub struct Group {
     pub parent: Option<usize>,
     /// Rows of its parts; none of a terminal group.
     pub children: Vec<usize>,
-    /// Of a terminal group, its number in the cut.
+    /// Of a terminal group, its number.
     pub number: u32,
     /// Of a terminal group, leaves of the dendrogram that are in it, those without a path left out.
     pub leaves: Vec<usize>,
 }
 
-/// The tree above a cut into `k` groups, each group after the one it is part of. Leaves for which `is_seen` is false are
-/// left out, and so is a group of which nothing is left; what it was merged with takes the place of both. Empty where
-/// nothing is left.
+/// The tree above a cut into `k` groups, as [`tree_of`] has it.
 #[must_use]
 pub fn tree(dendrogram: &Dendrogram, k: u32, is_seen: &[bool]) -> Vec<Group> {
+    tree_of(dendrogram, &dendrogram.groups(k, &[]), is_seen)
+}
+
+/// The tree above these groups of its leaves, each group after the one it is part of. One that a person has merged of
+/// several clusters stands where most of it is. Leaves for which `is_seen` is false are left out, and so is a group of
+/// which nothing is left; what it was merged with takes the place of both. Empty where nothing is left.
+#[must_use]
+pub fn tree_of(dendrogram: &Dendrogram, shown: &Groups, is_seen: &[bool]) -> Vec<Group> {
     let (n, merges) = (dendrogram.n_leaves() as usize, dendrogram.merges());
-    let mut n_seen: Vec<usize> = (0..n).map(|leaf| usize::from(is_seen.get(leaf) == Some(&true))).collect();
-    merges.iter().for_each(|merge| n_seen.push(n_seen[merge.a as usize] + n_seen[merge.b as usize]));
-    let (numbers, ends) = (dendrogram.cut(k), dendrogram.nodes(k));
+    let is_seen: Vec<bool> = (0..n).map(|leaf| is_seen.get(leaf) == Some(&true)).collect();
+    let mut n_seen: Vec<usize> = is_seen.iter().map(|&is_seen| usize::from(is_seen)).collect();
+    let count = |n_seen: &mut Vec<usize>| {
+        merges.iter().for_each(|merge| n_seen.push(n_seen[merge.a as usize] + n_seen[merge.b as usize]));
+    };
+    count(&mut n_seen);
+    let most = |nodes: &Vec<u32>| nodes.iter().rev().copied().max_by_key(|node| n_seen[*node as usize]);
+    let ends: Vec<u32> = shown.nodes.iter().filter_map(most).collect();
+    // What does not stand with its group is not there.
+    for (nodes, end) in shown.nodes.iter().zip(&ends) {
+        for leaf in nodes.iter().filter(|node| *node != end).flat_map(|node| dendrogram.leaves(*node)) {
+            n_seen[leaf as usize] = 0;
+        }
+    }
+    n_seen.truncate(n);
+    count(&mut n_seen);
+    let numbers = &shown.of;
     let mut groups: Vec<Group> = Vec::new();
     let whole = n_seen.len().checked_sub(1).filter(|&whole| n_seen[whole] > 0);
     let mut open: Vec<(usize, Option<usize>)> = whole.map(|whole| (whole, None)).into_iter().collect();
@@ -45,7 +65,7 @@ pub fn tree(dendrogram: &Dendrogram, k: u32, is_seen: &[bool]) -> Vec<Group> {
         let mut group = Group { parent, ..Group::default() };
         if let Some(number) = end {
             group.number = u32::try_from(number).unwrap_or(u32::MAX);
-            let is_in = |&leaf: &usize| n_seen[leaf] > 0 && numbers[leaf] == group.number;
+            let is_in = |&leaf: &usize| is_seen[leaf] && numbers[leaf] == group.number;
             group.leaves = (0..n).filter(is_in).collect();
         } else {
             open.extend(seen.map(|part| (part, Some(row))));

@@ -299,6 +299,9 @@ pub enum WorkbenchError {
     /// A correction cannot be done.
     #[error(transparent)]
     Refused(#[from] honami_model::correct::Refused),
+    /// Groups stay as they are.
+    #[error(transparent)]
+    Regroup(#[from] honami_model::regroup::Refused),
     /// A file of a plant or of a wind could not be read.
     #[error(transparent)]
     PlantFile(#[from] honami_exchange::plant::PlantFileError),

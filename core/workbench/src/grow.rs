@@ -14,7 +14,7 @@ use honami_structure::diener;
 use honami_structure::follow::Path;
 use honami_structure::repeat::repeat;
 pub use honami_structure::siblings::{self, Siblings};
-use honami_structure::tree::tree;
+use honami_structure::tree::tree_of;
 use honami_structure::zeng::{self, Alpha};
 pub use honami_structure::zeng::{COPIES, SHIFT};
 
@@ -104,7 +104,8 @@ pub fn grow(project: &Project, request: &GrowRequest) -> Result<Growth, Workbenc
     if n_lost > 0 {
         notes.push(format!("{n_lost} of {n_tracks} tracks are seen in no frame now and are left out"));
     }
-    let groups = tree(dendrogram, k, &is_seen);
+    let shown = dendrogram.groups(k, project.document().held_groups(shown.id));
+    let groups = tree_of(dendrogram, &shown, &is_seen);
     let (root, is_flat) = (request.root, request.is_flat);
     let grown = match &request.method {
         Method::Diener => diener::grow(&paths, &groups, times, diener::Settings { root, is_flat })?,

@@ -21,6 +21,7 @@ pub mod plant;
 pub mod plots;
 pub mod progress;
 pub mod rebuilt;
+pub mod regroup;
 pub mod retrack;
 pub mod review;
 pub mod script;

@@ -19,6 +19,8 @@ pub struct Sway {
     pub spectrum: Spectrum,
     /// The strongest sway that stands out, if one does.
     pub peak: Option<Peak>,
+    /// Of several tracks, the share of the power about the peak that is common to them, 0 to 1.
+    pub coherence: Option<f64>,
 }
 
 /// Curves of one track, or the means of several.
@@ -78,7 +80,8 @@ fn middle(span: &Span) -> [f64; 2] {
 
 fn sway(tracks: &[Arc<Span>], times: &FrameTimes) -> Result<Sway, String> {
     let analyser = Analyser::new(times).map_err(|error| error.to_string())?;
-    let spectra: Vec<_> = tracks.iter().map(|span| analyser.track(&positions(span, times.len()))).collect();
+    let positions: Vec<_> = tracks.iter().map(|span| positions(span, times.len())).collect();
+    let spectra: Vec<_> = positions.iter().map(|track| analyser.track(track)).collect();
     let why = spectra.iter().find_map(|spectrum| spectrum.as_ref().err().map(ToString::to_string));
     let spectra: Vec<Spectrum> = spectra.into_iter().filter_map(Result::ok).collect();
     let over_floor = if spectra.len() > 1 { OVER_FLOOR_OF_MANY } else { OVER_FLOOR };
@@ -89,7 +92,8 @@ fn sway(tracks: &[Arc<Span>], times: &FrameTimes) -> Result<Sway, String> {
         return Err("nothing sways: it stands still".to_owned());
     }
     let peak = spectrum.peaks(1, over_floor).into_iter().next();
-    Ok(Sway { spectrum, peak })
+    let coherence = peak.as_ref().and_then(|peak| analyser.coherence(&positions, peak.hz));
+    Ok(Sway { spectrum, peak, coherence })
 }
 
 #[cfg(test)]

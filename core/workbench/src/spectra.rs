@@ -57,6 +57,9 @@ pub struct Line {
     pub peaks: Vec<Peak>,
     /// How fast and how long it swings at the strongest: of several tracks the median.
     pub swing: Option<Swing>,
+    /// The share of the power about the strongest that is common to several tracks, 0 to 1 (see
+    /// [`Analyser::coherence`]).
+    pub coherence: Option<f64>,
 }
 
 /// Frequencies of a project or of a table of tracks.
@@ -136,8 +139,11 @@ fn of(
     let median = |subject, of: Vec<Spectrum>, ids: &[TrackId]| {
         let median = Spectrum::median(&of)?;
         let peaks = wanted.of(&median, OVER_FLOOR_OF_MANY);
+        let positions: Vec<_> =
+            ids.iter().filter_map(|id| Some(positions(spans.get(id)?, times.len()))).collect();
+        let coherence = peaks.first().and_then(|peak| analyser.coherence(&positions, peak.hz));
         let swing = swing(ids, &peaks);
-        Some(Line { subject, n_tracks: median.n_tracks, peaks, swing })
+        Some(Line { subject, n_tracks: median.n_tracks, peaks, swing, coherence })
     };
     let all: Vec<Spectrum> = spectra.iter().map(|(_, spectrum)| spectrum.clone()).collect();
     let first = all.first().cloned().ok_or(WorkbenchError::TooBrief)?;
@@ -157,7 +163,7 @@ fn of(
     lines.extend(spectra.iter().map(|(id, spectrum)| {
         let peaks = wanted.of(spectrum, OVER_FLOOR);
         let swing = if are_few { swing(&[*id], &peaks) } else { None };
-        Line { subject: Subject::Track(*id), n_tracks: 1, peaks, swing }
+        Line { subject: Subject::Track(*id), n_tracks: 1, peaks, swing, coherence: None }
     }));
     Ok(Spectra {
         resolution_hz: first.resolution_hz,

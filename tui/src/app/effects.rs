@@ -605,8 +605,9 @@ impl World {
                 let stale = project.is_stale(shown.id)?.map_or("", |_| ", stale");
                 let id = &clustering.provenance.plugin_id;
                 let what = format!("by {}{stale}", id.rsplit('.').next().unwrap_or(id));
-                let (tracks, dendrogram) = (clustering.tracks, clustering.dendrogram);
-                Some(Groups::new(what, tracks, dendrogram, shown.k, clustering.outlier_frames))
+                let tree = (clustering.tracks, clustering.dendrogram);
+                let held = project.document().held_groups(shown.id);
+                Some(Groups::new(what, tree, (shown.k, held), clustering.outlier_frames))
             }
         };
         let tracker = match project.document().runs().last() {

@@ -264,9 +264,8 @@ pub(super) fn groups(k: u32) -> Groups {
     let tracks = [1, 2, 7].map(TrackId).to_vec();
     Groups::new(
         "by movement".to_owned(),
-        tracks,
-        Dendrogram::new(3, merges).expect("a tree"),
-        k,
+        (tracks, Dendrogram::new(3, merges).expect("a tree")),
+        (k, &[]),
         vec![90, 91],
     )
 }

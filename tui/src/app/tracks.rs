@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
-use honami_model::hierarchy::Dendrogram;
+use honami_model::hierarchy::{self, Dendrogram};
 use honami_model::track::{Sample, Source, Span, TrackId};
 
 /// A track on screen.
@@ -55,25 +55,33 @@ pub struct Groups {
     pub tracks: Vec<TrackId>,
     /// The hierarchy.
     pub dendrogram: Dendrogram,
-    /// Number of groups.
-    pub k: u32,
+    /// The groups of its leaves.
+    pub shown: hierarchy::Groups,
+    /// The clusters of each group that was made by hand: a cut leaves them.
+    pub held: Vec<Vec<u32>>,
     /// Frames that were left out as outliers, rising.
     pub outlier_frames: Vec<u32>,
     of: BTreeMap<TrackId, u32>,
 }
 
 impl Groups {
-    /// A clustering cut into `k` groups.
+    /// A clustering cut into `k` groups, some of which are held by hand.
     #[must_use]
     pub fn new(
         what: String,
-        tracks: Vec<TrackId>,
-        dendrogram: Dendrogram,
-        k: u32,
+        (tracks, dendrogram): (Vec<TrackId>, Dendrogram),
+        (k, held): (u32, &[Vec<u32>]),
         outlier_frames: Vec<u32>,
     ) -> Self {
-        let of = tracks.iter().copied().zip(dendrogram.cut(k)).collect();
-        Self { what, tracks, dendrogram, k, outlier_frames, of }
+        let shown = dendrogram.groups(k, held);
+        let of = tracks.iter().copied().zip(shown.of.iter().copied()).collect();
+        Self { what, tracks, dendrogram, shown, held: held.to_vec(), outlier_frames, of }
+    }
+
+    /// The groups at another cut.
+    #[must_use]
+    pub fn at(&self, k: u32) -> hierarchy::Groups {
+        self.dendrogram.groups(k, &self.held)
     }
 
     /// The group of a track, from 0.

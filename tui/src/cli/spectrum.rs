@@ -163,7 +163,8 @@ fn describe(spectra: &Spectra) -> Answer {
         "{rate}: nothing above {:.2} Hz can be seen, nothing closer than {:.3} Hz told apart",
         spectra.nyquist_hz, spectra.resolution_hz
     );
-    let mut rows = vec![["", "tracks", "damping %", "peaks: Hz (px)"].map(str::to_owned).to_vec()];
+    let mut rows =
+        vec![["", "tracks", "coherence", "damping %", "peaks: Hz (px)"].map(str::to_owned).to_vec()];
     let is_track = |line: &&Line| matches!(line.subject, Subject::Track(_));
     let n_tracks = spectra.lines.iter().filter(is_track).count();
     let shown = spectra.lines.len() - n_tracks.saturating_sub(LISTED);
@@ -171,7 +172,8 @@ fn describe(spectra: &Spectra) -> Answer {
         let peaks: Vec<String> = line.peaks.iter().map(peak).collect();
         let peaks = if peaks.is_empty() { "nothing stands out".to_owned() } else { peaks.join("   ") };
         let damping = line.swing.map_or_else(String::new, |swing| damped(&swing, swing.ratio, 100.0, 2));
-        rows.push(vec![name(line.subject), line.n_tracks.to_string(), damping, peaks]);
+        let coherence = line.coherence.map_or_else(String::new, |share| format!("{share:.2}"));
+        rows.push(vec![name(line.subject), line.n_tracks.to_string(), coherence, damping, peaks]);
     }
     text += &format!("\n{}", report::table(&rows));
     if n_tracks > LISTED {
@@ -233,5 +235,11 @@ fn entry(line: &Line, start_s: f64, fps: f64) -> serde_json::Value {
         })
         .collect();
     let swing = line.swing.map(|swing| swung(&swing, start_s, fps));
-    json!({ "subject": name(line.subject), "tracks": line.n_tracks, "peaks": peaks, "swing": swing })
+    json!({
+        "subject": name(line.subject),
+        "tracks": line.n_tracks,
+        "peaks": peaks,
+        "swing": swing,
+        "coherence": line.coherence,
+    })
 }

@@ -77,6 +77,9 @@ pub enum EditError {
     /// A cut makes at least one group.
     #[error("a cut makes at least 1 group, not 0")]
     NoGroups,
+    /// A group that is held has a node at least, and none of another.
+    #[error("groups made by hand need tracks of their own: one is empty, or has what is another's")]
+    NotApart,
     /// A name must have letters; `None` takes it away.
     #[error("a name cannot be empty")]
     EmptyName,

@@ -60,6 +60,8 @@ fn any_edit() -> impl Strategy<Value = Edit> {
             node,
             name
         }),
+        (1_u32..3, prop::collection::vec(prop::collection::vec(0_u32..9, 0..3), 0..3))
+            .prop_map(|(id, groups)| Edit::HoldGroups { clustering: ClusteringId(id), groups }),
     ]
 }
 

@@ -59,6 +59,19 @@ fn what_is_not_seen_is_left_out() {
 }
 
 #[test]
+fn a_group_of_several_clusters_stands_where_most_of_it_is() {
+    let held = |k, held: &[Vec<u32>], is_seen: [bool; 5]| {
+        let groups = tree_of(&five(), &five().groups(k, held), &is_seen);
+        shape(&groups, 0)
+    };
+    let all = [true; 5];
+    assert_eq!(held(2, &[vec![5, 4]], all), "(0:[0, 1, 4] 1:[2, 3])");
+    assert_eq!(held(3, &[vec![4, 0]], all), "((0:[0, 4] 1:[1]) 2:[2, 3])");
+    assert_eq!(held(2, &[vec![5, 4]], [false, false, true, true, true]), "(1:[2, 3] 0:[4])");
+    assert_eq!(held(1, &[vec![5, 7]], all), "0:[0, 1, 2, 3, 4]");
+}
+
+#[test]
 fn one_leaf_is_one_group_and_none_is_none() {
     let one = Dendrogram::new(1, vec![]).unwrap();
     assert_eq!(shape(&tree(&one, 1, &[true]), 0), "0:[0]");

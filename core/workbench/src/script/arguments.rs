@@ -56,6 +56,12 @@ impl<'a> Arguments<'a> {
         Ok(TrackId(self.whole(at, "track")?))
     }
 
+    /// A group by its number, which counts from 1; returned from 0.
+    pub(super) fn group(&self, at: usize) -> Result<u32, ScriptError> {
+        let number = self.whole(at, "group")?.checked_sub(1);
+        number.ok_or_else(|| self.wrong(at, "the group as a whole number from 1 on"))
+    }
+
     /// The tracks from a place on.
     pub(super) fn tracks(&self, at: usize) -> Result<TrackSet, ScriptError> {
         (at..self.given.len()).map(|at| self.track(at)).collect()

@@ -12,6 +12,7 @@ use super::{Act, ScriptError, Word};
 use crate::correct::{Step, prepare};
 use crate::error::WorkbenchError;
 use crate::ground::Ground;
+use crate::regroup;
 use crate::retrack::{self, RetrackRequest, Way};
 use crate::session::Session;
 
@@ -124,7 +125,42 @@ pub const WORDS: &[Word] = &[
         does: "take deleted tracks back",
         act: |_, given| Ok(Act::Commit(Transaction::restore_tracks(given.tracks(0)?))),
     },
-    Word { name: "cut", takes: "K", does: "cut the shown clustering into K groups", act: cut },
+    Word {
+        name: "cut",
+        takes: "K",
+        does: "cut the shown clustering into K groups, those made by hand among them",
+        act: cut,
+    },
+    Word {
+        name: "group-merge",
+        takes: "GROUP GROUP",
+        does: "make one group of two, which stays so wherever the cut is",
+        act: |session, given| regrouped(session, &regroup::Step::Merge(given.group(0)?, given.group(1)?)),
+    },
+    Word {
+        name: "group-split",
+        takes: "GROUP",
+        does: "make two groups of one, as they were merged",
+        act: |session, given| regrouped(session, &regroup::Step::Split(given.group(0)?)),
+    },
+    Word {
+        name: "group-take",
+        takes: "GROUP TRACK…",
+        does: "take tracks out of their groups into this one",
+        act: |session, given| regrouped(session, &regroup::Step::Take(given.tracks(1)?, given.group(0)?)),
+    },
+    Word {
+        name: "group-name",
+        takes: "GROUP [NAME…]",
+        does: "name a group; without a name, forget it",
+        act: group_name,
+    },
+    Word {
+        name: "group-release",
+        takes: "",
+        does: "forget groups made by hand: they are those of the cut again",
+        act: |session, _| regrouped(session, &regroup::Step::Release),
+    },
     Word { name: "undo", takes: "", does: "take the last edit back", act: |_, _| Ok(Act::Undo) },
     Word { name: "redo", takes: "", does: "do again what was undone", act: |_, _| Ok(Act::Redo) },
 ];
@@ -295,6 +331,15 @@ fn cut(session: &mut Session, given: &Arguments<'_>) -> Outcome {
         return Err(ScriptError::Groups { groups, n_tracks });
     }
     Ok(Act::Commit(Transaction::set_cut(groups)))
+}
+
+fn group_name(session: &mut Session, given: &Arguments<'_>) -> Outcome {
+    let name = given.rest(1).join(" ");
+    regrouped(session, &regroup::Step::Name(given.group(0)?, (!name.is_empty()).then_some(name)))
+}
+
+fn regrouped(session: &Session, step: &regroup::Step) -> Outcome {
+    Ok(Act::Commit(regroup::prepare(&session.project, step)?))
 }
 
 /// The number of a new track.

@@ -127,12 +127,17 @@ pub(super) fn cut(state: &mut State, by: i64) -> Vec<Effect> {
         complain(state, "there is no hierarchy to cut; c groups the tracks");
         return Vec::new();
     };
-    let k = (i64::from(groups.k) + by).clamp(1, i64::from(groups.dendrogram.n_leaves()).max(1));
-    let k = u32::try_from(k).unwrap_or(1);
-    if k == groups.k {
-        say(state, format!("{k} groups is as far as it goes"));
+    let n_groups = i64::try_from(groups.shown.len()).unwrap_or(i64::MAX);
+    let wanted = n_groups.saturating_add(by).clamp(1, i64::from(groups.dendrogram.n_leaves()).max(1));
+    // What is held by hand is not opened, nor does it vanish in another group.
+    let cut = groups.at(u32::try_from(wanted).unwrap_or(1));
+    if cut.of == groups.shown.of {
+        let by_hand = if groups.held.is_empty() { "" } else { ": those made by hand stay" };
+        let line = format!("{n_groups} groups is as far as it goes{by_hand}");
+        say(state, line);
         return Vec::new();
     }
+    let k = u32::try_from(cut.len()).unwrap_or(u32::MAX);
     vec![Effect::Commit(Transaction::set_cut(k), UNDO)]
 }
 

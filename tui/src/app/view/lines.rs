@@ -45,7 +45,7 @@ fn facts(state: &State, nth: usize) -> Vec<(u8, String)> {
     if progress.total() > 0 {
         facts.push((1, format!("{} to review, {} done", progress.open, progress.judged.done())));
     }
-    facts.extend(state.groups.as_ref().map(|groups| (4, counted(groups.k as usize, "group"))));
+    facts.extend(state.groups.as_ref().map(|groups| (4, counted(groups.shown.len(), "group"))));
     let lens = Lens::shown(state);
     facts.extend((state.marks_all && nth > 1).then(|| (3, format!("1 in {nth} marked"))));
     facts.extend(state.read_only.is_some().then(|| (0, "read only".to_owned())));
