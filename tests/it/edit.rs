@@ -1,6 +1,6 @@
 //! Corrections from a script.
 
-use honami_tests::{Bench, by_track};
+use honami_tests::{Bench, by_track, rows};
 
 #[test]
 fn scripted_corrections_are_answered_and_undone() {
@@ -37,6 +37,59 @@ fn scripted_corrections_are_answered_and_undone() {
     let tracks = by_track(&samples);
     assert!(!tracks.contains_key(&2) && tracks.contains_key(&3));
     assert_eq!(bench.json("spectrum p.honami")["lines"][2]["subject"], "group 2");
+}
+
+#[test]
+fn groups_are_made_by_hand() {
+    let bench = Bench::tracked();
+    bench.json("cluster p.honami --groups 4");
+    let groups = |name: &str| -> Vec<[String; 3]> {
+        bench.json(&format!("export p.honami groups {name}"));
+        let rows = rows(&bench.path(name));
+        rows.iter().map(|row| ["track", "group", "name"].map(|column| row[column].clone())).collect()
+    };
+    let cut = groups("cut.csv");
+    let taken = cut.iter().find(|row| row[1] == "2").unwrap()[0].clone();
+    let script = format!("group-name 1 trunk\ngroup-merge 1 3\ngroup-take 1 {taken}\n");
+    let said = bench.edit("p.honami", &script).text();
+    for words in ["group 1 named trunk", "groups 1 and 3 merged: ", "taken into group 1"] {
+        assert!(said.contains(words), "{words} is not in {said}");
+    }
+    let by_hand = groups("hand.csv");
+    let number = |row: &[String; 3]| row[1].parse::<u32>().unwrap();
+    for (was, is) in cut.iter().zip(&by_hand) {
+        let is_trunk = was[1] == "1" || was[1] == "3" || was[0] == taken;
+        assert_eq!((is[2] == "trunk", is[1] == "1"), (is_trunk, is_trunk), "{was:?} became {is:?}");
+    }
+    // Group 4 is the third now, unless nothing was left of the second.
+    let n_groups = by_hand.iter().map(number).max().unwrap();
+    assert!((2..=3).contains(&n_groups));
+    let lines = bench.json("spectrum p.honami");
+    let of = |line: &&serde_json::Value| line["subject"] == "group 1";
+    let line = lines["lines"].as_array().unwrap().iter().find(of).unwrap();
+    let n_trunk = by_hand.iter().filter(|row| row[1] == "1").count() as u64;
+    assert!((2..=n_trunk).contains(&line["tracks"].as_u64().unwrap()), "{line} of {n_trunk}");
+    let coherence = &line["coherence"];
+    assert!(coherence.is_null() || (0.0..=1.0).contains(&coherence.as_f64().unwrap()), "{coherence}");
+    assert_eq!(bench.json("grow p.honami m.bvh")["groups"], n_groups);
+    // Wherever the cut is, the trunk is the same.
+    assert!(bench.edit("p.honami", "cut 6").text().contains("cut into 6 groups"));
+    let trunk = |rows: &[[String; 3]]| -> Vec<String> {
+        rows.iter().filter(|row| row[2] == "trunk").map(|row| row[0].clone()).collect()
+    };
+    assert_eq!(trunk(&groups("six.csv")), trunk(&by_hand));
+    assert_eq!(bench.edit("p.honami", "undo\nundo\nundo\nundo\n").text().lines().count(), 4);
+    assert_eq!(groups("undone.csv"), cut);
+    for (script, words) in [
+        ("group-merge 1 9", "there are groups 1 to 4, no group 9"),
+        ("group-merge 1 0", "wanted the group as a whole number from 1 on, got 0"),
+        ("group-take 1 99999", "track 99999 is in no group"),
+        ("group-release", "no group was made by hand"),
+    ] {
+        let ran = bench.edit("p.honami", script);
+        assert_eq!(ran.code, Some(1), "{script}: {ran:?}");
+        assert!(ran.stderr.contains(words), "{script}: {words:?} is not in {:?}", ran.stderr);
+    }
 }
 
 #[test]

@@ -19,6 +19,7 @@ pub mod files;
 mod fixture;
 pub mod form;
 mod fuzzy;
+pub mod groups;
 mod history;
 mod jobs;
 pub mod keymap;

@@ -195,6 +195,11 @@ table! {
     RunClusterer "cluster" ["c"] [Review "cluster"] "group the tracks by their movement"
     MoreGroups "more-groups" ["+" "="] [Review "" Dial "gain" Sketch "step"] "one group more; at the dial, more gain; while drawing, a step twice as large"
     FewerGroups "fewer-groups" ["-"] [Review "" Dial "gain" Sketch "step"] "one group fewer; at the dial, less gain; while drawing, a step half as large"
+    MergeGroups "merge-groups" ["G m"] [Review ""] "merge the selected track's group with another: they stay one wherever the cut is"
+    SplitGroup "split-group" ["G s"] [Review ""] "split the selected track's group in two, as it was merged"
+    TakeIntoGroup "take-into-group" ["G t"] [Review ""] "take the picked tracks, else the selected one, into another group"
+    NameGroup "name-group" ["G n"] [Review ""] "name the selected track's group"
+    ReleaseGroups "release-groups" ["G r"] [Review ""] "forget the groups made by hand: they are those of the cut again"
     Undo "undo" ["u"] [Review ""] "undo: take the last edit back"
     Redo "redo" ["Ctrl-r"] [Review ""] "redo: do again what was undone"
     // Looking.

@@ -22,11 +22,12 @@ use honami_workbench::session::Session;
 use honami_workbench::store::{Project, StoreError};
 use honami_workbench::track::{self, TrackRequest};
 use honami_workbench::used::Used;
-use honami_workbench::{correct, dense, versus};
+use honami_workbench::{correct, dense, regroup, versus};
 
 use super::command_log::{self, Origin};
 use super::correcting::{Answer, Ask};
 use super::dense::Measuring;
+use super::groups::Groups;
 use super::jobs::{Done, Running, Work};
 use super::offering::Offering;
 use super::rebuilding::Rebuilding;
@@ -34,7 +35,7 @@ use super::recovery::Recovery;
 use super::reviewing::Reviewing;
 use super::seat::Seat;
 use super::state::{Job, Notice, State};
-use super::tracks::{Groups, TrackRow};
+use super::tracks::TrackRow;
 use super::update::{Effect, Fact, Hint, Judge};
 use crate::term::signals::Waker;
 
@@ -193,6 +194,8 @@ impl World {
             Effect::Commit(transaction, hint) => self.commit(transaction, hint),
             Effect::Judge(found) => self.judge(found),
             Effect::Correct(step, hint) => self.correct(&step, hint),
+            Effect::Regroup(step, hint) => regroup::prepare(&self.session.project, &step)
+                .and_then(|transaction| self.commit(transaction, hint)),
             Effect::Study(track) => {
                 self.studied = Some(track);
                 self.layers().map(|fact| fact.into_iter().collect())
@@ -605,9 +608,16 @@ impl World {
                 let stale = project.is_stale(shown.id)?.map_or("", |_| ", stale");
                 let id = &clustering.provenance.plugin_id;
                 let what = format!("by {}{stale}", id.rsplit('.').next().unwrap_or(id));
-                let tree = (clustering.tracks, clustering.dendrogram);
-                let held = project.document().held_groups(shown.id);
-                Some(Groups::new(what, tree, (shown.k, held), clustering.outlier_frames))
+                let document = project.document();
+                let mut groups = Groups::new(
+                    what,
+                    (clustering.tracks, clustering.dendrogram),
+                    (shown.k, document.held_groups(shown.id)),
+                    clustering.outlier_frames,
+                );
+                let name = |node| document.group_name(shown.id, node).map(str::to_owned);
+                groups.names = groups.shown.mains().map(name).collect();
+                Some(Box::new(groups))
             }
         };
         let tracker = match project.document().runs().last() {

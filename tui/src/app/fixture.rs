@@ -20,10 +20,11 @@ use ratatui::layout::Rect;
 
 use super::correcting::{Answer, Ask};
 use super::form::{Plugin, Task};
+use super::groups::Groups;
 use super::layout::Lens;
 use super::prints::Print;
 use super::state::State;
-use super::tracks::{Groups, TrackRow};
+use super::tracks::TrackRow;
 use super::update::{Effect, Fact, Msg, update};
 use super::view::Shot;
 use crate::term::input::{Mouse, MouseKind};
@@ -257,6 +258,39 @@ pub(super) fn crowd(state: &mut State) {
         row
     };
     state.tracks.extend((8..480).map(still));
+}
+
+/// The crowd's tracks in groups of several sizes, `k` of which are shown: in each every track is merged higher than the
+/// one before, and of the groups neighbours first.
+pub(super) fn grove(state: &mut State, k: u32) {
+    crowd(state);
+    let tracks: Vec<TrackId> = state.tracks.iter().map(|row| row.id).collect();
+    let n = tracks.len() as u32;
+    let (mut merges, mut roots): (Vec<Merge>, Vec<(u32, u32)>) = (Vec::new(), Vec::new());
+    let mut merge = |a: (u32, u32), b: (u32, u32), height: f64| {
+        merges.push(Merge { a: a.0, b: b.0, height, size: a.1 + b.1 });
+        (n + merges.len() as u32 - 1, a.1 + b.1)
+    };
+    let mut leaves = 0..n;
+    for (nth, size) in [31, 9, 60, 24, 3, 14, 45, 1].into_iter().cycle().enumerate() {
+        let Some(first) = leaves.next() else { break };
+        let join = |root, (step, leaf)| {
+            merge(root, (leaf, 1), 1.0 + 0.02 * f64::from(step) + 0.1 * (nth % 3) as f64)
+        };
+        roots.push((1_u32..).zip(leaves.by_ref().take(size - 1)).fold((first, 1), join));
+    }
+    let mut height = 4.0;
+    while roots.len() > 1 {
+        let pairs = std::mem::take(&mut roots);
+        for (nth, pair) in pairs.chunks(2).enumerate() {
+            let joined = |b: &(u32, u32)| merge(pair[0], *b, height * (1.0 + 0.07 * nth as f64));
+            roots.push(pair.get(1).map_or(pair[0], joined));
+        }
+        height *= 2.2;
+    }
+    let dendrogram = Dendrogram::new(n, merges).expect("a tree");
+    state.groups =
+        Some(Groups::new("by bod".to_owned(), (tracks, dendrogram), (k, &[]), vec![30, 31, 32, 77]));
 }
 
 pub(super) fn groups(k: u32) -> Groups {

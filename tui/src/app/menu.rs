@@ -11,6 +11,7 @@ use super::action::{Action, TABLE};
 use super::files::{Lead, Listing};
 use super::form::Plugin;
 use super::fuzzy;
+use super::groups::Groups;
 use super::keymap::KeyMap;
 use super::state::{Mode, State};
 use super::tracks::TrackRow;
@@ -26,6 +27,10 @@ pub enum Choice {
     Swap(TrackId),
     /// Joins it to the selected track.
     Join(TrackId),
+    /// Merges the selected track's group with it, which counts from 0.
+    MergeGroup(u32),
+    /// Takes the picked tracks, else the selected one, into it.
+    TakeInto(u32),
     /// Makes this run the first of two beside each other.
     First(RunId),
     /// Puts these two runs beside each other.
@@ -116,6 +121,21 @@ impl Menu {
                 detail: group.map_or(doubt.clone(), |g| format!("group {}  {doubt}", g + 1)),
                 keys: String::new(),
                 choice: choice(row.id),
+            }
+        });
+        Self::new(title, rows.collect(), Mode::Review)
+    }
+
+    /// Every group but one, to do something with.
+    #[must_use]
+    pub fn of_groups(groups: &Groups, but: u32, title: &'static str, choice: fn(u32) -> Choice) -> Self {
+        let rows = (0..).zip(groups.sizes()).filter(|(group, _)| *group != but).map(|(group, size)| {
+            let name = groups.names.get(group as usize).and_then(Option::as_deref).unwrap_or_default();
+            Row {
+                label: format!("group {} {name}", group + 1),
+                detail: format!("{size} {}", if size == 1 { "track" } else { "tracks" }),
+                keys: String::new(),
+                choice: choice(group),
             }
         });
         Self::new(title, rows.collect(), Mode::Review)

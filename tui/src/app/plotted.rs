@@ -6,6 +6,7 @@ use honami_model::clip::FrameTimes;
 use honami_model::track::{Span, TrackId};
 use honami_workbench::plots::Plots;
 
+use super::panel::Panel;
 use super::state::State;
 
 /// Curves, of what and in which state of the tracks.
@@ -45,12 +46,14 @@ pub struct Plotted {
 }
 
 impl Plotted {
-    /// What is to be plotted in a state: the selected track, or its group where that is wanted and there is one.
+    /// What is to be plotted in a state: the selected track, or its group where that is wanted and there is one, as
+    /// among the groups.
     #[must_use]
     pub fn subject(state: &State) -> Option<Subject> {
         let track = state.selected_row()?.id;
         let group = state.groups.as_ref().and_then(|groups| groups.of(track));
-        Some(group.filter(|_| state.plotted.of_group).map_or(Subject::Track(track), Subject::Group))
+        let is_wanted = state.plotted.of_group || state.panel == Some(Panel::Groups);
+        Some(group.filter(|_| is_wanted).map_or(Subject::Track(track), Subject::Group))
     }
 
     /// The curves, if they are of what is to be plotted; those of an earlier state of it until then.

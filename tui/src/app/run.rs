@@ -313,9 +313,9 @@ impl App {
         Ok(false)
     }
 
-    /// Has the curves of the plots worked out, and takes them when they are.
+    /// Has the curves of the plots and the figures of a group worked out, and takes them when they are.
     fn plot(&mut self) -> anyhow::Result<()> {
-        if self.state.panel == Some(Panel::Plots)
+        if matches!(self.state.panel, Some(Panel::Plots | Panel::Groups))
             && let Some(PlotRequest { subject, tracks, times }) = Plotted::request(&mut self.state)
         {
             self.plotting.ask(move || (subject, Arc::new(plots::of(&tracks, &times))))?;

@@ -14,6 +14,7 @@ use super::command_log::CommandLog;
 use super::correcting::{Moving, Tool};
 use super::dense::Dense;
 use super::form::{Form, Plugin, Used};
+use super::groups::Groups;
 use super::history::Tree;
 use super::keymap::KeyMap;
 use super::lesson::Lesson;
@@ -26,7 +27,7 @@ use super::queue::{Looked, Opened};
 use super::ranging::Ranging;
 use super::recovery::Recovery;
 use super::sketching::Sketching;
-use super::tracks::{Groups, TrackRow};
+use super::tracks::TrackRow;
 use super::versus::Versus;
 use super::view::theme::Theme;
 use crate::term::capabilities::Pixels;
@@ -178,6 +179,8 @@ pub enum Mode {
     Prompt(String),
     /// Typing a name for the selected track.
     Name(String),
+    /// Typing a name for the selected track's group.
+    GroupName(String),
     /// Typing the letters on a track.
     Label(String),
     /// Going about in the undo tree.
@@ -205,7 +208,7 @@ impl Mode {
             Self::Form(_) => Context::Form,
             Self::Menu(_) => Context::Menu,
             Self::Dial(_) => Context::Dial,
-            Self::Prompt(_) | Self::Name(_) => Context::Prompt,
+            Self::Prompt(_) | Self::Name(_) | Self::GroupName(_) => Context::Prompt,
             Self::Label(_) => Context::Label,
             Self::History { .. } => Context::History,
         }

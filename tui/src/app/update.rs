@@ -3,6 +3,7 @@
 mod actions;
 mod edit;
 mod facts;
+mod groups;
 mod history;
 mod logged;
 mod look;
@@ -30,6 +31,7 @@ use honami_workbench::cluster::ClusterRequest;
 use honami_workbench::correct::Step;
 use honami_workbench::offer::Wish;
 use honami_workbench::progress::Patience;
+use honami_workbench::regroup;
 use honami_workbench::retrack;
 use honami_workbench::track::TrackRequest;
 
@@ -78,6 +80,8 @@ pub enum Effect {
     Commit(Transaction, Hint),
     /// Correct whole tracks or ranges of them, and say what may be done next.
     Correct(Step, Hint),
+    /// Change the shown groups by hand, and say what may be done next.
+    Regroup(regroup::Step, Hint),
     /// Tell what a track is made from, now and after every change until an edit is committed.
     Study(TrackId),
     /// Work something out behind the screen for the studied track.
@@ -197,7 +201,7 @@ fn pressed(state: &mut State) {
 
 /// Largest number before a command.
 const COUNT_MAX: u32 = 999_999;
-/// Longest name of a track, characters.
+/// Longest name of a track or a group, characters.
 const NAME_MAX: usize = 60;
 /// Longest text typed into a menu or a form, characters.
 const TYPED_MAX: usize = 256;
@@ -237,7 +241,7 @@ fn on_text(state: &mut State, text: &str) {
     match &mut state.mode {
         Mode::Menu(menu) => menu.retype(|typed| append(typed, chars, TYPED_MAX)),
         Mode::Prompt(typed) => append(typed, chars.filter(char::is_ascii_digit), 9),
-        Mode::Name(typed) => append(typed, chars, NAME_MAX),
+        Mode::Name(typed) | Mode::GroupName(typed) => append(typed, chars, NAME_MAX),
         Mode::Form(form) => {
             if form.typed.is_none()
                 && let Some(first) = chars.next()
@@ -308,6 +312,8 @@ fn choose(state: &mut State) -> Vec<Effect> {
         }
         Some(Choice::Swap(track)) => tracks::swap(state, track),
         Some(Choice::Join(track)) => tracks::join(state, track),
+        Some(Choice::MergeGroup(group)) => groups::merge(state, group),
+        Some(Choice::TakeInto(group)) => groups::take(state, group),
         Some(Choice::Frame(frame)) => {
             time::go(state, frame);
             Vec::new()
@@ -332,6 +338,8 @@ fn open_menu(state: &mut State, title: &'static str) {
 
 #[cfg(test)]
 mod bindings_tests;
+#[cfg(test)]
+mod groups_tests;
 #[cfg(test)]
 mod keys_tests;
 #[cfg(test)]

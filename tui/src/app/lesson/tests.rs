@@ -34,7 +34,7 @@ fn carry_out(state: &mut State, effect: &Effect) {
         }
         Effect::Study(track) => Fact::Layers(fixture::layers(state, *track).map(Arc::new)),
         Effect::Undo(_) => Fact::History(Vec::new(), EntryId(0)),
-        Effect::Cluster(_) => Fact::Groups(fixture::state().groups),
+        Effect::Cluster(_) => Fact::Groups(fixture::state().groups.map(Box::new)),
         _ => return,
     };
     update(state, Msg::Fact(fact));

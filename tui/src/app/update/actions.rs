@@ -4,8 +4,8 @@ use std::ops::Range;
 use std::path::PathBuf;
 
 use super::{
-    Action, Effect, Mode, State, choose, complain, edit, history, look, motion, mouse, moving, open_menu,
-    pick, queue, ranges, recovery, say, sketch, time, tracks, versus,
+    Action, Effect, Mode, State, choose, complain, edit, groups, history, look, motion, mouse, moving,
+    open_menu, pick, queue, ranges, recovery, say, sketch, time, tracks, versus,
 };
 use honami_model::judgement::Verdict;
 use honami_model::track::{Status, TrackSet};
@@ -200,6 +200,11 @@ fn correct(state: &mut State, action: Action) -> Vec<Effect> {
         Action::TakeA => return versus::take(state, 0),
         Action::TakeB => return versus::take(state, 1),
         Action::NameTrack => tracks::begin_name(state),
+        Action::MergeGroups => groups::choose_other(state, "merge with", Choice::MergeGroup),
+        Action::SplitGroup => return groups::split(state),
+        Action::TakeIntoGroup => groups::choose_other(state, "take into", Choice::TakeInto),
+        Action::NameGroup => groups::begin_name(state),
+        Action::ReleaseGroups => return groups::release(state),
         Action::GoOn => return recovery::go_on(state),
         Action::WaitOn => return recovery::answer(state, Patience::Wait),
         Action::EndPlugin => return recovery::answer(state, Patience::End),
@@ -234,7 +239,7 @@ fn steer(state: &mut State, dx: f32, dy: f32, px: f32) -> Vec<Effect> {
         Mode::Menu(menu) => menu.step(rows),
         Mode::Dial(_) => motion::steer(state, f64::from(dx), f64::from(dy)),
         Mode::History { .. } => history::step(state, rows),
-        Mode::Prompt(_) | Mode::Name(_) | Mode::Label(_) => {}
+        Mode::Prompt(_) | Mode::Name(_) | Mode::GroupName(_) | Mode::Label(_) => {}
     }
     Vec::new()
 }
@@ -263,6 +268,7 @@ fn accept(state: &mut State) -> Vec<Effect> {
             Vec::new()
         }
         Mode::Name(_) => tracks::name(state),
+        Mode::GroupName(_) => groups::name(state),
         Mode::History { .. } => history::jump(state),
         Mode::Label(_) => Vec::new(),
         Mode::Form(form) if form.typed.is_some() => {
@@ -362,7 +368,7 @@ fn erase(state: &mut State) -> Vec<Effect> {
         Mode::Menu(menu) => menu.retype(|typed| {
             typed.pop();
         }),
-        Mode::Prompt(typed) | Mode::Name(typed) => {
+        Mode::Prompt(typed) | Mode::Name(typed) | Mode::GroupName(typed) => {
             typed.pop();
         }
         Mode::Form(form) => {

@@ -13,12 +13,13 @@ use crate::app::correcting::Answer;
 use crate::app::dense::FieldOf;
 use crate::app::files::Listing;
 use crate::app::form::{Plugin, Used};
+use crate::app::groups::Groups;
 use crate::app::menu::Menu;
 use crate::app::plotted::Subject;
 use crate::app::prints::Print;
 use crate::app::recovery::Recovery;
 use crate::app::state::{Display, Job, Link, Notice};
-use crate::app::tracks::{Groups, TrackRow};
+use crate::app::tracks::TrackRow;
 use honami_workbench::plots::Plots;
 use honami_workbench::versus::{Compared, Entrant};
 
@@ -30,7 +31,7 @@ pub enum Fact {
     /// This has changed of the review.
     Review(Vec<Told>),
     /// The shown clustering is this now.
-    Groups(Option<Groups>),
+    Groups(Option<Box<Groups>>),
     /// The tracker whose run is on top.
     Tracker(Option<String>),
     /// What a track is made from; `None` where it is not shown any more.
@@ -106,7 +107,7 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
             told.into_iter().for_each(|(track, segments)| state.review.set(track, segments));
         }
         Fact::Groups(groups) => {
-            state.groups = groups;
+            state.groups = groups.map(|groups| *groups);
             state.plotted.revision += 1;
         }
         Fact::Plots(subject, plots) => state.plotted.plots = Some((subject, plots)),

@@ -27,7 +27,7 @@ pub(super) fn on_mouse(state: &mut State, mouse: Mouse) -> Vec<Effect> {
                     }
                 }
                 Mode::History { .. } => history::step(state, by),
-                Mode::Dial(_) | Mode::Prompt(_) | Mode::Name(_) | Mode::Label(_) => {}
+                Mode::Dial(_) | Mode::Prompt(_) | Mode::Name(_) | Mode::GroupName(_) | Mode::Label(_) => {}
             }
         }
         MouseKind::Press(1 | 2) => state.dragged = Some((mouse.column, mouse.row)),

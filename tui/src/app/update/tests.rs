@@ -85,6 +85,7 @@ pub(super) fn line(state: &State, effects: &[Effect]) -> String {
         Mode::Label(typed) => format!("label {typed}"),
         Mode::Prompt(typed) => format!("prompt {typed:?}"),
         Mode::Name(typed) => format!("name {typed:?}"),
+        Mode::GroupName(typed) => format!("name of the group {typed:?}"),
     }];
     words.push(format!(
         "frame {} track {}",

@@ -46,8 +46,8 @@ pub enum Pick {
 
 /// A panel that lists something.
 trait List {
-    /// What stands above it: as much as leaves half of the panel to its rows.
-    fn above(&self) -> Vec<Line<'static>> {
+    /// What stands above it in so many cells: as much as leaves half of the panel to its rows.
+    fn above(&self, _columns: u16, _rows: u16) -> Vec<Line<'static>> {
         Vec::new()
     }
     /// The text of the current row, where it is worth to be read to its end.
@@ -89,8 +89,9 @@ fn list<'a>(state: &'a State, panel: Panel) -> Option<Box<dyn List + 'a>> {
 
 /// What stands above a list in a panel, as far as there is room.
 fn above(list: &dyn List, area: Rect) -> Vec<Line<'static>> {
-    let mut lines = list.above();
-    lines.truncate(usize::from(area.height.saturating_sub(2) / 2));
+    let rows = area.height.saturating_sub(2) / 2;
+    let mut lines = list.above(area.width, rows);
+    lines.truncate(rows.into());
     lines
 }
 
@@ -176,7 +177,7 @@ pub fn pick_at(state: &State, area: Rect, row: u16) -> Option<Pick> {
         return Some(Pick::Panel(Panel::after(Some(panel))));
     }
     let list = list?;
-    let top = above(&*list, area).len() + 2;
+    let top = above(&*list, inside(area)).len() + 2;
     let at = usize::from(row.checked_sub(area.y)?).checked_sub(top)?;
     let below = below(&*list, inside(area)).len() as u16;
     let area = Rect { height: area.height.saturating_sub(below), ..area };

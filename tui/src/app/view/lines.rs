@@ -313,6 +313,7 @@ pub(super) fn hints(state: &State, area: Rect, frame: &mut Frame) {
     let mut left = match &state.mode {
         Mode::Prompt(typed) => format!("go to frame {typed}▏"),
         Mode::Name(typed) => format!("name {typed}▏"),
+        Mode::GroupName(typed) => format!("name of the group {typed}▏"),
         Mode::Label(typed) => format!("letters of a track {typed}▏"),
         Mode::Move(moving) => moving_words(moving, state.frame),
         Mode::Sketch(sketching) => sketching_words(sketching, state.frame),

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use super::*;
 use crate::app::correcting::Answer;
 use crate::app::fixture;
+use crate::app::groups::Groups;
 use crate::app::plotted::{Plotted, Subject};
 use crate::app::state::{Job, Link, Notice};
 use crate::app::update::{Fact, Msg, update};
@@ -267,6 +268,36 @@ fn dense_motion_colours_the_whole_picture() {
     fixture::press(&mut state, "v d 1 8 l Enter");
     let dialled = picture::compose(&state, &shot);
     assert_eq!([dialled[0], dialled[pixels.len() - 1]], [shot.pixels[0], [0, 255, 255]], "only to the left");
+}
+
+#[test]
+fn screens_of_groups() {
+    let (small, large) = ((80, 24), (120, 40));
+    check("dendrogram_80x24", small, "j j", |state| grove(state, 8));
+    check("dendrogram_20_80x24", small, "9 j", |state| grove(state, 20));
+    check("dendrogram_120x40", large, "9 j", |state| grove(state, 13));
+    check("dendrogram_wide_120x40", large, "P w", |state| grove(state, 20));
+    check("dendrogram_mono_80x24", small, "j j", |state| {
+        grove(state, 8);
+        state.mono = true;
+    });
+    check("held_80x24", small, "", |state| {
+        let groups = fixture::groups(3);
+        let tree = (groups.tracks.clone(), groups.dendrogram.clone());
+        let mut groups = Groups::new(groups.what, tree, (2, &[vec![0, 2]]), Vec::new());
+        groups.names[0] = Some("left limb".to_owned());
+        state.groups = Some(groups);
+        fixture::press(state, "P g");
+    });
+    check("group_name_80x24", small, "G n l e f t", |_| {});
+    check("merge_groups_80x24", small, "G m", |state| grove(state, 8));
+}
+
+/// Many groups beside the picture, with the figures of the selected one.
+fn grove(state: &mut State, k: u32) {
+    fixture::grove(state, k);
+    fixture::press(state, "P g");
+    plot(state);
 }
 
 /// Works out what the plots show.

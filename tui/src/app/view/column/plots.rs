@@ -160,7 +160,7 @@ fn spectrum(sway: &Sway, area: Rect, frame: &mut Frame) {
 
 /// The unit of an axis up to so many hertz, and how many of it are one hertz: a clip with a picture a minute sways by
 /// the hour.
-fn unit(top_hz: f64) -> (&'static str, f64) {
+pub(super) fn unit(top_hz: f64) -> (&'static str, f64) {
     match top_hz {
         hz if hz >= 0.1 => ("Hz", 1.0),
         hz if hz >= 1e-3 => ("mHz", 1e3),

@@ -119,7 +119,7 @@ fn follows(shown: &honami_model::track::Span, paired: &Paired) -> Vec<(Follows, 
 }
 
 impl List for VersusList<'_> {
-    fn above(&self) -> Vec<Line<'static>> {
+    fn above(&self, _columns: u16, _rows: u16) -> Vec<Line<'static>> {
         let Some(versus) = self.versus else { return Vec::new() };
         let named = |(letter, run): (char, &honami_workbench::versus::Entrant)| {
             Line::from(vec![Span::styled(format!("{letter} "), style::BOLD), Span::raw(run.name())])
