@@ -27,7 +27,7 @@ fn it_is_told_in_one_line() {
         (
             vec![same, apart, blind.clone()],
             format!(
-                "{median} 0.25 px in the median, 1 of 3 features by 1 px or more, and sees 5 samples fewer"
+                "{median} 0.12 px in the median, 1 of 3 features by 1 px or more, and sees 5 samples fewer"
             ),
         ),
         (vec![blind], "it sees nothing that the build before sees, and sees 5 samples fewer".to_owned()),
