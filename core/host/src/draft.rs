@@ -4,9 +4,7 @@ use crate::context::CallContext;
 use crate::error::HostError;
 use crate::instance::{Handle, Request};
 use crate::reply::{self, Reply};
-use crate::types::Tracks;
-
-pub use crate::types::Node;
+use crate::types::{Node, Tracks};
 
 /// A structure builder at work.
 #[derive(Debug)]
