@@ -22,10 +22,6 @@ use pairs::Features;
 const TURNED_MOST: usize = 15;
 /// Weights fall with the singular value to this power.
 const FALL: f64 = 0.25;
-/// Leaves flutter where more than this share of all motion is left without the strongest components, and the spectrum of
-/// that is less flat than this.
-const MUCH_LEFT: f64 = 0.18;
-const UNEVEN: f64 = 0.7;
 
 /// What makes two tracks alike.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -127,7 +123,7 @@ fn compared(
     let table = Table::new(positions, &mut |done| keep_going(0.5 * done))?;
     let bod = Bod::new(&table);
     let rest = residual(&table, &bod);
-    let flutters = rest.as_ref().is_some_and(flutters);
+    let flutters = rest.as_ref().is_some_and(Residual::is_flutter);
     let take_down = match options.flutter {
         Flutter::Keep => false,
         Flutter::TakeDown => true,
@@ -233,10 +229,4 @@ fn steps(bod: &Bod, n_frames: usize) -> (Features, usize) {
         }
     }
     (Features::correlated(lists).unit(), n)
-}
-
-/// Whether tracks look like leaves that flutter each for itself: much is left of them without their strongest
-/// components, and at some frequencies more than at others.
-fn flutters(residual: &Residual) -> bool {
-    residual.share > MUCH_LEFT && residual.flatness() < UNEVEN
 }

@@ -1,6 +1,7 @@
 //! Decompositions known by hand, noise whose law is known, and tables that are no tables.
 
 use rand::{RngExt, SeedableRng};
+use realfft::num_complex::Complex;
 
 use super::*;
 
@@ -226,43 +227,116 @@ fn what_cannot_be_decomposed_is_refused_by_name_and_what_stands_still_has_no_com
     assert_eq!(Bod::new(&table(&tracks(5, 2, |track, frame| Some(at(track, frame))))).len(), 1);
 }
 
+/// Geometric over arithmetic mean: 1 of white noise.
+fn flatness(power: &[f64]) -> f64 {
+    let n = power.len() as f64;
+    (power.iter().map(|p| p.ln()).sum::<f64>() / n).exp() / (power.iter().sum::<f64>() / n)
+}
+
+const LEAVES: usize = 80;
+const CLIP: usize = 256;
+
+/// Two swings of all leaves, little noise, and what is added to them, along an axis.
+fn leaves(more: impl Fn(usize, usize, usize) -> f64) -> Table {
+    let at = two_swings(LEAVES, CLIP, 0.1, 4);
+    table(&tracks(LEAVES, CLIP, |track, frame| {
+        let [x, y] = at(track, frame);
+        Some([x + more(track, frame, 0), y + more(track, frame, 1)])
+    }))
+}
+
+/// Every leaf at frequencies of its own, 30 to 60 cycles of the clip.
+fn flutter(track: usize, frame: usize, axis: usize) -> f64 {
+    let wave = |k: usize| {
+        let cycles = 30.0 + ((track * 7 + (k + 2 * axis) * 11) % 31) as f64;
+        let phase = (track * (3 + k) + 5 * axis) as f64;
+        (std::f64::consts::TAU * cycles * frame as f64 / CLIP as f64 + phase).sin()
+    };
+    wave(0) + wave(1)
+}
+
 #[test]
 fn flutter_is_what_is_left_and_whitening_makes_it_flat() {
-    let (n_tracks, n_frames) = (80, 256);
-    let noise = numbers(4 * n_tracks, 8);
-    // Every leaf at frequencies of its own, 30 to 60 cycles of the clip.
-    let flutter = |track: usize, frame: usize, axis: usize| {
-        let wave = |k: usize| {
-            let phase = 7.0 * noise[4 * track + k];
-            let cycles = 30.0 + ((track * 7 + k * 11) % 31) as f64;
-            (std::f64::consts::TAU * cycles * frame as f64 / n_frames as f64 + phase + axis as f64).sin()
-        };
-        wave(0) + wave(1)
-    };
-    let at = two_swings(n_tracks, n_frames, 0.1, 4);
-    let positions = tracks(n_tracks, n_frames, |track, frame| {
-        let [x, y] = at(track, frame);
-        Some([x + flutter(track, frame, 0), y + flutter(track, frame, 1)])
-    });
-    let table = table(&positions);
-    let bod = Bod::new(&table);
-    let left = residual(&table, &bod).unwrap();
+    let table = leaves(flutter);
+    let left = residual(&table, &Bod::new(&table)).unwrap();
     let mean =
         |range: std::ops::Range<usize>| left.power[range.clone()].iter().sum::<f64>() / range.len() as f64;
     assert!(mean(30..60) > 20.0 * mean(80..120), "{} {}", mean(30..60), mean(80..120));
     let white = whitened(&table, &left);
     let after = residual(&white, &Bod::new(&white)).unwrap();
-    assert!(left.flatness() < 0.5 && after.flatness() > 0.8, "{} {}", left.flatness(), after.flatness());
-    // White noise is white already, and few tracks tell nothing.
-    let noise = numbers(2 * n_tracks * n_frames, 6);
-    let at = |track: usize, frame: usize| {
-        let k = 2 * (track * n_frames + frame);
-        Some([noise[k], noise[k + 1]])
-    };
-    let table = self::table(&tracks(n_tracks, n_frames, at));
-    assert!(residual(&table, &Bod::new(&table)).unwrap().flatness() > 0.98);
-    let few = self::table(&tracks(15, n_frames, at));
+    let [left, after] = [left, after].map(|residual| flatness(&residual.power[1..]));
+    assert!(left < 0.5 && after > 0.8, "{left} {after}");
+    let few = self::table(&tracks(15, CLIP, {
+        let at = two_swings(15, CLIP, 0.3, 4);
+        move |track, frame| Some(at(track, frame))
+    }));
     assert_eq!(residual(&few, &Bod::new(&few)), None);
+}
+
+/// Modes that all leaves share, each at frequencies of its own among those of the flutter, are left as it is and are none.
+#[test]
+fn what_leaves_share_is_no_flutter_nor_is_white_noise() {
+    let amounts = numbers(2 * LEAVES * 31, 12);
+    let modes = |n: usize| {
+        let amounts = &amounts;
+        move |track: usize, frame: usize, axis: usize| -> f64 {
+            let mode = |k: usize| {
+                let cycles = 30.0 + (k as f64 + 0.37) * 30.0 / n as f64;
+                let swing = (std::f64::consts::TAU * cycles * frame as f64 / CLIP as f64 + k as f64).sin();
+                0.6 * amounts[2 * (track * 31 + k) + axis] * swing
+            };
+            (0..n).map(mode).sum()
+        }
+    };
+    let of = |table: &Table| residual(table, &Bod::new(table)).unwrap();
+    let chance = numbers(4 * LEAVES * 60, 13);
+    let own = of(&leaves(|track, frame, axis| {
+        let wave = |k: usize| {
+            let angle = std::f64::consts::TAU * ((30 + k) * frame) as f64 / CLIP as f64;
+            let amounts = &chance[2 * ((2 * track + axis) * 60 + k)..][..2];
+            0.2 * (amounts[0] * angle.sin() + amounts[1] * angle.cos())
+        };
+        (0..60).map(wave).sum()
+    }));
+    assert!(own.is_flutter() && own.own.unwrap() > 0.85 && own.own.unwrap() < 1.05, "{own:?}");
+    for n in [20, 31] {
+        let shared = of(&leaves(modes(n)));
+        assert!(shared.share > 0.04 && shared.own.unwrap() < 0.6 && !shared.is_flutter(), "{n}: {shared:?}");
+    }
+    let noise = numbers(2 * LEAVES * CLIP, 6);
+    let white = of(&leaves(|track, frame, axis| noise[2 * (track * CLIP + frame) + axis]));
+    assert!(white.own.is_none() && !white.is_flutter() && flatness(&white.power[1..]) > 0.9, "{white:?}");
+}
+
+/// Against the singular values themselves; noise comes to 1, one motion of all to 1 / n.
+#[test]
+fn how_much_is_each_tracks_own_is_what_the_formula_says() {
+    let (n_series, loud) = (400, [2, 3, 5, 6, 9]);
+    let n = loud.len() as f64;
+    let power: Vec<f64> = (0..10).map(|k| 0.5 + k as f64).collect();
+    let chance = numbers(20 * n_series, 21);
+    let wave = |series: usize, k: usize| Complex::new(chance[20 * series + k], chance[20 * series + 10 + k]);
+    for alone in [1.0, 0.3, 0.0] {
+        let of = |series: usize, k: usize| {
+            (wave(series, k) * alone + wave(series, 0) * (1.0 - alone)) * power[k].sqrt()
+        };
+        let waves: Vec<Vec<_>> =
+            (0..n_series).map(|series| (0..10).map(|k| of(series, k)).collect()).collect();
+        let table = DMatrix::from_fn(loud.len(), n_series, |row, series| {
+            waves[series][loud[row]] / power[loud[row]].sqrt()
+        });
+        let s = table.singular_values();
+        let [second, fourth] = [2, 4].map(|k| s.iter().map(|s| s.powi(k)).sum::<f64>());
+        let wanted = second * second / (n * fourth) * (1.0 + n / n_series as f64);
+        let own = whiten::own(&waves, &power, &loud).unwrap();
+        assert!((own - wanted).abs() < 1e-9, "{alone}: {own}, wanted {wanted}");
+        // What the covariance of these series, own^2 + common^2 between any two, comes to.
+        let (own_2, common_2) = (alone * alone, (1.0 - alone).powi(2));
+        let fourth = (n - 1.0) * own_2 * own_2 + (own_2 + n * common_2).powi(2);
+        let known = n * (own_2 + common_2).powi(2) / fourth;
+        assert!((own - known).abs() < 0.02, "{alone}: {own}, known {known}");
+    }
+    assert_eq!(whiten::own(&[], &power, &loud[..2]), None);
 }
 
 #[test]

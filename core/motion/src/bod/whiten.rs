@@ -2,11 +2,16 @@
 //!
 //! What is left of the tracks without their strongest components is noise and flutter. Its mean power over
 //! frequency, smoothed, is divided out of every track, so that frequencies at which leaves flutter count less.
+//!
+//! What is left may also be modes of the plant, where it has many. Those are shared by tracks: at the frequencies at which
+//! most is left, few directions have it all. Of flutter every track has its own, and all directions have as much as chance
+//! gives them.
 
 use rayon::prelude::*;
 use realfft::RealFftPlanner;
+use realfft::num_complex::Complex;
 
-use super::{Bod, Table};
+use super::{Bod, Table, product};
 
 /// Components that are taken for motion of the plant.
 const STRONGEST: usize = 15;
@@ -14,6 +19,13 @@ const STRONGEST: usize = 15;
 const SMOOTH: usize = 9;
 /// Power is not divided by less than this share of its median.
 const FLOOR: f64 = 1e-3;
+/// A frequency is loud with more than so many times the median power; of fewer loud ones nothing is said.
+const LOUD: f64 = 3.0;
+const FEWEST_LOUD: usize = 3;
+/// Leaves flutter where more than this share of all motion is left without the strongest components, and it is more each
+/// track's own than this.
+const MUCH_LEFT: f64 = 0.1;
+const OWN: f64 = 0.72;
 
 /// The spectrum of what is left of tracks without their 15 strongest components.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,16 +34,19 @@ pub struct Residual {
     pub power: Vec<f64>,
     /// Share of all motion that is left, 0 to 1.
     pub share: f64,
+    /// How far what is loud is each track's own: near 1 where no track shares it with others, towards 0 where few motions make
+    /// up all of it; `None` of a spectrum without 3 loud frequencies, as white noise has. With Z the n loud frequencies of all
+    /// 2 N series, each over the root of its power, and s its singular values: (Σ s²)² / (n Σ s⁴), over 1 / (1 + n / 2 N),
+    /// which is what it comes to of noise.
+    pub own: Option<f64>,
 }
 
 impl Residual {
-    /// How flat the spectrum is: 1 for white noise, less where it has peaks (geometric over arithmetic mean).
+    /// Whether tracks look like leaves that flutter each for itself: much is left of them without their strongest components,
+    /// at some frequencies more than at others, and there it is each track's own.
     #[must_use]
-    pub fn flatness(&self) -> f64 {
-        let power = &self.power[1..];
-        let n = power.len() as f64;
-        let logarithm = power.iter().map(|p| p.ln()).sum::<f64>() / n;
-        logarithm.exp() / (power.iter().sum::<f64>() / n)
+    pub fn is_flutter(&self) -> bool {
+        self.share > MUCH_LEFT && self.own.is_some_and(|own| own > OWN)
     }
 }
 
@@ -45,22 +60,22 @@ pub fn residual(table: &Table, bod: &Bod) -> Option<Residual> {
     }
     let strongest = bod.sum(STRONGEST, |_| 1.0);
     let plan = RealFftPlanner::<f64>::new().plan_fft_forward(n_frames);
-    let power_of = |(row, told): (&[f64], &[f64])| {
+    let waves_of = |(row, told): (&[f64], &[f64])| {
         let mut left: Vec<f64> = row.iter().zip(told).map(|(v, told)| v - told).collect();
         let square = left.iter().map(|v| v * v).sum::<f64>();
         let mut waves = plan.make_output_vec();
         // Only wrong lengths fail, and these are the transform's own.
         let done = plan.process(&mut left, &mut waves);
         debug_assert!(done.is_ok(), "{done:?}");
-        (waves.iter().map(|wave| wave.norm_sqr()).collect::<Vec<f64>>(), square)
+        (waves, square)
     };
     let rows = table.series().par_chunks(n_frames).zip(strongest.par_chunks(n_frames));
-    let powers: Vec<(Vec<f64>, f64)> = rows.map(power_of).collect();
+    let (waves, squares): (Vec<Vec<Complex<f64>>>, Vec<f64>) = rows.map(waves_of).unzip();
     let mut power = vec![0.0; n_frames / 2 + 1];
-    for (row, _) in &powers {
-        power.iter_mut().zip(row).for_each(|(sum, p)| *sum += p / powers.len() as f64);
+    for row in &waves {
+        power.iter_mut().zip(row).for_each(|(sum, wave)| *sum += wave.norm_sqr() / waves.len() as f64);
     }
-    let left: f64 = powers.iter().map(|(_, square)| square).sum();
+    let left: f64 = squares.iter().sum();
     let all: f64 = table.series().iter().map(|v| v * v).sum();
     if left <= table.rounding_px().powi(2) * table.series().len() as f64 {
         return None;
@@ -68,9 +83,32 @@ pub fn residual(table: &Table, bod: &Bod) -> Option<Residual> {
     let mut power = smoothed(&power);
     let mut sorted = power.clone();
     sorted.sort_by(f64::total_cmp);
-    let floor = FLOOR * sorted[sorted.len() / 2];
-    power.iter_mut().for_each(|p| *p = p.max(floor));
-    (floor > 0.0).then_some(Residual { power, share: left / all })
+    let median = sorted[sorted.len() / 2];
+    power.iter_mut().for_each(|p| *p = p.max(FLOOR * median));
+    // At 0 cycles there is nothing, and the last of an even number of frames is half a frequency.
+    let loud: Vec<usize> = (1..n_frames.div_ceil(2)).filter(|&k| power[k] > LOUD * median).collect();
+    (median > 0.0).then(|| Residual { own: own(&waves, &power, &loud), power, share: left / all })
+}
+
+/// See [`Residual::own`].
+pub(super) fn own(waves: &[Vec<Complex<f64>>], power: &[f64], loud: &[usize]) -> Option<f64> {
+    let n = loud.len();
+    if n < FEWEST_LOUD {
+        return None;
+    }
+    // Z and i Z as real rows: their products are the real and imaginary parts of those of Z, each twice.
+    let mut rows = Vec::with_capacity(4 * n * waves.len());
+    for turn in [Complex::new(1.0, 0.0), Complex::new(0.0, 1.0)] {
+        for &k in loud {
+            let row = || waves.iter().map(move |row| row[k] * turn / power[k].sqrt());
+            rows.extend(row().map(|wave| wave.re).chain(row().map(|wave| wave.im)));
+        }
+    }
+    let gram = product::gram(&rows, 2 * n);
+    let trace: f64 = (0..2 * n).map(|k| gram[k * (2 * n + 1)]).sum();
+    let squares: f64 = gram.iter().map(|product| product * product).sum();
+    let evenness = trace * trace / (2 * n) as f64 / squares;
+    Some(evenness * (1.0 + n as f64 / waves.len() as f64))
 }
 
 /// The same tracks with the spectrum of a residual divided out.
