@@ -1,9 +1,10 @@
-//! Times what groups 2,000 tracks by their components, over 300 and 500 frames, and by normalised cuts, these also 20,000;
-//! prints a JSON line each.
+//! Times what groups 2,000 tracks by their components, over 300 and 500 frames, and by normalised cuts of the tracks
+//! themselves, both also 20,000; prints a JSON line each.
 
 use std::time::Instant;
 
-use honami_motion::{Bod, Criterion, Positions, Table, likeness, likenesses, linkage, ncut};
+use honami_motion::likeness::{Likeness, Making, Options, grouped};
+use honami_motion::{Bod, Criterion, Positions, Table, ncut};
 use rand::{RngExt, SeedableRng};
 
 const N_TRACKS: usize = 2000;
@@ -33,9 +34,12 @@ fn branches(n_tracks: usize, n_frames: usize, has_gaps: bool) -> Positions {
 
 #[expect(clippy::print_stdout, reason = "the result of a benchmark")]
 fn main() -> Result<(), Box<dyn std::error::Error>> {
+    // Merged by Ward's criterion, and not smoothed.
+    let making = Making::Merges(Criterion::Ward);
+    let r1 = Options { likeness: Likeness::Loadings, n_neighbours: 0, making, ..Options::default() };
     for (n_frames, has_gaps) in [(300, false), (500, false), (300, true)] {
         let positions = branches(N_TRACKS, n_frames, has_gaps);
-        let [mut table_ms, mut bod_ms, mut all_ms, mut ward_ms] = [f64::INFINITY; 4];
+        let [mut table_ms, mut bod_ms, mut cuts_ms, mut r1_ms] = [f64::INFINITY; 4];
         let mut n_above = 0;
         for _ in 0..3 {
             let start = Instant::now();
@@ -47,21 +51,28 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             n_above = Bod::new(&table).n_above();
             lap(&mut bod_ms, start);
             let start = Instant::now();
-            let found = likenesses(&positions, &likeness::Options::default(), &mut |_| true)?;
-            lap(&mut all_ms, start);
+            grouped(&positions, &Options::default(), &mut |_| true)?;
+            lap(&mut cuts_ms, start);
             let start = Instant::now();
-            linkage(found.condensed, N_TRACKS, Criterion::Ward)?;
-            lap(&mut ward_ms, start);
+            grouped(&positions, &r1, &mut |_| true)?;
+            lap(&mut r1_ms, start);
         }
         let line = serde_json::json!({
             "n_tracks": N_TRACKS, "n_frames": n_frames, "gaps": has_gaps, "threads": rayon::current_num_threads(),
             "components": n_above, "table_ms": table_ms, "decomposition_ms": bod_ms,
-            "distances_ms": all_ms, "ward_ms": ward_ms,
+            "grouped_ms": cuts_ms, "r1_ms": r1_ms,
         });
         println!("{line}");
     }
     for (n_tracks, n_frames) in [(N_TRACKS, 500), (10 * N_TRACKS, 150)] {
         let positions = branches(n_tracks, n_frames, false);
+        let start = Instant::now();
+        let grouped = grouped(&positions, &Options::default(), &mut |_| true)?;
+        let line = serde_json::json!({
+            "n_tracks": n_tracks, "n_frames": n_frames, "threads": rayon::current_num_threads(),
+            "components": grouped.n_used, "grouped_s": start.elapsed().as_secs_f64(), "residual": grouped.residual,
+        });
+        println!("{line}");
         let start = Instant::now();
         let mut graph_s = 0.0;
         let found = ncut(&positions, &ncut::Options::default(), &mut |done| {

@@ -19,7 +19,7 @@ pub mod swing;
 
 pub use bod::{Bod, Table, denoised};
 pub use composite::{Composite, composite};
-pub use likeness::{Likeness, Likenesses, likenesses};
+pub use likeness::{Grouped, Likeness, grouped};
 pub use linkage::{Criterion, linkage};
 pub use ncut::{Ncut, ncut};
 pub use positions::Positions;

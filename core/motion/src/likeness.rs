@@ -1,27 +1,44 @@
-//! Distances between tracks from their bi-orthogonal decomposition: what moves with the same components is alike.
+//! Groups of tracks by their bi-orthogonal decomposition: what moves with the same components is alike.
 //!
-//! Each track has a feature made from the components above the noise. The distance of two tracks is
+//! Tracks are taken apart into components ([`Bod`]), those above the noise give each track its loadings, loadings are smoothed
+//! by neighbours (`smooth.rs`), and of smoothed loadings a feature is made (`features.rs`), scaled to length 1: how far a track
+//! swings does not matter. From features and mean positions p, s their standard deviations over all N x N pairs of tracks,
+//! comes a hierarchy, either by normalised cuts of the graph of weights
+//!
+//! ```text
+//! w = r^8 exp(-(w_pos |p1 - p2| / s_pos)^2)        r = |rho| (or the cosine) of the two features
+//! ```
+//!
+//! in which each track is joined to 50 others, opening next what falls apart most clearly for its size
+//! ([`Order::Shares`]); or by merging what has the least distance
 //!
 //! ```text
 //! d = w_pos |p1 - p2| / s_pos  +  d_feature / s_feature
 //! ```
 //!
-//! with p the mean positions and s the standard deviations of either distance over all N x N pairs of tracks. What a
-//! track is like is scaled to length 1: how far it swings does not matter. A track that stands still has the feature 0: it
-//! is like others that stand still. Where nothing moves, position alone tells tracks apart.
+//! A track that stands still has the feature 0: it is like others that stand still. Where nothing moves, position alone tells
+//! tracks apart.
 
+mod features;
 mod pairs;
+mod smooth;
 #[cfg(test)]
 mod tests;
 
-use crate::bod::{Bod, Residual, Table, residual, whitened};
-use crate::{MotionError, Positions, pool};
-use pairs::Features;
+use honami_model::hierarchy::Dendrogram;
 
-/// Strongest components of the likeness that no rotation changes.
-const TURNED_MOST: usize = 15;
-/// Weights fall with the singular value to this power.
-const FALL: f64 = 0.25;
+use crate::bod::{Bod, Residual, Table, residual, whitened};
+use crate::ncut::{Graph, Order, divide};
+use crate::{Criterion, MotionError, Positions, linkage, pool};
+use features::Topoi;
+use pairs::{Features, Pairs};
+
+/// Of likeness in cuts: what is but half alike has nearly no edge.
+const SHARPNESS: i32 = 8;
+/// Others that each track is joined to at least, and how often groups are halved at most. A cut may split off a single track,
+/// so there are more of these than halves of halves would need.
+const N_JOINED: usize = 50;
+const N_LEVELS: u32 = 24;
 
 /// What makes two tracks alike.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,21 +61,36 @@ pub enum Flutter {
     Keep,
     /// What the residual's spectrum has more of is taken down ([`whitened`]).
     TakeDown,
-    /// Taken down where [`Likenesses::flutters`].
+    /// Taken down where there is some ([`Residual::is_flutter`]).
     Auto,
 }
 
-/// How distances are made.
+/// How a hierarchy is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Making {
+    /// From above: the whole is cut, and again what falls apart most clearly for its size.
+    Cuts,
+    /// From below: the closest two are merged.
+    Merges(Criterion),
+}
+
+/// How tracks are grouped.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
     /// What makes two tracks alike.
     pub likeness: Likeness,
-    /// Weight of the distance between mean positions.
+    /// Neighbours that each track is averaged with, no more than one in 12 of all tracks that move; 0: none.
+    pub n_neighbours: usize,
+    /// How the hierarchy is made.
+    pub making: Making,
+    /// Weight of the distance between mean positions, w_pos.
     pub position_weight: f64,
     /// The most components, 1 at least.
     pub most: usize,
     /// What is done about flutter.
     pub flutter: Flutter,
+    /// Of the vectors that large graphs are solved from.
+    pub seed: u64,
     /// Threads to work with; 0 for those of the current rayon pool. The result is the same.
     pub n_threads: usize,
 }
@@ -66,22 +98,25 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         Self {
-            likeness: Likeness::Loadings,
+            likeness: Likeness::Steps,
+            n_neighbours: 8,
+            making: Making::Cuts,
             position_weight: 0.6,
             most: 30,
-            flutter: Flutter::Keep,
+            flutter: Flutter::Auto,
+            seed: 0,
             n_threads: 0,
         }
     }
 }
 
-/// Distances between all tracks, with what they were made of.
+/// A hierarchy of tracks, with what it was made of.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Likenesses {
-    /// Number of tracks n.
-    pub n_tracks: usize,
-    /// Distances of the pairs (i, j), i < j, row by row: n (n - 1) / 2, finite, 0 or more.
-    pub condensed: Vec<f64>,
+pub struct Grouped {
+    /// By cuts, halves join at (1 + 1 / (1 + p)) / 2, p = Ncut / sqrt(share of all tracks), or at the height at which their
+    /// group joins another, if that is less; parts that were not connected at 1; tracks of the last groups, along the heaviest
+    /// edges, at (1 - w) / 2. By merges as [`linkage()`] says.
+    pub tree: Dendrogram,
     /// Components of the tracks above the edge of noise.
     pub n_above: usize,
     /// Components that were used; 0 where nothing moves more than noise does.
@@ -92,141 +127,111 @@ pub struct Likenesses {
     pub is_whitened: bool,
     /// Positions that were not seen, and are filled.
     pub n_filled: usize,
-    /// Tracks that are never seen together with others; they are farthest from all.
+    /// Tracks that are never seen together with others: no cut joins them to any, and they are farthest from all.
     pub n_unseen: usize,
+    /// Of the eigenvectors of cuts, as [`crate::Ncut::residual`]; 0 of merges.
+    pub residual: f64,
 }
 
-/// Computes the distance of all pairs of tracks.
+/// Groups tracks by their components.
 ///
-/// `keep_going` is told the share of the work that is done, 0 to 1; `false` stops. O(N T min(N, T) + N^2) time, O(N^2)
-/// memory.
+/// `keep_going` is told the share of the work that is done, 0 to 1; `false` stops. O(N T min(N, T) + N^2 K) time for K
+/// components; O(N T) memory by cuts, and 8 bytes a pair by merges.
 ///
 /// # Errors
-/// [`MotionError`] as [`Table::new`], for options out of range and for a matrix that does not fit in memory.
-pub fn likenesses(
+/// [`MotionError`] as [`Table::new`], for options out of range and for a matrix or graph that does not fit in memory.
+pub fn grouped(
     positions: &Positions,
     options: &Options,
     keep_going: &mut dyn FnMut(f64) -> bool,
-) -> Result<Likenesses, MotionError> {
+) -> Result<Grouped, MotionError> {
     let weight = options.position_weight;
     if !(weight.is_finite() && weight >= 0.0) {
         return Err(MotionError::Option { name: "the weight of position", came: weight });
     }
-    pool::within(options.n_threads, keep_going, |keep_going| compared(positions, options, keep_going))
-}
-
-fn compared(
-    positions: &Positions,
-    options: &Options,
-    keep_going: &mut dyn FnMut(f64) -> bool,
-) -> Result<Likenesses, MotionError> {
-    let table = Table::new(positions, &mut |done| keep_going(0.5 * done))?;
-    let bod = Bod::new(&table);
-    let rest = residual(&table, &bod);
-    let flutters = rest.as_ref().is_some_and(Residual::is_flutter);
-    let take_down = match options.flutter {
-        Flutter::Keep => false,
-        Flutter::TakeDown => true,
-        Flutter::Auto => flutters,
-    };
-    let white = rest.filter(|_| take_down).map(|rest| whitened(&table, &rest));
-    let is_whitened = white.is_some();
-    let bod = white.map_or(bod, |white| Bod::new(&white));
-    if !keep_going(0.7) {
-        return Err(MotionError::Stopped);
-    }
-    let most = options.most.max(1);
-    let (features, n_used) = match options.likeness {
-        Likeness::Loadings => loadings(&bod, most),
-        Likeness::Turned => turned(&bod, most.min(TURNED_MOST)),
-        Likeness::Steps => steps(&bod, table.n_frames()),
-    };
-    let places: Vec<Option<[f64; 2]>> = (0..table.n_tracks()).map(|track| table.place(track)).collect();
-    let condensed = pairs::distances(&features, &places, options.position_weight, &mut |done| {
-        keep_going(0.7 + 0.3 * done)
-    })?;
-    Ok(Likenesses {
-        n_tracks: table.n_tracks(),
-        condensed,
-        n_above: bod.n_above(),
-        n_used,
-        flutters,
-        is_whitened,
-        n_filled: table.n_filled(),
-        n_unseen: places.iter().filter(|place| place.is_none()).count(),
+    pool::within(options.n_threads, keep_going, |keep_going| {
+        let table = Table::new(positions, &mut |done| keep_going(0.3 * done))?;
+        let tracks = Tracks::new(&table, options, &mut |done| keep_going(0.3 + 0.3 * done))?;
+        let (tree, residual) = tracks.hierarchy(options, &mut |done| keep_going(0.6 + 0.4 * done))?;
+        Ok(Grouped {
+            tree,
+            n_above: tracks.n_above,
+            n_used: tracks.n_used,
+            flutters: tracks.flutters,
+            is_whitened: tracks.is_whitened,
+            n_filled: table.n_filled(),
+            n_unseen: tracks.places.iter().filter(|place| place.is_none()).count(),
+            residual,
+        })
     })
 }
 
-/// Weighted loadings of the first components that have any weight: their number, and a list for x and y of each.
-fn weighted(bod: &Bod, most: usize, fall: f64) -> (usize, Vec<[Vec<f64>; 2]>) {
-    let n = bod.n_above().min(most).min(bod.len());
-    let of = |k: usize| {
-        let weight = bod.share(k).sqrt() * (bod.singular[k] / bod.singular[0]).powf(fall);
-        bod.topos(k).map(|loadings| loadings.iter().map(|v| weight * v).collect())
-    };
-    (n, (0..n).map(of).collect())
+/// What tracks are like, and where they are.
+struct Tracks {
+    features: Features,
+    /// Mean positions, pixels; `None` of one never seen.
+    places: Vec<Option<[f64; 2]>>,
+    n_above: usize,
+    n_used: usize,
+    flutters: bool,
+    is_whitened: bool,
 }
 
-fn loadings(bod: &Bod, most: usize) -> (Features, usize) {
-    let (n, weighted) = weighted(bod, most, FALL);
-    (Features::apart(weighted.into_iter().flatten().collect()).unit(), n)
-}
+impl Tracks {
+    fn new(
+        table: &Table,
+        options: &Options,
+        keep_going: &mut dyn FnMut(f64) -> bool,
+    ) -> Result<Self, MotionError> {
+        let bod = Bod::new(table);
+        let rest = residual(table, &bod);
+        let flutters = rest.as_ref().is_some_and(Residual::is_flutter);
+        let take_down = match options.flutter {
+            Flutter::Keep => false,
+            Flutter::TakeDown => true,
+            Flutter::Auto => flutters,
+        };
+        let white = rest.filter(|_| take_down).map(|rest| whitened(table, &rest));
+        let is_whitened = white.is_some();
+        let bod = white.map_or(bod, |white| Bod::new(&white));
+        if !keep_going(0.3) {
+            return Err(MotionError::Stopped);
+        }
+        let places: Vec<_> = (0..table.n_tracks()).map(|track| table.place(track)).collect();
+        let topoi = Topoi::new(&bod, options.most.max(1));
+        let (weight, n) = (options.position_weight, options.n_neighbours);
+        let (loadings, topoi) =
+            smooth::smoothed(&bod, topoi, &places, weight, n, &mut |done| keep_going(0.3 + 0.7 * done))?;
+        let features = match options.likeness {
+            Likeness::Loadings => loadings,
+            Likeness::Turned => features::turned(&bod, &topoi),
+            Likeness::Steps => features::steps(&bod, &topoi),
+        };
+        // Tracks are made of 4 components at least; those below the noise have no weight in loadings.
+        let n_used = match options.likeness {
+            Likeness::Steps => topoi.len(),
+            Likeness::Loadings | Likeness::Turned => topoi.len().min(bod.n_above()),
+        };
+        Ok(Self { features, places, n_above: bod.n_above(), n_used, flutters, is_whitened })
+    }
 
-fn turned(bod: &Bod, most: usize) -> (Features, usize) {
-    let (n, weighted) = weighted(bod, most, 0.0);
-    let n_tracks = weighted.first().map_or(0, |[x, _]| x.len());
-    let traces: Vec<f64> =
-        (0..n_tracks).map(|i| weighted.iter().map(|[x, y]| x[i].powi(2) + y[i].powi(2)).sum()).collect();
-    let mut products = Vec::new();
-    for k in 0..n {
-        for l in k..n {
-            // Those off the diagonal are there twice.
-            let twice = if k == l { 1.0 } else { std::f64::consts::SQRT_2 };
-            let ([kx, ky], [lx, ly]) = (&weighted[k], &weighted[l]);
-            let product = |i: usize| match traces[i] {
-                trace if trace > 0.0 => twice * (kx[i] * lx[i] + ky[i] * ly[i]) / trace,
-                _ => 0.0,
-            };
-            products.push((0..n_tracks).map(product).collect());
+    /// The hierarchy, and the largest residual of an eigenvector.
+    fn hierarchy(
+        &self,
+        options: &Options,
+        keep_going: &mut dyn FnMut(f64) -> bool,
+    ) -> Result<(Dendrogram, f64), MotionError> {
+        let n = self.places.len();
+        let pairs = Pairs::new(&self.features, &self.places, options.position_weight);
+        if let Making::Merges(criterion) = options.making {
+            let condensed = pairs.distances(&mut |done| keep_going(0.5 * done))?;
+            return Ok((linkage(condensed, n, criterion)?, 0.0));
         }
+        let scales = pairs.scales(&mut |done| keep_going(0.2 * done))?;
+        let weights = |tracks| pairs.affinities(tracks, SHARPNESS, scales);
+        let graph = Graph::of_largest(n, N_JOINED, &weights, &mut |done| keep_going(0.2 + 0.3 * done))?;
+        let divided =
+            divide(graph, N_LEVELS, Order::Shares, options.seed, &mut |done| keep_going(0.5 + 0.5 * done))?;
+        Ok((divided.tree, divided.residual))
     }
-    (Features::apart(products), n)
-}
-
-/// Steps without their mean, as what they are of an orthonormal basis: as many complex numbers as components.
-fn steps(bod: &Bod, n_frames: usize) -> (Features, usize) {
-    let n = if bod.n_above() > 0 { bod.n_denoised() } else { 0 };
-    let step = |k: usize| -> Vec<f64> {
-        let steps: Vec<f64> = bod.chronos(k).windows(2).map(|pair| pair[1] - pair[0]).collect();
-        let mean = steps.iter().sum::<f64>() / (n_frames - 1) as f64;
-        steps.iter().map(|v| bod.singular[k] * (v - mean)).collect()
-    };
-    // Gram and Schmidt, twice over each: steps of components are nearly orthogonal already.
-    let mut basis: Vec<Vec<f64>> = Vec::new();
-    let mut lists = Vec::new();
-    let all: Vec<Vec<f64>> = (0..n).map(step).collect();
-    for steps in &all {
-        let mut own = steps.clone();
-        for _ in 0..2 {
-            for other in &basis {
-                let shared: f64 = own.iter().zip(other).map(|(a, b)| a * b).sum();
-                own.iter_mut().zip(other).for_each(|(a, b)| *a -= shared * b);
-            }
-        }
-        let length = own.iter().map(|v| v * v).sum::<f64>().sqrt();
-        if length > 1e-9 * bod.singular[0] {
-            basis.push(own.iter().map(|v| v / length).collect());
-        }
-    }
-    for axis in &basis {
-        let shares: Vec<f64> =
-            all.iter().map(|steps| steps.iter().zip(axis).map(|(a, b)| a * b).sum()).collect();
-        for side in 0..2 {
-            let n_tracks = bod.topos(0)[side].len();
-            let at =
-                |i: usize| shares.iter().enumerate().map(|(k, share)| share * bod.topos(k)[side][i]).sum();
-            lists.push((0..n_tracks).map(at).collect());
-        }
-    }
-    (Features::correlated(lists).unit(), n)
 }

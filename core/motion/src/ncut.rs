@@ -28,7 +28,11 @@ use honami_model::hierarchy::Dendrogram;
 use crate::bod::{Bod, Table};
 use crate::{MotionError, Positions, pool};
 use affinity::Tracks;
-use divide::divide;
+pub(crate) use divide::divide;
+pub(crate) use graph::Graph;
+
+/// An eigenvector with a larger residual was not solved in time.
+pub const RESIDUAL: f64 = 1e-6;
 
 /// Which group a hierarchy opens next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,6 +42,9 @@ pub enum Order {
     /// All of a level before any of the next, as in the thesis: halves, quarters, eighths. What has two branches on one side
     /// and one on the other is then cut into four, and not into three.
     Levels,
+    /// The one that falls apart most clearly for its size: of least Ncut over the root of its share of all tracks. Small ones
+    /// nearly always have a track that is like no other.
+    Shares,
 }
 
 /// How tracks are grouped.

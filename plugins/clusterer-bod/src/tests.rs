@@ -27,14 +27,16 @@ fn branches() -> Vec<Vec<u32>> {
 }
 
 #[test]
-fn branches_are_the_last_to_merge_by_every_likeness_and_linkage() {
+fn branches_are_the_last_to_merge_by_every_likeness_in_every_hierarchy() {
     let table = three_branches(|_| 1.0);
     for likeness in [Likeness::Loadings, Likeness::Turned, Likeness::Steps] {
-        for linkage in [Linkage::Ward, Linkage::Average] {
-            let settings = Settings { likeness, linkage, position: 0.1, ..Settings::default() };
+        for (hierarchy, smooth) in
+            [Hierarchy::Cuts, Hierarchy::Ward, Hierarchy::Average].into_iter().zip([8, 8, 0])
+        {
+            let settings = Settings { likeness, hierarchy, smooth, position: 0.1, ..Settings::default() };
             let found = testing::cluster::<Components>(&settings, &table.tracks()).unwrap();
             assert_eq!(found.merges.len(), N_TRACKS as usize - 1);
-            assert_eq!(three_groups(&found), branches(), "{likeness:?} {linkage:?}");
+            assert_eq!(three_groups(&found), branches(), "{likeness:?} {hierarchy:?}");
             assert!(found.frames.is_empty());
         }
     }

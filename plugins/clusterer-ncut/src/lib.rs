@@ -7,9 +7,6 @@ use honami_grouping::{heard, merges, positions};
 use honami_motion::ncut::{self, Ncut};
 use honami_plugin::{Clusterer, Clustering, Cx, Info, Result, Tracks, choice, export, params};
 
-/// An eigenvector with a larger residual was not solved in time.
-const RESIDUAL: f64 = 1e-6;
-
 choice! {
     /// Which group is opened next.
     pub(crate) enum Order {
@@ -81,7 +78,7 @@ fn tell(found: &Ncut, cx: &Cx<'_>) {
     if let Some(n) = n_components {
         cx.info(&format!("denoised tracks are made of {n} components"));
     }
-    if residual > RESIDUAL {
+    if residual > ncut::RESIDUAL {
         cx.warn(&format!("a cut may not be the best there is: its eigenvector is off by {residual:.0e}"));
     }
     if n_filled > 0 {

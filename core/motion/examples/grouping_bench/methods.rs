@@ -1,15 +1,15 @@
 //! The methods that are compared, each from tracks to a hierarchy.
 
 use honami_model::hierarchy::Dendrogram;
-use honami_motion::likeness::{self, Flutter};
+use honami_motion::likeness::{self, Flutter, Making};
 use honami_motion::{
-    Criterion, Likeness, MotionError, Positions, composite, denoised, likenesses, linkage, ncut,
+    Criterion, Likeness, MotionError, Positions, composite, denoised, grouped, linkage, ncut,
 };
 
 type Method = fn(&Positions) -> Result<Dendrogram, MotionError>;
 
 /// What a row is called, and what it does.
-pub(crate) const METHODS: [(&str, Method); 17] = [
+pub(crate) const METHODS: [(&str, Method); 20] = [
     ("position", |tracks| thesis(tracks, 0.0)),
     ("distance of movement (`movement`)", |tracks| thesis(tracks, 1.0)),
     ("the same, denoised", |tracks| thesis(&denoised(tracks, 0, &mut |_| true)?.0, 1.0)),
@@ -21,15 +21,19 @@ pub(crate) const METHODS: [(&str, Method); 17] = [
     ("the same, denoised", |tracks| clearest(tracks, true)),
     ("abs(ρ) and Ward", |tracks| correlation(tracks, 0.0)),
     ("abs(ρ), position and Ward", |tracks| correlation(tracks, 1.0)),
-    ("the same, denoised (`bod`, likeness=steps, flutter=keep)", |tracks| {
-        components(tracks, Likeness::Steps, 1.0, Flutter::Keep)
+    ("the same, denoised", |tracks| components(tracks, Likeness::Steps, 1.0, Flutter::Keep)),
+    ("R1, flutter=keep", |tracks| components(tracks, Likeness::Loadings, 0.6, Flutter::Keep)),
+    ("R1, flutter=down", |tracks| components(tracks, Likeness::Loadings, 0.6, Flutter::TakeDown)),
+    ("R1 (`bod`, likeness=loadings smooth=0 hierarchy=ward)", |tracks| {
+        components(tracks, Likeness::Loadings, 0.6, Flutter::Auto)
     }),
-    ("`bod`, flutter=keep", |tracks| components(tracks, Likeness::Loadings, 0.6, Flutter::Keep)),
-    ("`bod`, flutter=down", |tracks| components(tracks, Likeness::Loadings, 0.6, Flutter::TakeDown)),
-    ("**`bod`, as it comes**", |tracks| components(tracks, Likeness::Loadings, 0.6, Flutter::Auto)),
-    ("`bod`, likeness=turned", |tracks| components(tracks, Likeness::Turned, 0.5, Flutter::Auto)),
-    ("`bod`, likeness=steps", |tracks| components(tracks, Likeness::Steps, 1.0, Flutter::Auto)),
+    ("G15 (likeness=turned)", |tracks| components(tracks, Likeness::Turned, 0.5, Flutter::Auto)),
+    ("R1, smoothed", |tracks| smoothed(tracks, Likeness::Loadings, WARD, Flutter::Auto)),
+    ("`bod`, hierarchy=ward", |tracks| smoothed(tracks, Likeness::Steps, WARD, Flutter::Auto)),
+    ("`bod`, flutter=keep", |tracks| smoothed(tracks, Likeness::Steps, Making::Cuts, Flutter::Keep)),
+    ("**`bod`, as it comes**", |tracks| smoothed(tracks, Likeness::Steps, Making::Cuts, Flutter::Auto)),
 ];
+const WARD: Making = Making::Merges(Criterion::Ward);
 
 fn thesis(tracks: &Positions, movement_weight: f64) -> Result<Dendrogram, MotionError> {
     let options = composite::Options { movement_weight, ..Default::default() };
@@ -94,13 +98,33 @@ fn spread(n: usize, distance: impl Fn(usize, usize) -> f64) -> Vec<f64> {
     all.iter().map(|d| d / sd).collect()
 }
 
+/// Not smoothed, and merged by Ward's criterion.
 fn components(
     tracks: &Positions,
     likeness: Likeness,
     position_weight: f64,
     flutter: Flutter,
 ) -> Result<Dendrogram, MotionError> {
-    let options = likeness::Options { likeness, position_weight, flutter, ..Default::default() };
-    let found = likenesses(tracks, &options, &mut |_| true)?;
-    linkage(found.condensed, found.n_tracks, Criterion::Ward)
+    let most = if likeness == Likeness::Steps { usize::MAX } else { 30 };
+    let (n_neighbours, making) = (0, WARD);
+    let options = likeness::Options {
+        likeness,
+        n_neighbours,
+        making,
+        position_weight,
+        most,
+        flutter,
+        ..Default::default()
+    };
+    Ok(grouped(tracks, &options, &mut |_| true)?.tree)
+}
+
+fn smoothed(
+    tracks: &Positions,
+    likeness: Likeness,
+    making: Making,
+    flutter: Flutter,
+) -> Result<Dendrogram, MotionError> {
+    let options = likeness::Options { likeness, making, flutter, ..Default::default() };
+    Ok(grouped(tracks, &options, &mut |_| true)?.tree)
 }

@@ -1,11 +1,15 @@
 //! All pairs of tracks: distances of features, and of places. Each sum has one order, whatever the threads and vectors.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use crate::MotionError;
 
 /// Tracks that one is compared with at a time: their sums stay in the nearest cache.
 const PART: usize = 512;
+/// Tracks that are compared with the others at a time: these are read once for all of them.
+const BLOCK: usize = 16;
 /// Rows of the matrix between two calls for progress.
 const BATCH: usize = 256;
 /// Marks a pair without a distance until the largest one is known.
@@ -38,8 +42,19 @@ impl Features {
         self
     }
 
+    /// With something else in place of each list.
+    pub(super) fn each(mut self, of: impl Fn(&[f64]) -> Vec<f64> + Sync) -> Self {
+        self.lists.par_iter_mut().for_each(|list| *list = of(list));
+        self
+    }
+
     fn is_still(&self, i: usize) -> bool {
         self.lists.iter().all(|list| list[i] == 0.0)
+    }
+
+    /// How alike tracks of this distance are, 0 to 1: |rho|, or the cosine of unit vectors.
+    fn alike(&self, d: f64) -> f64 {
+        (1.0 - if self.are_complex { d * d } else { 0.5 * d * d }).max(0.0)
     }
 }
 
@@ -70,50 +85,187 @@ impl Moments {
     }
 }
 
-/// Distances of all pairs, condensed; pairs with a track that has no place are as far apart as any.
-pub(super) fn distances(
-    features: &Features,
-    places: &[Option<[f64; 2]>],
+/// Tracks whose features and places are compared.
+pub(super) struct Pairs<'a> {
+    features: &'a Features,
+    /// Mean positions, pixels; `None` of one never seen.
+    places: &'a [Option<[f64; 2]>],
+    is_still: Vec<bool>,
     position_weight: f64,
-    keep_going: &mut dyn FnMut(f64) -> bool,
-) -> Result<Vec<f64>, MotionError> {
-    let n = places.len();
-    let mut condensed = crate::composite::zeros(n)?;
-    let still: Vec<bool> = (0..n).map(|i| features.is_still(i)).collect();
-    let between = |i: usize, j: usize| match (places[i], places[j]) {
-        (Some(a), Some(b)) => Some((a[0] - b[0]).hypot(a[1] - b[1])),
-        _ => None,
-    };
-    let first = |i: usize, row: &mut [f64]| {
-        pulp::Arch::new().dispatch(Row { features, i, out: row });
-        let (mut feature, mut place) = (Moments::default(), Moments::default());
-        for (d, j) in row.iter_mut().zip(i + 1..) {
-            if still[i] && still[j] {
-                *d = 0.0;
+}
+
+/// What a distance of features, and one of places times their weight, is multiplied with.
+#[derive(Clone, Copy)]
+pub(super) struct Scales {
+    feature: f64,
+    place: f64,
+}
+
+impl<'a> Pairs<'a> {
+    pub(super) fn new(features: &'a Features, places: &'a [Option<[f64; 2]>], position_weight: f64) -> Self {
+        let is_still = (0..places.len()).map(|i| features.is_still(i)).collect();
+        Self { features, places, is_still, position_weight }
+    }
+
+    fn len(&self) -> usize {
+        self.places.len()
+    }
+
+    /// Whether a track moves and has a place.
+    pub(super) fn moves(&self, i: usize) -> bool {
+        self.places[i].is_some() && !self.is_still[i]
+    }
+
+    fn between(&self, i: usize, j: usize) -> Option<f64> {
+        let (a, b) = (self.places[i]?, self.places[j]?);
+        Some((a[0] - b[0]).hypot(a[1] - b[1]))
+    }
+
+    /// Distances of the features of some tracks to all from one on, a row a track.
+    fn block(&self, tracks: Range<usize>, from: usize, out: &mut [f64]) {
+        pulp::Arch::new().dispatch(Block { features: self.features, tracks: tracks.clone(), from, out });
+        for (i, row) in tracks.zip(out.chunks_mut(self.len() - from)) {
+            if !self.is_still[i] {
+                continue;
             }
-            if let Some(apart) = between(i, j) {
+            row.iter_mut()
+                .zip(&self.is_still[from..])
+                .filter(|(_, still)| **still)
+                .for_each(|(d, _)| *d = 0.0);
+        }
+    }
+
+    /// Sums over the pairs of a track with all after it, of which the features are this far.
+    fn moments(&self, i: usize, row: &[f64]) -> [Moments; 2] {
+        let (mut feature, mut place) = (Moments::default(), Moments::default());
+        for (d, j) in row.iter().zip(i + 1..) {
+            if let Some(apart) = self.between(i, j) {
                 feature.add(*d);
                 place.add(apart);
             }
         }
         [feature, place]
-    };
-    let moments = each_row(&mut condensed, n, &first, &mut |done| keep_going(0.8 * done))?;
-    let n_known = places.iter().flatten().count();
-    let sum = |which: usize| moments.iter().fold(Moments::default(), |sum, row| sum.plus(row[which]));
-    let [k_feature, k_place] = [0, 1].map(|which| sum(which).inverse_sd(n_known));
-    let second = |i: usize, row: &mut [f64]| {
-        let mut largest = 0.0_f64;
-        for (d, j) in row.iter_mut().zip(i + 1..) {
-            *d = between(i, j).map_or(APART, |apart| k_feature * *d + position_weight * k_place * apart);
-            largest = largest.max(*d);
+    }
+
+    fn scaled(&self, moments: &[[Moments; 2]]) -> Scales {
+        let n_known = self.places.iter().flatten().count();
+        let sum = |which: usize| moments.iter().fold(Moments::default(), |sum, row| sum.plus(row[which]));
+        let [feature, place] = [0, 1].map(|which| sum(which).inverse_sd(n_known));
+        Scales { feature, place: self.position_weight * place }
+    }
+
+    /// Distances of all pairs, condensed; pairs with a track that has no place are as far apart as any.
+    pub(super) fn distances(&self, keep_going: &mut dyn FnMut(f64) -> bool) -> Result<Vec<f64>, MotionError> {
+        let n = self.len();
+        let mut condensed = crate::composite::zeros(n)?;
+        let first = |i: usize, row: &mut [f64]| {
+            if i + 1 < n {
+                self.block(i..i + 1, i + 1, row);
+            }
+            self.moments(i, row)
+        };
+        let moments = each_row(&mut condensed, n, &first, &mut |done| keep_going(0.8 * done))?;
+        let scales = self.scaled(&moments);
+        let second = |i: usize, row: &mut [f64]| {
+            let mut largest = 0.0_f64;
+            for (d, j) in row.iter_mut().zip(i + 1..) {
+                *d = self.between(i, j).map_or(APART, |apart| scales.feature * *d + scales.place * apart);
+                largest = largest.max(*d);
+            }
+            largest
+        };
+        let largest = each_row(&mut condensed, n, &second, &mut |done| keep_going(0.8 + 0.2 * done))?;
+        let largest = largest.into_iter().fold(0.0, f64::max);
+        condensed.iter_mut().filter(|d| **d < 0.0).for_each(|d| *d = largest);
+        Ok(condensed)
+    }
+
+    /// One over the standard deviations over all pairs, without a matrix of them.
+    pub(super) fn scales(&self, keep_going: &mut dyn FnMut(f64) -> bool) -> Result<Scales, MotionError> {
+        let n = self.len();
+        let of = |tracks: Range<usize>| -> Vec<[Moments; 2]> {
+            let from = tracks.start;
+            let mut out = vec![0.0; tracks.len() * (n - from)];
+            self.block(tracks.clone(), from, &mut out);
+            let rows = tracks.zip(out.chunks(n - from));
+            rows.map(|(i, row)| self.moments(i, &row[i + 1 - from..])).collect()
+        };
+        Ok(self.scaled(&blocks(n, &of, keep_going)?))
+    }
+
+    /// The nearest others of every track that moves, of those that do, the nearest first, of equal ones the first: their
+    /// numbers and distances. Nothing of tracks at rest.
+    pub(super) fn nearest(
+        &self,
+        n_nearest: usize,
+        scales: Scales,
+        keep_going: &mut dyn FnMut(f64) -> bool,
+    ) -> Result<Vec<Vec<(u32, f64)>>, MotionError> {
+        let n = self.len();
+        let of = |tracks: Range<usize>| -> Vec<Vec<(u32, f64)>> {
+            let mut out = vec![0.0; tracks.len() * n];
+            self.block(tracks.clone(), 0, &mut out);
+            let rows = tracks.zip(out.chunks(n));
+            rows.map(|(i, row)| self.nearest_of(i, row, n_nearest, scales)).collect()
+        };
+        blocks(n, &of, keep_going)
+    }
+
+    fn nearest_of(&self, i: usize, row: &[f64], n_nearest: usize, scales: Scales) -> Vec<(u32, f64)> {
+        if !self.moves(i) || n_nearest == 0 {
+            return Vec::new();
         }
-        largest
-    };
-    let largest = each_row(&mut condensed, n, &second, &mut |done| keep_going(0.8 + 0.2 * done))?;
-    let largest = largest.into_iter().fold(0.0, f64::max);
-    condensed.iter_mut().filter(|d| **d < 0.0).for_each(|d| *d = largest);
-    Ok(condensed)
+        let far = |(j, d): (usize, &f64)| {
+            let apart = self.between(i, j).filter(|_| j != i && !self.is_still[j])?;
+            Some((j as u32, scales.feature * d + scales.place * apart))
+        };
+        let mut all: Vec<(u32, f64)> = row.iter().enumerate().filter_map(far).collect();
+        let by = |a: &(u32, f64), b: &(u32, f64)| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0));
+        if n_nearest < all.len() {
+            all.select_nth_unstable_by(n_nearest - 1, by);
+            all.truncate(n_nearest);
+        }
+        all.sort_unstable_by(by);
+        all
+    }
+
+    /// Rows of how alike some tracks are to all, to a power, times how near they are: `r^sharpness exp(-(w_pos d / s)^2)`. One
+    /// without a place is like itself alone.
+    pub(super) fn affinities(&self, tracks: Range<usize>, sharpness: i32, scales: Scales) -> Vec<f64> {
+        let n = self.len();
+        let mut out = vec![0.0; tracks.len() * n];
+        self.block(tracks.clone(), 0, &mut out);
+        for (i, row) in tracks.zip(out.chunks_mut(n)) {
+            for (j, d) in row.iter_mut().enumerate() {
+                *d = match self.between(i, j) {
+                    _ if i == j => 1.0,
+                    Some(apart) => {
+                        self.features.alike(*d).powi(sharpness) * (-(scales.place * apart).powi(2)).exp()
+                    }
+                    None => 0.0,
+                };
+            }
+        }
+        out
+    }
+}
+
+/// Does something with blocks of tracks, and returns what came of each track, in order.
+fn blocks<R: Send>(
+    n: usize,
+    work: &(impl Fn(Range<usize>) -> Vec<R> + Sync),
+    keep_going: &mut dyn FnMut(f64) -> bool,
+) -> Result<Vec<R>, MotionError> {
+    let firsts: Vec<usize> = (0..n).step_by(BLOCK).collect();
+    let mut results = Vec::with_capacity(n);
+    for batch in firsts.chunks(BATCH / BLOCK) {
+        let done: Vec<Vec<R>> = batch.par_iter().map(|&first| work(first..(first + BLOCK).min(n))).collect();
+        results.extend(done.into_iter().flatten());
+        if !keep_going(results.len() as f64 / n as f64) {
+            return Err(MotionError::Stopped);
+        }
+    }
+    Ok(results)
 }
 
 /// Does something with every row of the condensed matrix, and returns what came of each, in order.
@@ -141,25 +293,30 @@ fn each_row<R: Send>(
     Ok(results)
 }
 
-/// Distances of the features of track i and all after it.
-struct Row<'a> {
+/// Distances of the features of some tracks to all from one on.
+struct Block<'a> {
     features: &'a Features,
-    i: usize,
+    tracks: Range<usize>,
+    from: usize,
+    /// A row a track.
     out: &'a mut [f64],
 }
 
-impl pulp::NullaryFnOnce for Row<'_> {
+impl pulp::NullaryFnOnce for Block<'_> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
-        let Self { features, i, out } = self;
-        for (part, out) in out.chunks_mut(PART).enumerate() {
-            let from = i + 1 + part * PART;
-            if features.are_complex {
-                correlate(&features.lists, i, from, out);
-            } else {
-                difference(&features.lists, i, from, out);
+        let Self { features, tracks, from, out } = self;
+        let len = out.len() / tracks.len();
+        for part in (0..len).step_by(PART) {
+            for (i, row) in tracks.clone().zip(out.chunks_exact_mut(len)) {
+                let out = &mut row[part..(part + PART).min(len)];
+                if features.are_complex {
+                    correlate(&features.lists, i, from + part, out);
+                } else {
+                    difference(&features.lists, i, from + part, out);
+                }
             }
         }
     }

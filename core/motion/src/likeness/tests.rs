@@ -29,9 +29,20 @@ fn branches(noise_px: f64, seed: u64) -> Positions {
     positions
 }
 
-fn of(positions: &Positions, likeness: Likeness, position_weight: f64) -> Likenesses {
-    let options = Options { likeness, position_weight, ..Options::default() };
-    likenesses(positions, &options, &mut |_| true).unwrap()
+/// What distances are made of, and the distances of all pairs, neither smoothed nor whitened.
+struct Found {
+    tracks: Tracks,
+    condensed: Vec<f64>,
+}
+
+fn of(positions: &Positions, likeness: Likeness, position_weight: f64) -> Found {
+    let options =
+        Options { likeness, position_weight, n_neighbours: 0, flutter: Flutter::Keep, ..Options::default() };
+    let table = Table::new(positions, &mut |_| true).unwrap();
+    let tracks = Tracks::new(&table, &options, &mut |_| true).unwrap();
+    let pairs = Pairs::new(&tracks.features, &tracks.places, position_weight);
+    let condensed = pairs.distances(&mut |_| true).unwrap();
+    Found { tracks, condensed }
 }
 
 /// Distances divided by their standard deviation over all N x N entries, plus a weight times those of places.
@@ -104,7 +115,7 @@ fn the_recipes_are_those_that_are_written_down() {
         for (likeness, weight) in [(Likeness::Loadings, 0.6), (Likeness::Turned, 0.5), (Likeness::Steps, 1.0)]
         {
             let (got, wanted) = (of(&positions, likeness, weight), as_written(&positions, likeness, weight));
-            assert!(got.n_above >= 6 && got.n_filled == 0 && got.n_unseen == 0, "{got:?}");
+            assert!(got.tracks.n_above >= 6, "{}", got.tracks.n_above);
             for (k, (got, wanted)) in got.condensed.iter().zip(&wanted).enumerate() {
                 assert!((got - wanted).abs() < 1e-5, "{likeness:?} pair {k}: {got}, wanted {wanted}");
             }
@@ -151,7 +162,7 @@ fn where_nothing_moves_place_alone_tells_tracks_apart() {
     }
     for likeness in [Likeness::Loadings, Likeness::Turned, Likeness::Steps] {
         let found = of(&positions, likeness, 0.6);
-        assert_eq!(found.n_used, 0);
+        assert_eq!(found.tracks.n_used, 0);
         let scale = found.condensed[0];
         let wanted = [1.0, 10.0, 30.0, 9.0, 29.0, 20.0];
         assert!(found.condensed.iter().zip(wanted).all(|(d, far)| (d / scale - far).abs() < 1e-9));
@@ -167,18 +178,8 @@ fn where_nothing_moves_place_alone_tells_tracks_apart() {
 
 #[test]
 fn tracks_at_rest_are_alike_and_those_never_seen_are_farthest_from_all() {
-    let moving = branches(0.0, 5);
-    let mut positions = Positions::new(N, T);
-    for track in 0..N {
-        for frame in 0..T {
-            let at = moving.get(track, if track < 3 { 0 } else { frame }).unwrap();
-            if track != 7 {
-                positions.set(track, frame, at);
-            }
-        }
-    }
+    let positions = some_at_rest(&branches(0.0, 5));
     let found = of(&positions, Likeness::Loadings, 0.0);
-    assert_eq!(found.n_unseen, 1);
     let d = |i: usize, j: usize| found.condensed[i * (2 * N - i - 1) / 2 + j - i - 1];
     assert!(d(0, 1).max(d(0, 2)).max(d(1, 2)) < 1e-12);
     assert!(d(0, 20) > 0.0);
@@ -186,22 +187,162 @@ fn tracks_at_rest_are_alike_and_those_never_seen_are_farthest_from_all() {
     assert!((0..7).all(|k| d(k, 7) >= largest) && (8..N).all(|k| d(7, k) >= largest));
 }
 
+/// The weights of two neighbours written out; where both are in one place all count the same, and alone one stays as it is.
+#[test]
+fn a_neighbourhood_is_weighed_by_its_farthest() {
+    let nearest = vec![vec![(1, 1.0), (2, 2.0)], vec![(0, 0.0), (2, 0.0)], Vec::new()];
+    let means = smooth::Neighbourhoods::new(nearest).means(&[1.0, 10.0, 100.0]);
+    let (near, far) = ((-0.25_f64).exp(), (-1.0_f64).exp());
+    let wanted = [(1.0 + 10.0 * near + 100.0 * far) / (1.0 + near + far), 111.0 / 3.0, 100.0];
+    assert!(
+        means.iter().zip(wanted).all(|(got, wanted)| (got - wanted).abs() < 1e-12),
+        "{means:?} {wanted:?}"
+    );
+}
+
+/// Tracks 0 to 2 are at rest, and 7 is never seen.
+fn some_at_rest(moving: &Positions) -> Positions {
+    let mut positions = Positions::new(moving.n_tracks(), T);
+    for track in (0..moving.n_tracks()).filter(|track| *track != 7) {
+        for frame in 0..T {
+            let at = moving.get(track, if track < 3 { 0 } else { frame }).unwrap();
+            positions.set(track, frame, at);
+        }
+    }
+    positions
+}
+
+/// Against all distances sorted.
+#[test]
+fn the_nearest_are_those_that_move_and_are_nearest() {
+    for (positions, resting) in [(branches(0.3, 7), 0), (some_at_rest(&branches(0.3, 7)), 3)] {
+        for likeness in [Likeness::Loadings, Likeness::Steps] {
+            let Found { tracks, condensed } = of(&positions, likeness, 0.6);
+            let pairs = Pairs::new(&tracks.features, &tracks.places, 0.6);
+            let scales = pairs.scales(&mut |_| true).unwrap();
+            let found = pairs.nearest(5, scales, &mut |_| true).unwrap();
+            let is_other = |track: usize| track >= resting && (resting == 0 || track != 7);
+            for (i, found) in found.iter().enumerate() {
+                let d = |j: usize| condensed[i.min(j) * (2 * N - i.min(j) - 1) / 2 + i.max(j) - i.min(j) - 1];
+                let mut all: Vec<(u32, f64)> =
+                    (0..N).filter(|&j| j != i && is_other(j)).map(|j| (j as u32, d(j))).collect();
+                all.sort_by(|a, b| a.1.total_cmp(&b.1));
+                all.truncate(if is_other(i) { 5 } else { 0 });
+                assert_eq!(found, &all, "{likeness:?} {i}");
+            }
+        }
+    }
+}
+
+/// A stem that has half of the tracks, and eight branches of ten that sway with it and each a little by itself.
+fn conifer(noise_px: f64, seed: u64) -> (Positions, Vec<u32>) {
+    let mut rng = rand_pcg::Pcg64Mcg::seed_from_u64(seed);
+    let truth: Vec<u32> = (0..160).map(|track: u32| if track < 80 { 0 } else { (track - 70) / 10 }).collect();
+    let mut positions = Positions::new(truth.len(), T);
+    for (track, branch) in truth.iter().map(|branch| f64::from(*branch)).enumerate() {
+        let [all, own]: [f64; 2] = [rng.random_range(2.0..4.0), rng.random_range(0.6..1.2)];
+        let place = if branch == 0.0 {
+            [rng.random_range(-40.0..40.0), rng.random_range(0.0..600.0)]
+        } else {
+            let side = if branch % 2.0 == 0.0 { -80.0 } else { 80.0 };
+            [side + rng.random_range(-60.0..60.0), 75.0 * (branch - 0.5) + rng.random_range(-60.0..60.0)]
+        };
+        for frame in 0..T {
+            let t = frame as f64;
+            let mut moved = all * (0.23 * t).sin();
+            if branch > 0.0 {
+                moved += own * ((0.5 + 0.09 * branch) * t + branch).sin();
+            }
+            let at: [f64; 2] = std::array::from_fn(|axis| {
+                let noise = noise_px * (0..3).map(|_| rng.random_range(-1.0..1.0)).sum::<f64>();
+                place[axis] + (1.0 - 0.5 * axis as f64) * moved + noise
+            });
+            positions.set(track, frame, at.map(|v| v as f32));
+        }
+    }
+    (positions, truth)
+}
+
+fn score(positions: &Positions, truth: &[u32], options: &Options) -> f64 {
+    let tree = grouped(positions, options, &mut |_| true).unwrap().tree;
+    let n_groups = truth.iter().max().unwrap() + 1;
+    crate::score::adjusted_rand_index(&tree.cut(n_groups), truth).unwrap()
+}
+
+/// R1 is `Loadings` merged by Ward's criterion.
+#[test]
+fn smoothed_and_cut_more_is_found_than_by_recipe_r1() {
+    let r1 = Options {
+        likeness: Likeness::Loadings,
+        n_neighbours: 0,
+        making: Making::Merges(Criterion::Ward),
+        ..Options::default()
+    };
+    let smoothed = Options { n_neighbours: 8, ..r1 };
+    let mut sums = [0.0; 3];
+    for seed in 0..4 {
+        let (positions, truth) = conifer(0.6, 40 + seed);
+        for (sum, options) in sums.iter_mut().zip([r1, smoothed, Options::default()]) {
+            *sum += score(&positions, &truth, &options) / 4.0;
+        }
+    }
+    let [r1, smoothed, cut] = sums;
+    assert!(r1 < 0.75 && smoothed > r1 + 0.1 && cut > 0.95, "{sums:?}");
+}
+
+#[test]
+fn at_rest_in_one_place_or_few_tracks_all_have_a_place_in_the_hierarchy() {
+    let makings = [Making::Cuts, Making::Merges(Criterion::Ward)];
+    let tree = |positions: &Positions, making| {
+        let found = grouped(positions, &Options { making, ..Options::default() }, &mut |_| true).unwrap();
+        assert_eq!(found.tree.merges().len() + 1, positions.n_tracks());
+        let heights: Vec<f64> = found.tree.merges().iter().map(|merge| merge.height).collect();
+        assert!(heights.is_sorted() && heights.iter().all(|height| height.is_finite()), "{heights:?}");
+        found
+    };
+    let mut same = Positions::new(48, 30);
+    (0..48 * 30).for_each(|k| same.set(k / 30, k % 30, [(0.5 * (k % 30) as f32).sin(), 1.0]));
+    let mut still = Positions::new(6, 30);
+    let x = [0.0, 1.0, 2.0, 500.0, 501.0, 502.0];
+    (0..6 * 30).for_each(|k| still.set(k / 30, k % 30, [x[k / 30], 1.0]));
+    let mut two = Positions::new(2, 2);
+    (0..4).for_each(|k| two.set(k / 2, k % 2, [k as f32, 1.0]));
+    for making in makings {
+        assert!(tree(&same, making).tree.merges().iter().all(|merge| merge.height < 1e-6));
+        let found = tree(&still, making);
+        assert_eq!((found.n_used, found.tree.cut(2)), (0, vec![0, 0, 0, 1, 1, 1]));
+        tree(&two, making);
+        let found = tree(&some_at_rest(&branches(0.3, 9)), making);
+        assert_eq!(found.n_unseen, 1);
+    }
+    for (n_tracks, wanted) in
+        [(0, "grouping needs at least 2 tracks"), (1, "grouping needs at least 2 tracks")]
+    {
+        let error = grouped(&Positions::new(n_tracks, 9), &Options::default(), &mut |_| true).unwrap_err();
+        assert!(error.to_string().starts_with(wanted), "{error}");
+    }
+}
+
 #[test]
 fn the_same_bits_for_any_number_of_threads_and_wrong_options_are_refused() {
     let positions = branches(0.3, 6);
     let with = |n_threads| {
         let options = Options { n_threads, flutter: Flutter::TakeDown, ..Options::default() };
-        likenesses(&positions, &options, &mut |_| true).unwrap()
+        grouped(&positions, &options, &mut |_| true).unwrap()
     };
     let one = with(1);
     assert!(one.is_whitened && [0, 2, 3].iter().all(|&n| with(n) == one));
+    let many = conifer(0.5, 3).0;
+    let with =
+        |n_threads| grouped(&many, &Options { n_threads, ..Options::default() }, &mut |_| true).unwrap();
+    assert!([2, 3].iter().all(|&n| with(n) == with(1)));
     for came in [-1.0, f64::NAN, f64::INFINITY] {
         let options = Options { position_weight: came, ..Options::default() };
-        let error = likenesses(&positions, &options, &mut |_| true).unwrap_err();
+        let error = grouped(&positions, &options, &mut |_| true).unwrap_err();
         assert!(error.to_string().starts_with("the weight of position"), "{error}");
     }
     let mut shares = Vec::new();
-    let stopped = likenesses(&positions, &Options::default(), &mut |done| {
+    let stopped = grouped(&positions, &Options::default(), &mut |done| {
         shares.push(done);
         done < 0.9
     });

@@ -10,11 +10,8 @@ use crate::bod::Table;
 const LANES: usize = 8;
 /// Tracks that one is correlated with at a time: it is read once for all of them.
 const ROWS: usize = 4;
-/// Tracks that a thread takes at a time, and those that it correlates them with while they are in its cache.
-const BLOCK: usize = 32;
+/// Tracks that some are correlated with while they are in a thread's cache.
 const TILE: usize = 64;
-/// Blocks between two calls for progress.
-const BATCH: usize = 8;
 
 /// Steps of tracks, and where they are.
 pub(super) struct Tracks {
@@ -91,35 +88,13 @@ impl Tracks {
         out
     }
 
-    /// The graph in which each track is joined to those with the largest affinity to it, so many at the most, and to those
-    /// that it is among the largest of.
+    /// The graph of the tracks, each joined to so many at the least ([`Graph::of_largest`]).
     pub(super) fn graph(
         &self,
         n_neighbours: usize,
         keep_going: &mut dyn FnMut(f64) -> bool,
     ) -> Result<Graph, MotionError> {
-        let n = self.len();
-        let n_kept = n_neighbours.min(n - 1);
-        let bytes = 2 * n * (n_kept + 1) * size_of::<(u32, f64)>();
-        if Vec::<u8>::new().try_reserve_exact(bytes).is_err() {
-            return Err(MotionError::Memory { n_tracks: n, bytes });
-        }
-        let blocks: Vec<usize> = (0..n).step_by(BLOCK).collect();
-        let mut rows: Vec<Vec<(u32, f64)>> = Vec::with_capacity(n);
-        for batch in blocks.chunks(BATCH) {
-            let of = |&first: &usize| -> Vec<Vec<(u32, f64)>> {
-                let tracks = first..(first + BLOCK).min(n);
-                let all = self.affinities(tracks.clone());
-                tracks.zip(all.chunks(n)).map(|(track, row)| largest(row, track, n_kept)).collect()
-            };
-            let found: Vec<Vec<Vec<(u32, f64)>>> = batch.par_iter().map(of).collect();
-            rows.extend(found.into_iter().flatten());
-            if !keep_going(rows.len() as f64 / n as f64) {
-                return Err(MotionError::Stopped);
-            }
-        }
-        mirror(&mut rows);
-        Ok(Graph::of_rows(rows.into_iter()))
+        Graph::of_largest(self.len(), n_neighbours, &|tracks| self.affinities(tracks), keep_going)
     }
 }
 
@@ -134,35 +109,6 @@ fn scaled(table: &Table, position_weight: f64) -> Vec<Option<[f64; 2]>> {
     let all = 2.0 * places.iter().flatten().map(|at| square(from(at))).sum::<f64>() / n;
     let factor = if all > 0.0 { position_weight / all.sqrt() } else { 0.0 };
     places.iter().map(|at| at.as_ref().map(|at| from(at).map(|v| factor * v))).collect()
-}
-
-/// A track's own entry of a row of affinities and its largest others, ascending by track.
-fn largest(row: &[f64], track: usize, n_kept: usize) -> Vec<(u32, f64)> {
-    let mut entries: Vec<(u32, f64)> = (0..).zip(row.iter().copied()).collect();
-    entries.swap(0, track);
-    if n_kept < entries.len() - 1 {
-        let by = |a: &(u32, f64), b: &(u32, f64)| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0));
-        entries[1..].select_nth_unstable_by(n_kept - 1, by);
-        entries.truncate(n_kept + 1);
-        entries.shrink_to_fit();
-    }
-    entries.sort_unstable_by_key(|(other, _)| *other);
-    entries
-}
-
-/// Puts every edge into the rows of both its ends.
-fn mirror(rows: &mut [Vec<(u32, f64)>]) {
-    let has = |row: &[(u32, f64)], track: u32| row.binary_search_by_key(&track, |(other, _)| *other).is_ok();
-    let mut lacking: Vec<Vec<(u32, f64)>> = vec![Vec::new(); rows.len()];
-    for (track, row) in (0_u32..).zip(rows.iter()) {
-        for &(other, weight) in row.iter().filter(|(other, _)| !has(&rows[*other as usize], track)) {
-            lacking[other as usize].push((track, weight));
-        }
-    }
-    for (row, more) in rows.iter_mut().zip(lacking).filter(|(_, more)| !more.is_empty()) {
-        row.extend(more);
-        row.sort_unstable_by_key(|(other, _)| *other);
-    }
 }
 
 /// The modulus of the correlation of four tracks with another (Zeng 2.20, 5.1; errata Z1): |sum v conj(w)| of steps, which

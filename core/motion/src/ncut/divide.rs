@@ -7,7 +7,7 @@
 //! Halves join at 1 - Ncut / 2, which is more than 1/2, or, where that is less, at the height at which their group joins
 //! another; parts that are not connected join at 1, and tracks of the last groups at (1 - weight) / 2. By
 //! [`Order::Levels`] all but the last are times 2 to the power of the levels below, so that a level is cut before the next
-//! begins.
+//! begins. By [`Order::Shares`] halves join at (1 + 1 / (1 + p)) / 2, with p = Ncut / sqrt(share of all nodes).
 
 use honami_model::hierarchy::{Dendrogram, Merge};
 
@@ -18,12 +18,12 @@ use crate::MotionError;
 
 /// What came of dividing.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Divided {
-    pub(super) tree: Dendrogram,
+pub(crate) struct Divided {
+    pub(crate) tree: Dendrogram,
     /// Groups that were divided no further.
-    pub(super) n_groups: usize,
+    pub(crate) n_groups: usize,
     /// The largest residual of an eigenvector.
-    pub(super) residual: f64,
+    pub(crate) residual: f64,
 }
 
 /// A part of the graph that is still to be divided.
@@ -41,7 +41,7 @@ type Join = (f64, u32, u32);
 
 /// Divides a graph of two nodes or more to so many levels. `keep_going` is told the share of the work that is done; `false`
 /// stops.
-pub(super) fn divide(
+pub(crate) fn divide(
     graph: Graph,
     n_levels: u32,
     order: Order,
@@ -63,7 +63,7 @@ pub(super) fn divide(
         let Open { nodes, graph, n_levels, .. } = &group;
         let scale = match order {
             Order::Levels => (f64::from(*n_levels) - 1.0).exp2(),
-            Order::Cuts => 1.0,
+            Order::Cuts | Order::Shares => 1.0,
         };
         let parts = connected(graph);
         if parts.len() > 1 {
@@ -86,7 +86,14 @@ pub(super) fn divide(
         };
         done += nodes.len() as f64;
         worst = worst.max(residual);
-        let height = (scale * (1.0 - ncut / 2.0)).min(group.height);
+        let own = match order {
+            Order::Levels | Order::Cuts => scale * (1.0 - ncut / 2.0),
+            Order::Shares => {
+                let share = nodes.len() as f64 / n_nodes as f64;
+                0.5 + 0.5 / (1.0 + ncut / share.sqrt())
+            }
+        };
+        let height = own.min(group.height);
         let [a, b] = [0, 1].map(|side| nodes[sides[side][0] as usize]);
         joins.push((height, a, b));
         open.extend(sides.iter().map(|side| group.part(side, n_levels - 1, height)));
