@@ -105,6 +105,11 @@ layout! {
             struct_size 0 4, max_threads 4 4, width 8 4, height 12 4, seed 16 8, tracks 24 8, times 32 8,
         }
         crate::ClustererV1 = "honami_clusterer_v1", 16, 8 { struct_size 0 4, reserved 4 4, run 8 8, }
+        crate::StructureInput = "honami_structure_input", 72, 8 {
+            struct_size 0 4, max_threads 4 4, width 8 4, height 12 4, seed 16 8, tracks 24 8, times 32 8, groups 40 8,
+            root 48 8, mask 56 8, mask_stride 64 8,
+        }
+        crate::StructureV1 = "honami_structure_v1", 16, 8 { struct_size 0 4, reserved 4 4, run 8 8, }
         crate::SimulatorInput = "honami_simulator_input", 32, 8 {
             struct_size 0 4, max_threads 4 4, seed 8 8, skeleton 16 8, instances 24 8,
         }
@@ -112,12 +117,6 @@ layout! {
         crate::SimulatorV1 = "honami_simulator_v1", 32, 8 {
             struct_size 0 4, reserved 4 4, prepare 8 8, reset 16 8, step 24 8,
         }
-    }
-    DRAFT {
-        crate::draft::StructureInput = "honami_structure_input", 40, 8 {
-            struct_size 0 4, max_threads 4 4, seed 8 8, tracks 16 8, times 24 8, dendrogram 32 8,
-        }
-        crate::draft::StructureV1 = "honami_structure_v1", 16, 8 { struct_size 0 4, reserved 4 4, run 8 8, }
     }
 }
 
@@ -170,7 +169,7 @@ pub const NUMBERS: &[(&str, i64)] = &[
 pub const FLOATS: &[(&str, f32)] =
     &[("HONAMI_FB_NONE", crate::FB_NONE), ("HONAMI_NCC_NONE", crate::NCC_NONE)];
 
-/// Every id of the header and the draft header beside the mirror's value for it.
+/// Every id of the header beside the mirror's value for it.
 pub const IDS: &[(&str, &core::ffi::CStr)] = &[
     ("HONAMI_LIBRARY_SYMBOL", crate::LIBRARY_SYMBOL),
     ("HONAMI_POINTS", crate::schema::POINTS),
@@ -193,5 +192,12 @@ pub const IDS: &[(&str, &core::ffi::CStr)] = &[
     ("HONAMI_MOTION", crate::schema::MOTION),
     ("HONAMI_MODES", crate::schema::MODES),
     ("HONAMI_SIMULATOR", crate::interface::SIMULATOR),
-    ("HONAMI_STRUCTURE", crate::draft::STRUCTURE),
+    ("HONAMI_GROUPS", crate::schema::GROUPS),
+    ("HONAMI_JOINTS", crate::schema::JOINTS),
+    ("HONAMI_ROOT", crate::schema::ROOT),
+    ("HONAMI_POSE", crate::schema::POSE),
+    ("HONAMI_BEARS", crate::schema::BEARS),
+    ("HONAMI_LEAVES", crate::schema::LEAVES),
+    ("HONAMI_OFFSETS", crate::schema::OFFSETS),
+    ("HONAMI_STRUCTURE", crate::interface::STRUCTURE),
 ];

@@ -7,13 +7,12 @@
 
 mod structs;
 
-pub mod draft;
 pub mod layout;
 
 pub use structs::{
     Call, ClustererInput, ClustererV1, Column, DetectInput, DetectV1, FieldInput, FieldV1, Frame, HostInfo,
-    Instance, Library, LibraryFn, SimulatorInput, SimulatorV1, StateV1, StepInput, StreamInfo, Table,
-    TrackerV1, Value,
+    Instance, Library, LibraryFn, SimulatorInput, SimulatorV1, StateV1, StepInput, StreamInfo,
+    StructureInput, StructureV1, Table, TrackerV1, Value,
 };
 
 use core::ffi::CStr;
@@ -117,6 +116,13 @@ pub mod schema {
     pub const FRAMES: &CStr = c"honami.frames/1";
     pub const STATE: &CStr = super::interface::STATE;
     pub const SKELETON: &CStr = c"honami.skeleton/1";
+    pub const GROUPS: &CStr = c"honami.groups/1";
+    pub const JOINTS: &CStr = c"honami.joints/1";
+    pub const ROOT: &CStr = c"honami.root/1";
+    pub const POSE: &CStr = c"honami.pose/1";
+    pub const BEARS: &CStr = c"honami.bears/1";
+    pub const LEAVES: &CStr = c"honami.leaves/1";
+    pub const OFFSETS: &CStr = c"honami.offsets/1";
     pub const INSTANCES: &CStr = c"honami.instances/1";
     pub const WIND: &CStr = c"honami.wind/1";
     pub const DETAIL: &CStr = c"honami.detail/1";
@@ -133,6 +139,7 @@ pub mod interface {
     pub const FIELD: &CStr = c"honami.field/1";
     pub const STATE: &CStr = c"honami.state/1";
     pub const CLUSTERER: &CStr = c"honami.clusterer/1";
+    pub const STRUCTURE: &CStr = c"honami.structure/1";
     pub const SIMULATOR: &CStr = c"honami.simulator/1";
 }
 

@@ -200,6 +200,30 @@ pub struct ClustererV1 {
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
+pub struct StructureInput {
+    pub struct_size: u32,
+    pub max_threads: u32,
+    pub width: u32,
+    pub height: u32,
+    pub seed: u64,
+    pub tracks: *const Table,
+    pub times: *const Table,
+    pub groups: *const Table,
+    pub root: *const f64,
+    pub mask: *const u8,
+    pub mask_stride: i64,
+}
+
+#[repr(C)]
+#[derive(Debug)]
+pub struct StructureV1 {
+    pub struct_size: u32,
+    pub reserved: u32,
+    pub run: Option<unsafe extern "C" fn(*mut Instance, *const Call, *const StructureInput) -> Code>,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
 pub struct SimulatorInput {
     pub struct_size: u32,
     pub max_threads: u32,

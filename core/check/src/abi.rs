@@ -3,7 +3,6 @@
 use crate::loading::loaded;
 use crate::raw::{Desk, Dress, Library, Made, Played, Scene, play};
 use crate::{Check, Fault, Subject, Verdict};
-use honami_host::Kind;
 use rand::RngExt as _;
 use std::ffi::CString;
 use std::time::Duration;
@@ -61,11 +60,8 @@ pub(crate) const CHECKS: &[Check] = &[
 /// Frames without colour, as a host of 1.0 has them.
 const GRAY: Scene = Scene { dress: Dress::Today, has_colour: false, sets_params: true, refuses: None };
 
-/// Drafts may still change, and what refuses ordinary work with its defaults can be told nothing.
-fn beside(subject: &Subject, today: &Played) -> Option<Verdict> {
-    if subject.info.kind == Kind::Structure {
-        return Some(Verdict::Beside(format!("the ABI of a {} is a draft", subject.info.kind)));
-    }
+/// What refuses ordinary work with its defaults can be told nothing.
+fn beside(today: &Played) -> Option<Verdict> {
     let why = today.ended.as_ref()?;
     Some(Verdict::Beside(format!("with its defaults it does not work: {why}")))
 }
@@ -92,7 +88,7 @@ fn tables(subject: &Subject) -> Result<Verdict, Fault> {
 fn as_today(subject: &Subject, scene: Scene) -> Result<Verdict, Fault> {
     loaded(subject, |_| {
         let today = play(subject, GRAY)?;
-        if let Some(beside) = beside(subject, &today) {
+        if let Some(beside) = beside(&today) {
             return Ok(beside);
         }
         same(subject, &today, &play(subject, scene)?)
@@ -112,7 +108,7 @@ fn same(subject: &Subject, today: &Played, other: &Played) -> Result<Verdict, Fa
 fn optional(subject: &Subject) -> Result<Verdict, Fault> {
     loaded(subject, |_| {
         let colour = play(subject, Scene { has_colour: true, ..GRAY })?;
-        if let Some(beside) = beside(subject, &colour) {
+        if let Some(beside) = beside(&colour) {
             return Ok(beside);
         }
         let (today, bare) = (play(subject, GRAY)?, play(subject, Scene { sets_params: false, ..GRAY })?);
@@ -123,7 +119,7 @@ fn optional(subject: &Subject) -> Result<Verdict, Fault> {
 fn no_memory(subject: &Subject) -> Result<Verdict, Fault> {
     loaded(subject, |_| {
         let today = play(subject, GRAY)?;
-        if let Some(beside) = beside(subject, &today) {
+        if let Some(beside) = beside(&today) {
             return Ok(beside);
         }
         let mut refused = Vec::new();

@@ -69,10 +69,10 @@ fn of_clusterer(subject: &Subject, check: fn(&Subject) -> Result<Verdict, Fault>
 }
 
 /// A track: its first frame, and samples that may not have been seen.
-type Samples = (i64, Vec<(f32, f32, Status)>);
+pub(crate) type Samples = (i64, Vec<(f32, f32, Status)>);
 
 /// Size of the pictures.
-const SIZE: [u32; 2] = [320, 240];
+pub(crate) const SIZE: [u32; 2] = [320, 240];
 
 /// Tracks of so many groups, in turn; each group has a place, a frequency and a direction of its own. 40 frames.
 fn planted(chance: &mut Pcg64, n_groups: usize, n: usize) -> Vec<Samples> {
@@ -92,8 +92,8 @@ fn planted(chance: &mut Pcg64, n_groups: usize, n: usize) -> Vec<Samples> {
     (0..n).map(track).collect()
 }
 
-/// What a clusterer is given; tracks have ids of their own, 7 apart.
-fn tracks(all: &[Samples]) -> Tracks {
+/// What a clusterer or a structure builder is given; tracks have ids of their own, 7 apart.
+pub(crate) fn tracks(all: &[Samples]) -> Tracks {
     let end = all.iter().map(|(first, samples)| first + samples.len() as i64).max().unwrap_or(0);
     let times = (0..end).map(|t| t as f64 / crate::clip::FPS).collect();
     let mut tracks = Tracks::new(SIZE[0], SIZE[1], 0, times);

@@ -21,6 +21,7 @@ mod running;
 mod simulator;
 mod state;
 mod stress;
+mod structure;
 mod subject;
 mod truth;
 mod work;
@@ -146,6 +147,7 @@ pub fn checks() -> Vec<Check> {
         frames::CHECKS,
         &truth::checks(),
         clusterer::CHECKS,
+        structure::CHECKS,
         simulator::CHECKS,
         &running::checks(),
         stress::CHECKS,

@@ -5,8 +5,8 @@ use crate::course::{HERE, difference, follow, of_able, refusal};
 use crate::simulator::{DT, PLAIN, sapling};
 use crate::{Check, Fault, Subject, Verdict};
 use honami_host::{
-    CallContext, Clustering, HostError, Kind, Numeric, Param, ParamKind, Points, Steps, Value, Values,
-    WindRows,
+    CallContext, Clustering, Filmed, Grown, HostError, Kind, Numeric, Param, ParamKind, Points, Steps, Value,
+    Values, WindRows,
 };
 use rand::RngExt;
 use rand_pcg::Pcg64;
@@ -74,22 +74,23 @@ const N_SETS_OF_PROGRAM: usize = 20;
 enum Outcome {
     Points(Vec<Points>),
     Clustering(Clustering),
+    Grown(Grown),
     Motion(Vec<[f32; 3]>),
     /// It says that it cannot work with this, and why.
     Refused(String),
 }
 
-/// A little work for whatever it is: four points through three small frames, or six tracks. `None` for other kinds.
-fn work(subject: &Subject, values: &Values) -> Result<Option<Outcome>, HostError> {
+/// A little work for whatever it is: four points through three small frames, or six tracks, or twelve in four groups.
+fn work(subject: &Subject, values: &Values) -> Result<Outcome, HostError> {
     let done = match subject.info.kind {
         Kind::Tracker => points(subject, values).map(Outcome::Points),
         Kind::Clusterer => clustering(subject, values).map(Outcome::Clustering),
         Kind::Simulator => motion(subject, values).map(Outcome::Motion),
-        Kind::Structure => return Ok(None),
+        Kind::Structure => grown(subject, values).map(Outcome::Grown),
     };
     match done {
-        Err(error) => refusal(&error).map(|why| Some(Outcome::Refused(why.to_owned()))).ok_or(error),
-        done => done.map(Some),
+        Err(error) => refusal(&error).map(|why| Outcome::Refused(why.to_owned())).ok_or(error),
+        done => done,
     }
 }
 
@@ -116,6 +117,12 @@ fn clustering(subject: &Subject, values: &Values) -> Result<Clustering, HostErro
     subject.clusterer(HERE, values)?.run(&tracks, &CallContext::silent())
 }
 
+fn grown(subject: &Subject, values: &Values) -> Result<Grown, HostError> {
+    let (tracks, groups) = crate::structure::four_groups(&mut subject.chance("params.groups"), 12);
+    let filmed = Filmed { tracks: &tracks, groups: &groups, root: None, mask: None };
+    subject.structure(HERE, values)?.run(&filmed, &CallContext::silent())
+}
+
 /// Sets of values that it worked with, and that it refused with a reason.
 #[derive(Default)]
 struct Tally {
@@ -131,7 +138,7 @@ impl Tally {
         let done =
             work(subject, values).map_err(|error| Fault(format!("with {}: {error}", set.join(" "))))?;
         self.n += 1;
-        if let Some(Outcome::Refused(why)) = done {
+        if let Outcome::Refused(why) = done {
             self.n_refused += 1;
             self.reason = why;
         }
@@ -204,21 +211,16 @@ fn same(subject: &Subject) -> Result<Verdict, Fault> {
     let defaults = Values::defaults(&subject.info.params);
     let (unsaid, said) = (work(subject, &Values::default())?, work(subject, &defaults)?);
     match (&unsaid, &said) {
-        (None, _) => Ok(draft(subject)),
-        (Some(Outcome::Refused(why)), _) => Ok(Verdict::Doubtful(format!("it refuses its defaults: {why}"))),
+        (Outcome::Refused(why), _) => Ok(Verdict::Doubtful(format!("it refuses its defaults: {why}"))),
         _ if unsaid == said => Ok(Verdict::Holds(String::new())),
         _ if !subject.info.caps.deterministic => {
             Ok(Verdict::Holds("results differ, as its manifest says".into()))
         }
-        (Some(Outcome::Points(a)), Some(Outcome::Points(b))) => {
+        (Outcome::Points(a), Outcome::Points(b)) => {
             Err(Fault(format!("the same values twice: {}", difference(a, b).unwrap_or_default())))
         }
         _ => Err(Fault("the same values gave another result the second time".into())),
     }
-}
-
-fn draft(subject: &Subject) -> Verdict {
-    Verdict::Beside(format!("a {} is a draft", subject.info.kind))
 }
 
 fn choices(subject: &Subject) -> Result<Verdict, Fault> {

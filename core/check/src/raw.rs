@@ -46,6 +46,7 @@ sized! {
     abi::DetectInput: seed, Some(std::mem::offset_of!(abi::DetectInput, reserved));
     abi::FieldInput: to, None;
     abi::ClustererInput: times, None;
+    abi::StructureInput: mask_stride, None;
     abi::SimulatorInput: instances, None;
     abi::StepInput: detail, None;
     abi::Library: create, None;
@@ -54,6 +55,7 @@ sized! {
     abi::DetectV1: detect, None;
     abi::FieldV1: field, None;
     abi::ClustererV1: run, None;
+    abi::StructureV1: run, None;
     abi::SimulatorV1: step, None;
 }
 

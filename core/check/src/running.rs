@@ -75,18 +75,6 @@ const CHECKS: &[Check] = &[
     },
 ];
 
-/// Does the task that plugins of its kind have, if any.
-fn with_task(
-    subject: &Subject,
-    task: fn(&Subject) -> Option<Task>,
-    check: impl Fn(&Task) -> Result<Verdict, Fault>,
-) -> Result<Verdict, Fault> {
-    match task(subject) {
-        Some(task) => check(&task),
-        None => Ok(Verdict::Beside(format!("the interface of a {} is a draft", subject.info.kind))),
-    }
-}
-
 /// What an instance alone gives, and what one gives that works in another way.
 type Pair = [Outcome; 2];
 
@@ -107,16 +95,14 @@ fn alike(
     if let Some(beside) = file_missed(subject)? {
         return Ok(Verdict::Beside(beside));
     }
-    with_task(subject, Task::small, |task| {
-        let pairs = pairs(subject, task)?;
-        match pairs.iter().find_map(|[alone, other]| alone.difference(other)) {
-            None => Ok(Verdict::Holds(String::new())),
-            Some(_) if !subject.info.caps.deterministic => {
-                Ok(Verdict::Holds("results differ, as its manifest says".into()))
-            }
-            Some(what) => Err(Fault(what)),
+    let pairs = pairs(subject, &Task::small(subject))?;
+    match pairs.iter().find_map(|[alone, other]| alone.difference(other)) {
+        None => Ok(Verdict::Holds(String::new())),
+        Some(_) if !subject.info.caps.deterministic => {
+            Ok(Verdict::Holds("results differ, as its manifest says".into()))
         }
-    })
+        Some(what) => Err(Fault(what)),
+    }
 }
 
 fn isolated(subject: &Subject) -> Result<Verdict, Fault> {
@@ -132,7 +118,7 @@ fn isolated(subject: &Subject) -> Result<Verdict, Fault> {
 
 fn again(subject: &Subject, task: &Task) -> Result<Outcome, HostError> {
     // Pictures of another size, and other points, come first.
-    let Some(other) = Task::endless(subject) else { return Work::start(subject, HERE, task)?.finish() };
+    let other = Task::endless(subject);
     let mut work = Work::start(subject, HERE, &other)?;
     work.finish()?;
     work.again(task).finish()
@@ -159,7 +145,7 @@ fn left(subject: &Subject, task: &Task) -> Result<Outcome, HostError> {
 fn turns(subject: &Subject, task: &Task) -> Result<Vec<Pair>, HostError> {
     let cx = CallContext::silent();
     let other = Task::endless(subject);
-    let tasks: Vec<&Task> = [Some(task), other.as_ref()].into_iter().flatten().collect();
+    let tasks = [task, &other];
     let alone = tasks.iter().map(|task| alone(subject, task)).collect::<Result<Vec<_>, _>>()?;
     let works = tasks.iter().map(|task| Work::start(subject, HERE, task));
     let mut works = works.collect::<Result<Vec<_>, _>>()?;

@@ -51,7 +51,7 @@ fn of_saving(
     check: fn(&Subject, &Scene) -> Result<Verdict, Fault>,
 ) -> Result<Verdict, Fault> {
     match Task::small(subject) {
-        Some(Task::Follow { clip, seeds }) if subject.info.offers("honami.state/1") => {
+        Task::Follow { clip, seeds } if subject.info.offers("honami.state/1") => {
             let stream = StreamInfo { births: 50_000..50_200, ..clip.stream() };
             check(subject, &Scene { clip, seeds, stream })
         }

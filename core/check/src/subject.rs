@@ -2,8 +2,8 @@
 
 use crate::Fault;
 use honami_host::{
-    CallContext, Clusterer, Host, HostError, Hosting, Kind, Origin, PluginInfo, Simulator, Tracker, Values,
-    shut_in,
+    CallContext, Clusterer, Host, HostError, Hosting, Kind, Origin, PluginInfo, Simulator, Structure,
+    Tracker, Values, shut_in,
 };
 use rand_pcg::Pcg64;
 use std::path::{Path, PathBuf};
@@ -69,6 +69,14 @@ impl Subject {
     /// What keeps it from starting.
     pub fn clusterer(&self, hosting: Hosting, values: &Values) -> Result<Clusterer, HostError> {
         Ok(self.host(hosting)?.clusterer(&self.info, values, &CallContext::silent())?.0)
+    }
+
+    /// A structure builder at work with these values, where the others have their defaults.
+    ///
+    /// # Errors
+    /// What keeps it from starting.
+    pub fn structure(&self, hosting: Hosting, values: &Values) -> Result<Structure, HostError> {
+        Ok(self.host(hosting)?.structure(&self.info, values, &CallContext::silent())?.0)
     }
 
     /// A simulator at work with these values, where the others have their defaults.

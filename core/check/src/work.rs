@@ -3,17 +3,19 @@
 use crate::clip::{Clip, Texture, grid};
 use crate::course::difference;
 use crate::simulator::{DT, PLAIN, sapling};
-use crate::{Subject, clusterer};
+use crate::{Subject, clusterer, structure};
 use honami_host::{
-    CallContext, Clusterer, Clustering, HostError, Hosting, Kind, Node, PlantInstance, Point, Points,
-    Simulator, Steps, StreamInfo, Tracker, Tracks, Values, WindRows,
+    CallContext, Clusterer, Clustering, Filmed, GroupTree, Grown, HostError, Hosting, Kind, Node,
+    PlantInstance, Point, Points, Simulator, Steps, StreamInfo, Structure, Tracker, Tracks, Values, WindRows,
 };
 
-/// What there is to do: a clip with points to follow, tracks to group, or copies of a plant to move.
+/// What there is to do: a clip with points to follow, tracks to group, groups to grow from, or copies of a plant to
+/// move.
 #[derive(Clone, Debug)]
 pub(crate) enum Task {
     Follow { clip: Clip, seeds: Vec<Point> },
     Group(Tracks),
+    Grow { tracks: Tracks, groups: GroupTree },
     Sway { nodes: Vec<Node>, copies: Vec<PlantInstance>, steps_a_call: u32 },
 }
 
@@ -25,6 +27,7 @@ const SWAYS: usize = 10;
 pub(crate) enum Outcome {
     Points(Vec<Points>),
     Clustering(Option<Clustering>),
+    Grown(Option<Grown>),
     Motion(Vec<Vec<[f32; 3]>>),
 }
 
@@ -37,25 +40,25 @@ impl Outcome {
                 let call = a.iter().zip(b).position(|(a, b)| a != b);
                 call.map(|call| format!("another motion from call {call} on"))
             }
+            (Self::Grown(a), Self::Grown(b)) => (a != b).then(|| "another skeleton".into()),
             (a, b) => (a != b).then(|| "another hierarchy".into()),
         }
     }
 }
 
 impl Task {
-    /// A small texture that moves, 20 points and 10 frames; or 40 tracks; or 40 nodes. `None` for the kind that is a
-    /// draft.
-    pub(crate) fn small(subject: &Subject) -> Option<Self> {
+    /// A small texture that moves, 20 points and 10 frames; or 40 tracks; or 40 nodes.
+    pub(crate) fn small(subject: &Subject) -> Self {
         Self::of(subject, [96, 72], 10, [5, 4], 40)
     }
 
     /// One that moves to and fro for ever, as small as makes sense.
-    pub(crate) fn endless(subject: &Subject) -> Option<Self> {
+    pub(crate) fn endless(subject: &Subject) -> Self {
         Self::of(subject, [48, 36], 8, [3, 2], 12)
     }
 
     /// As many points as take a while; or as many tracks. Programs, most of them interpreted, take longer over each.
-    pub(crate) fn large(subject: &Subject) -> Option<Self> {
+    pub(crate) fn large(subject: &Subject) -> Self {
         let points = if subject.info.is_program() { [80, 60] } else { [160, 120] };
         Self::of(subject, [160, 120], 3, points, 400)
     }
@@ -66,7 +69,7 @@ impl Task {
         n_frames: usize,
         columns_and_rows: [u32; 2],
         n_tracks: usize,
-    ) -> Option<Self> {
+    ) -> Self {
         let mut chance = subject.chance("work");
         match subject.info.kind {
             Kind::Tracker => {
@@ -75,16 +78,19 @@ impl Task {
                     |[x, y]: [f64; 2], t: usize| 128.0 + texture.at([x - 0.9 * t as f64, y + 0.4 * t as f64]);
                 let margin_px = 0.2 * f64::from(size[1]);
                 let seeds = grid(size, margin_px, columns_and_rows, &mut chance);
-                Some(Self::Follow { clip: Clip::new(size, n_frames, at), seeds })
+                Self::Follow { clip: Clip::new(size, n_frames, at), seeds }
             }
-            Kind::Clusterer => Some(Self::Group(clusterer::two_groups(&mut chance, n_tracks))),
+            Kind::Clusterer => Self::Group(clusterer::two_groups(&mut chance, n_tracks)),
+            Kind::Structure => {
+                let (tracks, groups) = structure::four_groups(&mut chance, n_tracks);
+                Self::Grow { tracks, groups }
+            }
             // What takes a large one its time is steps.
             Kind::Simulator => {
                 let copies = (0..5).map(|k| PlantInstance { yaw: k as f32, ..PLAIN }).collect();
                 let steps_a_call = if n_tracks > 100 { 20_000 } else { 12 };
-                Some(Self::Sway { nodes: sapling(&mut chance, n_tracks as u32), copies, steps_a_call })
+                Self::Sway { nodes: sapling(&mut chance, n_tracks as u32), copies, steps_a_call }
             }
-            Kind::Structure => None,
         }
     }
 
@@ -93,6 +99,7 @@ impl Task {
         match self {
             Self::Follow { .. } => Outcome::Points(Vec::new()),
             Self::Group(_) => Outcome::Clustering(None),
+            Self::Grow { .. } => Outcome::Grown(None),
             Self::Sway { .. } => Outcome::Motion(Vec::new()),
         }
     }
@@ -110,6 +117,7 @@ pub(crate) struct Work<'a> {
 enum Plugin {
     Tracker(Box<Tracker>),
     Clusterer(Clusterer),
+    Structure(Structure),
     Simulator(Box<Simulator>),
 }
 
@@ -120,6 +128,7 @@ impl<'a> Work<'a> {
         let plugin = match task {
             Task::Follow { .. } => Plugin::Tracker(Box::new(subject.tracker(hosting, &values)?)),
             Task::Group(_) => Plugin::Clusterer(subject.clusterer(hosting, &values)?),
+            Task::Grow { .. } => Plugin::Structure(subject.structure(hosting, &values)?),
             Task::Sway { .. } => Plugin::Simulator(Box::new(subject.simulator(hosting, &values)?)),
         };
         Ok(Self { plugin, task, n_threads: 1, step: 0, outcome: task.nothing() })
@@ -163,6 +172,13 @@ impl<'a> Work<'a> {
                 *found = Some(clusterer.run(&tracks, cx)?);
                 Ok(true)
             }
+            (Plugin::Structure(structure), Task::Grow { tracks, groups }, Outcome::Grown(grown)) => {
+                let mut tracks = tracks.clone();
+                tracks.max_threads = self.n_threads;
+                let filmed = Filmed { tracks: &tracks, groups, root: None, mask: None };
+                *grown = Some(structure.run(&filmed, cx)?);
+                Ok(true)
+            }
             (Plugin::Simulator(simulator), Task::Sway { .. }, Outcome::Motion(all)) => {
                 // Another round after the last.
                 let at = step % (SWAYS + 1);
@@ -188,7 +204,7 @@ impl<'a> Work<'a> {
     pub(crate) fn tracker(&mut self) -> Option<&mut Tracker> {
         match &mut self.plugin {
             Plugin::Tracker(tracker) => Some(tracker),
-            Plugin::Clusterer(_) | Plugin::Simulator(_) => None,
+            Plugin::Clusterer(_) | Plugin::Structure(_) | Plugin::Simulator(_) => None,
         }
     }
 

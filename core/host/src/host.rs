@@ -4,7 +4,6 @@ mod place;
 
 use crate::clusterer::Clusterer;
 use crate::context::CallContext;
-use crate::draft::Structure;
 use crate::error::HostError;
 use crate::instance::{Handle, Instance, Request};
 use crate::isolated::Limits;
@@ -13,6 +12,7 @@ use crate::quarantine::{self, Quarantine, Tally, Trail};
 use crate::registry::PluginInfo;
 use crate::reply::Reply;
 use crate::simulator::{Sent, Simulator};
+use crate::structure::Structure;
 use crate::tracker::Tracker;
 use crate::values::{Value, Values};
 use crate::{in_process, isolated, script, store};
@@ -168,7 +168,7 @@ impl Host {
         Ok((Clusterer { handle }, origin))
     }
 
-    /// Starts a structure builder (draft) with these parameter values.
+    /// Starts a structure builder with these parameter values; those that are missing take their defaults.
     ///
     /// # Errors
     /// [`HostError`], when the plugin is not trusted, cannot be loaded, or refuses the values.

@@ -15,7 +15,7 @@ use crate::manifest::Kind;
 use crate::registry::PluginInfo;
 use crate::reply::Reply;
 use crate::values::Value;
-use honami_abi::{self as abi, code, draft, interface, kind};
+use honami_abi::{self as abi, code, interface, kind};
 use input::{InputTable, frame};
 use known::known;
 use std::ffi::{CStr, CString, c_char, c_void};
@@ -45,7 +45,7 @@ struct Interfaces {
     field: Option<abi::FieldV1>,
     state: Option<abi::StateV1>,
     clusterer: Option<abi::ClustererV1>,
-    structure: Option<draft::StructureV1>,
+    structure: Option<abi::StructureV1>,
     simulator: Option<abi::SimulatorV1>,
 }
 
@@ -113,7 +113,7 @@ impl InProcess {
         let main = match info.kind {
             Kind::Tracker => interface::TRACKER,
             Kind::Clusterer => interface::CLUSTERER,
-            Kind::Structure => draft::STRUCTURE,
+            Kind::Structure => interface::STRUCTURE,
             Kind::Simulator => interface::SIMULATOR,
         };
         if !info.offers(&main.to_string_lossy()) {
@@ -131,7 +131,7 @@ impl InProcess {
             field: interface!(self, info, interface::FIELD, abi::FieldV1, [field]),
             state: interface!(self, info, interface::STATE, abi::StateV1, [save, load]),
             clusterer: interface!(self, info, interface::CLUSTERER, abi::ClustererV1, [run]),
-            structure: interface!(self, info, draft::STRUCTURE, draft::StructureV1, [run]),
+            structure: interface!(self, info, interface::STRUCTURE, abi::StructureV1, [run]),
             simulator: interface!(self, info, interface::SIMULATOR, abi::SimulatorV1, [prepare, reset, step]),
         })
     }
@@ -220,9 +220,11 @@ unsafe fn call_plugin(plugin: &InProcess, request: &Request<'_>, call: *const ab
                 let (rows, times) = (InputTable::tracks(tracks), InputTable::times(tracks));
                 (has.clusterer.as_ref()?.run?)(raw, call, &input::clusterer(tracks, rows.raw(), times.raw()))
             }
-            Request::Grow(tracks) => {
-                let (rows, times) = (InputTable::tracks(tracks), InputTable::times(tracks));
-                (has.structure.as_ref()?.run?)(raw, call, &input::structure(tracks, rows.raw(), times.raw()))
+            Request::Grow(filmed) => {
+                let (rows, times) = (InputTable::tracks(filmed.tracks), InputTable::times(filmed.tracks));
+                let groups = InputTable::groups(filmed.groups);
+                let input = input::structure(filmed, [&rows, &times, &groups]);
+                (has.structure.as_ref()?.run?)(raw, call, &input)
             }
             Request::Prepare { nodes, instances, max_threads, seed } => {
                 let (skeleton, copies) = (InputTable::skeleton(nodes), InputTable::instances(instances));

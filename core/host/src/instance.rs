@@ -8,7 +8,7 @@ use crate::isolated::Ended;
 use crate::quarantine::{Tally, Trail};
 use crate::reply::{self, Reply, Schema};
 use crate::simulator::{PlantInstance, Steps};
-use crate::types::{DetectRequest, FrameView, Node, Point, StreamInfo, Tracks};
+use crate::types::{DetectRequest, Filmed, FrameView, Node, Point, StreamInfo, Tracks};
 use crate::values::Value;
 use honami_abi::code;
 
@@ -31,7 +31,7 @@ pub(crate) enum Request<'a> {
         max_threads: u32,
     },
     Cluster(&'a Tracks),
-    Grow(&'a Tracks),
+    Grow(&'a Filmed<'a>),
     Prepare {
         nodes: &'a [Node],
         instances: &'a [PlantInstance],
@@ -76,7 +76,10 @@ impl Request<'_> {
             Self::Detect(_) => &[&reply::FEATURES],
             Self::Field { .. } => &[&reply::VECTORS, &reply::GRID],
             Self::Cluster(_) => &[&reply::DENDROGRAM, &reply::FRAMES],
-            Self::Grow(_) => &[&reply::SKELETON],
+            Self::Grow(_) => {
+                use reply::{BEARS, JOINTS, LEAVES, OFFSETS, POSE, ROOT};
+                &[&JOINTS, &ROOT, &POSE, &BEARS, &LEAVES, &OFFSETS]
+            }
             Self::Prepare { .. } => &[&reply::MODES],
             Self::Step(_) => &[&reply::MOTION],
             _ => &[],

@@ -31,13 +31,13 @@ mod script;
 mod shell;
 mod simulator;
 mod store;
+mod structure;
 mod tracker;
 mod trust;
 mod types;
 mod values;
 mod wire;
 
-pub mod draft;
 pub mod sdk;
 
 pub use clusterer::Clusterer;
@@ -56,10 +56,11 @@ pub use registry::{PluginInfo, Registry, SearchPath, Trust};
 pub use script::{Part, manifest_of as file_of, parts_of};
 pub use shell::quoted;
 pub use simulator::{Detail, ModeRow, PlantInstance, Simulator, Steps, WindRows};
+pub use structure::{Grown, Structure};
 pub use tracker::{Checkpoint, Tracker};
 pub use trust::TrustBook;
 pub use types::{
-    Clustering, DetectRequest, Feature, Field, FrameNote, FrameView, Node, Point, PointRow, Points,
-    StreamInfo, Tracks,
+    Clustering, DetectRequest, Feature, Field, Filmed, FrameNote, FrameView, GroupTree, Node, Point,
+    PointRow, Points, StreamInfo, Tracks,
 };
 pub use values::{Value, ValueError, Values};

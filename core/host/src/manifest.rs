@@ -15,7 +15,7 @@ pub enum Kind {
     Tracker,
     /// Groups tracks.
     Clusterer,
-    /// Grows skeletons (draft).
+    /// Grows skeletons.
     Structure,
     /// Moves plants.
     Simulator,

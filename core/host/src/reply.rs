@@ -58,17 +58,29 @@ pub(crate) const FRAMES: Schema = Schema {
 };
 pub(crate) const STATE: Schema =
     Schema { id: schema::STATE, required: &[("bytes", dtype::U8, 1)], optional: &[] };
-pub(crate) const SKELETON: Schema = Schema {
-    id: schema::SKELETON,
-    required: &[
-        ("parent", dtype::I32, 1),
-        ("x", dtype::F32, 1),
-        ("y", dtype::F32, 1),
-        ("z", dtype::F32, 1),
-        ("radius", dtype::F32, 1),
-    ],
-    optional: &[("track", dtype::I32, 1)],
+pub(crate) const JOINTS: Schema = Schema {
+    id: schema::JOINTS,
+    required: &[("parent", dtype::I32, 1), ("length", dtype::F64, 1)],
+    optional: &[],
 };
+pub(crate) const ROOT: Schema = Schema {
+    id: schema::ROOT,
+    required: &[("x", dtype::F64, 1), ("y", dtype::F64, 1), ("z", dtype::F64, 1)],
+    optional: &[],
+};
+pub(crate) const POSE: Schema = Schema { id: schema::POSE, required: &[("d", dtype::F64, 3)], optional: &[] };
+pub(crate) const BEARS: Schema = Schema {
+    id: schema::BEARS,
+    required: &[("joint", dtype::U32, 1), ("group", dtype::U32, 1)],
+    optional: &[],
+};
+pub(crate) const LEAVES: Schema = Schema {
+    id: schema::LEAVES,
+    required: &[("joint", dtype::U32, 1), ("track", dtype::U32, 1)],
+    optional: &[],
+};
+pub(crate) const OFFSETS: Schema =
+    Schema { id: schema::OFFSETS, required: &[("d", dtype::F64, 3)], optional: &[] };
 pub(crate) const MODES: Schema = Schema {
     id: schema::MODES,
     required: &[("hz", dtype::F64, 1), ("residual", dtype::F64, 1)],

@@ -41,7 +41,7 @@ pub struct Begun {
 pub(crate) const HONAMI_PY: &str = include_str!("../../plugin/python/honami.py");
 
 /// The ids in the templates.
-const ID: [&str; 2] = ["org.honami.template", "org.honami.linkage"];
+const ID: [&str; 3] = ["org.honami.template", "org.honami.linkage", "org.honami.fan"];
 
 /// What a file of that name would stand in the way of: numpy and Python's standard library (`sys.stdlib_module_names`,
 /// also of older and newer versions), any of which the SDK or what it imports may import.
@@ -74,9 +74,10 @@ pub fn begin(name: &str, kind: Kind, language: Language) -> Result<Begun, String
     let own = |text: &str| own(name, text);
     let header = ("honami.h".to_owned(), include_str!("../../abi/include/honami.h").to_owned());
     match (language, kind) {
-        (Language::Python, Kind::Tracker | Kind::Clusterer) => {
+        (Language::Python, Kind::Tracker | Kind::Clusterer | Kind::Structure) => {
             let text = match kind {
                 Kind::Tracker => include_str!("../../plugin/python/examples/template.py"),
+                Kind::Structure => include_str!("../../plugin/python/examples/fan.py"),
                 _ => include_str!("../../plugin/python/examples/linkage.py"),
             };
             let sdk = ("honami.py".to_owned(), HONAMI_PY.to_owned());
@@ -86,9 +87,10 @@ pub fn begin(name: &str, kind: Kind, language: Language) -> Result<Begun, String
                 plugin: format!("{name}/{name}.py"),
             })
         }
-        (Language::Rust, Kind::Tracker | Kind::Clusterer) => {
+        (Language::Rust, Kind::Tracker | Kind::Clusterer | Kind::Structure) => {
             let text = match kind {
                 Kind::Tracker => include_str!("../../plugin/examples/template.rs"),
+                Kind::Structure => include_str!("../../plugin/examples/fan.rs"),
                 _ => include_str!("../../plugin/examples/linkage.rs"),
             };
             Ok(rust::begin(name, own(text)))
@@ -106,10 +108,12 @@ pub fn begin(name: &str, kind: Kind, language: Language) -> Result<Begun, String
         (Language::Cpp, Kind::Tracker) => {
             let text = include_str!("../../abi/examples/template_tracker.cpp");
             let class = ("honami.hpp".to_owned(), include_str!("../../abi/include/honami.hpp").to_owned());
+            let types = include_str!("../../abi/include/honami_types.hpp").to_owned();
+            let types = ("honami_types.hpp".to_owned(), types);
             let manifest = include_str!("../../abi/include/honami_manifest.hpp").to_owned();
             let manifest = ("honami_manifest.hpp".to_owned(), manifest);
             Ok(Begun {
-                files: vec![(format!("{name}.cpp"), own(text)), class, manifest, header],
+                files: vec![(format!("{name}.cpp"), own(text)), class, types, manifest, header],
                 build: format!(
                     "c++ -std=c++17 -O2 -shared -fPIC -fvisibility=hidden -fvisibility-inlines-hidden \
                      {name}/{name}.cpp -o {name}/{name}.so"
@@ -117,11 +121,10 @@ pub fn begin(name: &str, kind: Kind, language: Language) -> Result<Begun, String
                 plugin: format!("{name}/{name}.so"),
             })
         }
-        (Language::C | Language::Cpp, Kind::Clusterer) => Err(
-            "a clusterer can be begun in Python and in Rust; honami.hpp (C++) and honami.h (C) say what it is"
-                .into(),
-        ),
-        (_, Kind::Structure | Kind::Simulator) => Err(format!("there is no template of a {kind} yet")),
+        (Language::C | Language::Cpp, Kind::Clusterer | Kind::Structure) => Err(format!(
+            "a {kind} can be begun in Python and in Rust; honami.hpp (C++) and honami.h (C) say what it is"
+        )),
+        (_, Kind::Simulator) => Err(format!("there is no template of a {kind} yet")),
     }
 }
 

@@ -130,7 +130,7 @@ pub struct Field {
     pub vectors: Vec<Option<[f32; 2]>>,
 }
 
-/// Tracks to group: samples of all tracks one after the other.
+/// Tracks to group or to grow from: samples of all tracks one after the other.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tracks {
     pub(crate) ids: Vec<u32>,
@@ -203,6 +203,122 @@ impl Tracks {
         let finite =
             self.x.iter().chain(&self.y).all(|v| v.is_finite()) && self.times_s.iter().all(|t| t.is_finite());
         (!finite).then(|| "a position or time is not finite".into())
+    }
+}
+
+/// The tree that a hierarchy of tracks was cut into.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct GroupTree {
+    /// Rows, -1 for the whole.
+    pub(crate) parents: Vec<i32>,
+    /// A row a track, -1 for none.
+    pub(crate) of: Vec<i32>,
+    /// By which its groups are known.
+    pub(crate) numbers: Vec<u32>,
+}
+
+impl GroupTree {
+    /// No groups yet, of so many tracks.
+    #[must_use]
+    pub fn new(n_tracks: usize) -> Self {
+        Self { of: vec![-1; n_tracks], ..Self::default() }
+    }
+
+    /// Adds a group, which is known by this number: a part of an earlier one, or the whole. Rows of the tracks are only in
+    /// groups without parts.
+    pub fn push(&mut self, parent: Option<usize>, number: u32, tracks: &[usize]) {
+        let row = |row: usize| i32::try_from(row).unwrap_or(i32::MAX);
+        let own = row(self.parents.len());
+        self.parents.push(parent.map_or(-1, row));
+        self.numbers.push(number);
+        for &track in tracks {
+            if let Some(group) = self.of.get_mut(track) {
+                *group = own;
+            }
+        }
+    }
+
+    /// Number of groups, those with parts counted.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.parents.len()
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.parents.is_empty()
+    }
+
+    /// Row of the group that a group is part of; `None` for the whole.
+    #[must_use]
+    pub fn parent(&self, group: usize) -> Option<usize> {
+        self.parents.get(group).and_then(|&parent| usize::try_from(parent).ok())
+    }
+
+    /// Rows of the tracks of a group without parts.
+    pub fn tracks(&self, group: usize) -> impl Iterator<Item = usize> {
+        let is_in = move |of: i32| usize::try_from(of).is_ok_and(|of| of == group);
+        self.of.iter().enumerate().filter(move |(_, of)| is_in(**of)).map(|(track, _)| track)
+    }
+
+    /// Why a plugin must not be given these groups of so many tracks; `None` when it may.
+    pub(crate) fn fault(&self, n_tracks: usize) -> Option<String> {
+        let n = self.len();
+        if n == 0 || self.of.len() != n_tracks {
+            return Some(format!("cannot grow from {n} groups of {} of {n_tracks} tracks", self.of.len()));
+        }
+        let is_placed = |(row, &parent): (usize, &i32)| match usize::try_from(parent) {
+            Ok(parent) => parent < row,
+            Err(_) => row == 0 && parent == -1,
+        };
+        if let Some(row) = self.parents.iter().enumerate().position(|group| !is_placed(group)) {
+            return Some(format!(
+                "group {row} is part of {}, which does not come before it",
+                self.parents[row]
+            ));
+        }
+        let mut has_tracks = vec![false; n];
+        for (track, &group) in self.of.iter().enumerate().filter(|(_, group)| **group >= 0) {
+            if group as usize >= n || self.parents.contains(&group) {
+                return Some(format!("track {track} is in group {group}, which has parts or is none"));
+            }
+            has_tracks[group as usize] = true;
+        }
+        let is_empty = |row: &usize| !has_tracks[*row] && !self.parents.contains(&(*row as i32));
+        (0..n).find(is_empty).map(|row| format!("group {row} has neither tracks nor parts"))
+    }
+}
+
+/// What a structure builder draws on.
+#[derive(Clone, Copy, Debug)]
+pub struct Filmed<'a> {
+    /// The tracks.
+    pub tracks: &'a Tracks,
+    /// Their groups.
+    pub groups: &'a GroupTree,
+    /// Where the plant leaves the ground, pixels (right, down); `None`: nobody has said.
+    pub root: Option<[f64; 2]>,
+    /// Non-zero where branches may be, of the frames' size; `None`: everywhere.
+    pub mask: Option<Gray<'a>>,
+}
+
+impl Filmed<'_> {
+    /// Why a plugin must not be given this; `None` when it may.
+    pub(crate) fn fault(&self) -> Option<String> {
+        if let Some(root) = self.root.filter(|root| !root.iter().all(|v| v.is_finite())) {
+            return Some(format!("was given a root at {root:?}"));
+        }
+        let size = (self.tracks.width, self.tracks.height);
+        let is_off = |mask: &Gray<'_>| !mask.is_whole() || (mask.width, mask.height) != size;
+        if let Some(mask) = self.mask.as_ref().filter(|mask| is_off(mask)) {
+            let (width, height) = size;
+            return Some(format!(
+                "was given a mask of {}x{} for frames of {width}x{height}",
+                mask.width, mask.height
+            ));
+        }
+        self.tracks.fault().or_else(|| self.groups.fault(self.tracks.len()))
     }
 }
 

@@ -62,7 +62,12 @@ pub(crate) enum Ask {
         max_threads: u32,
     },
     Cluster(Movement),
-    Grow(Movement),
+    Grow {
+        movement: Movement,
+        groups: Columns,
+        root: Option<[f64; 2]>,
+        mask: Option<Plane>,
+    },
     Prepare {
         skeleton: Columns,
         instances: Columns,

@@ -9,8 +9,10 @@ mod tests;
 use crate::clip::FrameTimes;
 use crate::track::TrackId;
 
-/// A direction may be so far from unit length; it is made unit exactly.
+/// A direction may be so far from unit length; it is made unit.
 const UNIT: f64 = 1e-6;
+/// One that is so near to it is unit as it is: a skeleton that is taken apart and put together again is the same.
+const EXACT: f64 = 4e-15;
 
 /// The end of a bone; the root has none.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -153,7 +155,9 @@ impl Skeleton {
             if !is_unit {
                 return Err(SkeletonError::Direction { joint, frame, direction: *direction });
             }
-            *direction = direction.map(|v| v / length);
+            if (length - 1.0).abs() > EXACT {
+                *direction = direction.map(|v| v / length);
+            }
         }
         let rest = (0..n).map(|joint| mean_direction(directions.iter().skip(joint).step_by(n))).collect();
         Ok(Self { root, joints, rest, directions, times, leaves: Vec::new() })

@@ -27,6 +27,15 @@ derives from `honami.PointByPoint`, which does all of this, and writes two funct
         def cluster(self, tracks): ...       # tracks.id; .x, .y: tracks x frames, NaN where not seen; .frame, .time_s
             return honami.Tree(merges)       # rows a, b, height, as of scipy.cluster.hierarchy.linkage
 
+    @honami.structure("org.me.branches", "My branches", params=Settings)
+    class Branches:
+        def grow(self, filmed): ...          # all of the above, and .parent, .group, .root, .mask
+            return honami.Skeleton(root, parent, length, pose, bears)
+
+`filmed.parent` is, of every group, the group that it is part of (-1 for the whole, group 0), `filmed.group`, of every
+track, its group, which has no parts (-1: none), `filmed.root` x and y of where the plant leaves the ground, or None, and
+`filmed.mask` rows x columns of bytes, not 0 where branches may be, or None.
+
 `python3 mine.py --honami-manifest` writes `mine.honami.json`, from which honami lists the plugin and draws its form
 without running it. Write it anew when parameters change. What is printed is a line of the plugin's log.
 """
@@ -141,6 +150,27 @@ def Tree(merges, outlier=None, distance=None, frame=None):
     return {"honami.dendrogram/1": tree, "honami.frames/1": judged}
 
 
+def Skeleton(root, parent, length, pose, bears, leaves=None, offsets=None):
+    """Joints at the ends of bones, each after its parent; pixels; x right, y away from the camera, z up.
+
+    `root`: x, y, z of the first joint, which has parent -1 and length 0; `pose`: frames x joints x 3, the way each bone
+    points, of length 1 (of the root it says nothing); `bears`: pairs of a joint and a group that it has become; `leaves`:
+    pairs of a joint and a track that it carries, `offsets`: leaves x frames x 3, from the joint to it.
+    """
+    bears = np.reshape(bears, (-1, 2))
+    tables = {
+        "honami.joints/1": {"parent": (parent, "i4"), "length": (length, "f8")},
+        "honami.root/1": {axis: ([v], "f8") for axis, v in zip("xyz", root)},
+        "honami.pose/1": {"d": (np.reshape(pose, (-1, 3)), "f8")},
+        "honami.bears/1": {"joint": (bears[:, 0], "u4"), "group": (bears[:, 1], "u4")},
+    }
+    if leaves is not None:
+        leaves = np.reshape(leaves, (-1, 2))
+        tables["honami.leaves/1"] = {"joint": (leaves[:, 0], "u4"), "track": (leaves[:, 1], "u4")}
+        tables["honami.offsets/1"] = {"d": (np.reshape(offsets, (-1, 3)), "f8")}
+    return tables
+
+
 def window(gray, x, y, r, outside=None):
     """The window of radius r around the pixel nearest to (x, y), copied; None where it leaves the picture.
 
@@ -226,6 +256,11 @@ def tracker(id, name, *, params=Params, doc="", cite=(), deterministic=True):
 def clusterer(id, name, *, params=Params, doc="", cite=(), deterministic=True):
     """Makes a class a clusterer."""
     return lambda cls: _keep(cls, id, name, "clusterer", ["honami.clusterer/1"], params, doc, cite, deterministic)
+
+
+def structure(id, name, *, params=Params, doc="", cite=(), deterministic=True):
+    """Makes a class a structure builder."""
+    return lambda cls: _keep(cls, id, name, "structure", ["honami.structure/1"], params, doc, cite, deterministic)
 
 
 def _keep(cls, id, name, kind, interfaces, params, doc, cite, deterministic):
@@ -414,6 +449,13 @@ class _Host:
 
     def on_cluster(self, ask):
         return self.instance.cluster(self.tracks(ask))
+
+    def on_grow(self, ask):
+        filmed, groups = self.tracks(ask["movement"]), ask["groups"]
+        of = {"rows": len(filmed.id), "at": groups["at"]}
+        filmed.parent, filmed.group = self.column(groups, "parent", "i4"), self.column(of, "group", "i4")
+        filmed.root, filmed.mask = ask["root"], self.plane(ask["mask"]) if ask["mask"] else None
+        return self.instance.grow(filmed)
 
     def call(self, name, *args):
         return getattr(self.instance, name)(*args) if hasattr(self.instance, name) else None

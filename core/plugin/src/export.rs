@@ -52,7 +52,7 @@ unsafe impl Sync for Exported {}
 ///     plugins: [tracker Klt, clusterer Movement],
 /// }
 /// ```
-/// A plugin is announced by its kind: `tracker`, `clusterer`, `simulator`, and, still a draft, `structure`.
+/// A plugin is announced by its kind: `tracker`, `clusterer`, `structure` or `simulator`.
 #[macro_export]
 macro_rules! export {
     (library: { $($field:ident : $value:expr),* $(,)? }, plugins: [$($kind:ident $plugin:ty),* $(,)?] $(,)?) => {

@@ -58,7 +58,7 @@
 //! }
 //! ```
 //!
-//! The pieces: [`Tracker`], [`Clusterer`], [`Simulator`] and the draft in [`draft`]; [`params!`] and [`choice!`] for parameters;
+//! The pieces: [`Tracker`], [`Clusterer`], [`Structure`], [`Simulator`]; [`params!`] and [`choice!`] for parameters;
 //! [`export!`] for the border; [`Cx`] for progress, cancel and log; [`testing`] to run a plugin without a host. The
 //! algorithm itself belongs in a library crate that knows nothing of plugins.
 //!
@@ -72,9 +72,9 @@ mod info;
 mod manifest;
 mod simulator;
 mod state;
+mod structure;
 mod tracker;
 
-pub mod draft;
 pub mod export;
 pub mod params;
 pub mod testing;
@@ -88,6 +88,7 @@ pub use info::{Info, Library};
 pub use params::{Entry, Param, ParamType, Params, Value};
 pub use simulator::{Blowing, Detail, Instance, Mode, Node, Plant, Simulator, Steps, Wind};
 pub use state::State;
+pub use structure::{Filmed, Groups, Joint, Leaf, Skeleton, Structure};
 pub use tracker::{
     Chroma, Detect, DetectFn, Feature, Field, FieldFn, Frame, Gray, Point, Points, Range, Seed, Status,
     Stream, Tracker,

@@ -9,6 +9,7 @@ pub use samples::{Samples, groups};
 pub use suite::suite;
 
 use crate::clusterer::{Clusterer, Clustering, Tracks};
+use crate::structure::{Filmed, Skeleton, Structure};
 use crate::tracker::{Frame, Point, Points, Seed, Stream, Tracker};
 use crate::{Cx, Listener, Result};
 
@@ -68,4 +69,12 @@ pub fn track<'f, T: Tracker>(
 /// The clusterer's.
 pub fn cluster<T: Clusterer>(params: &T::Params, tracks: &Tracks<'_>) -> Result<Clustering> {
     T::cluster(params, tracks, &cx())
+}
+
+/// Grows the branches behind tracks.
+///
+/// # Errors
+/// The structure builder's.
+pub fn grow<T: Structure>(params: &T::Params, filmed: &Filmed<'_>) -> Result<Skeleton> {
+    T::grow(params, filmed, &cx())
 }

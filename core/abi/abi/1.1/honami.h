@@ -151,6 +151,27 @@ typedef struct honami_table {
  * parent i32, x f32, y f32, z f32, radius f32; a row a node. Optional: track i32 (row of the tracks it was grown from,
  * or -1). The parent's row comes before its own (-1: the root, row 0 and no other), so cycles cannot be written. */
 #define HONAMI_SKELETON "honami.skeleton/1"
+/* The tree that a hierarchy of tracks was cut into, since 1.1. parent i32; a row a group, each after the one that it is
+ * part of (-1: the whole, row 0 and no other). In a column with rows of its own, a row a track: group i32, the group that
+ * it is in, which has no parts, or -1 for none. A group without parts has one track at least. */
+#define HONAMI_GROUPS "honami.groups/1"
+/* Of skeletons that move as filmed, since 1.1: pixels; x right, y away from the camera, z up, right-handed, so that a
+ * place is seen in the picture at (x, -z). Six tables say one: joints, root, pose, bears; and leaves and offsets.
+ * parent i32, length f64 (of the bone that ends there, above 0; 0 of the root); a row a joint, at least 2. The parent's
+ * row comes before its own (-1: the root, row 0 and no other), so cycles cannot be written. */
+#define HONAMI_JOINTS "honami.joints/1"
+/* x f64, y f64, z f64; one row: where the root stands, in all frames. */
+#define HONAMI_ROOT "honami.root/1"
+/* d f64 x 3: the way a bone points, of length 1 (to 1e-6); joint after joint in frame after frame, as in the times. What
+ * stands for the root, which has no bone, says nothing. */
+#define HONAMI_POSE "honami.pose/1"
+/* joint u32, group u32: a row a group that a joint has become, each pair once; of groups with parts it need not be said.
+ * A group may have no joint, or several that are copies, of which the first is the one in the picture. */
+#define HONAMI_BEARS "honami.bears/1"
+/* joint u32, track u32 (row of the tracks); a row a leaf, a track that a joint carries. */
+#define HONAMI_LEAVES "honami.leaves/1"
+/* d f64 x 3: from the joint of a leaf to it, pixels; frame after frame of leaf after leaf. */
+#define HONAMI_OFFSETS "honami.offsets/1"
 /* yaw f32 (turned about z, from x towards y), scale f32 (of all lengths, above 0: a plant of the same shape and
  * material), mass f32 (times that of the plant, above 0); a row a copy. */
 #define HONAMI_INSTANCES "honami.instances/1"
@@ -439,6 +460,33 @@ typedef struct honami_clusterer_v1 {
   /* Commits honami.dendrogram/1, and honami.frames/1 if it judges frames.  [control & idle] */
   honami_code (*run)(honami_instance *instance, const honami_call *call, const honami_clusterer_input *input);
 } honami_clusterer_v1;
+
+/* ------------------------------------------------------------------------------------------------- structures --- */
+
+/* What a structure builder may draw on. Its options are its parameters. */
+typedef struct honami_structure_input {
+  uint32_t struct_size;
+  uint32_t max_threads;
+  uint32_t width;   /* of the frames, pixels */
+  uint32_t height;
+  uint64_t seed;
+  const honami_table *tracks;  /* honami.tracks/1 */
+  const honami_table *times;   /* honami.times/1 */
+  const honami_table *groups;  /* honami.groups/1 over the tracks */
+  const double *root;          /* x, y: where the plant leaves the ground in the picture; NULL: nobody has said */
+  const uint8_t *mask;         /* a byte a pixel of the frames, non-zero where branches may be; NULL: everywhere */
+  int64_t mask_stride;         /* bytes from a row of the mask to the next */
+} honami_structure_input;
+
+/* Grows the branches behind grouped tracks; every plugin of kind "structure" has it. Since 1.1. */
+#define HONAMI_STRUCTURE "honami.structure/1"
+typedef struct honami_structure_v1 {
+  uint32_t struct_size;
+  uint32_t reserved;
+  /* Commits honami.joints/1, honami.root/1, honami.pose/1 and honami.bears/1; with leaves, also honami.leaves/1 and
+   * honami.offsets/1.  [control & idle] */
+  honami_code (*run)(honami_instance *instance, const honami_call *call, const honami_structure_input *input);
+} honami_structure_v1;
 
 /* ------------------------------------------------------------------------------------------------- simulators --- */
 

@@ -14,7 +14,7 @@ use std::ptr::null;
 const WIDTH: u32 = 96;
 const HEIGHT: u32 = 72;
 const N_FRAMES: i64 = 4;
-/// Tracks of a clusterer, and frames of each.
+/// Tracks of a clusterer or a structure builder, and frames of each.
 const N_TRACKS: usize = 8;
 const N_TIMES: usize = 40;
 
@@ -85,8 +85,7 @@ impl Stage<'_> {
             Kind::Tracker => self.tracker(),
             Kind::Clusterer => self.clusterer(),
             Kind::Simulator => self.simulator(),
-            // A draft: its structs may still change.
-            Kind::Structure => Ok(()),
+            Kind::Structure => self.structure(),
         }
     }
 
@@ -210,6 +209,36 @@ impl Stage<'_> {
         let input = self.placed(&input)?;
         // SAFETY: as in `begin`.
         self.call("run", |raw, call| unsafe { run(raw, call, input.raw()) })
+    }
+
+    fn structure(&mut self) -> Result<(), Stop> {
+        // SAFETY: the struct of that interface.
+        let table: abi::StructureV1 = unsafe { self.made.table(interface::STRUCTURE)? };
+        let run = table.run.ok_or_else(|| lacking(interface::STRUCTURE))?;
+        let (tracks, times, groups) = (Columns::tracks(), Columns::times(), Columns::groups());
+        let placed_tracks = self.placed(&tracks.table(schema::TRACKS, tracks.rows))?;
+        let placed_times = self.placed(&times.table(schema::TIMES, times.rows))?;
+        let placed_groups = self.placed(&groups.table(schema::GROUPS, groups.rows))?;
+        let root = [36.5, 70.0];
+        for root in [null(), root.as_ptr()] {
+            let input = abi::StructureInput {
+                struct_size: 0,
+                max_threads: 1,
+                width: WIDTH,
+                height: HEIGHT,
+                seed: 1,
+                tracks: placed_tracks.raw(),
+                times: placed_times.raw(),
+                groups: placed_groups.raw(),
+                root,
+                mask: null(),
+                mask_stride: 0,
+            };
+            let input = self.placed(&input)?;
+            // SAFETY: as in `begin`.
+            self.call("run", |raw, call| unsafe { run(raw, call, input.raw()) })?;
+        }
+        Ok(())
     }
 
     fn simulator(&mut self) -> Result<(), Stop> {
@@ -399,6 +428,16 @@ impl Columns {
             .with(c"x", dtype::F32, x.map(f32::to_ne_bytes))
             .with(c"y", dtype::F32, all().map(|(track, _)| (8.0 * track as f32).to_ne_bytes()))
             .with(c"status", dtype::U8, all().map(|_| [abi::status::TRACKED]))
+    }
+
+    /// The whole, and two parts of it that tracks take turns in.
+    fn groups() -> Self {
+        let of = (0..N_TRACKS).map(|track| (1 + (track % 2) as i32).to_ne_bytes());
+        Self::new(3).with(c"parent", dtype::I32, [-1_i32, 0, 0].into_iter().map(i32::to_ne_bytes)).with(
+            c"group",
+            dtype::I32,
+            of,
+        )
     }
 
     fn times() -> Self {

@@ -1,6 +1,5 @@
 //! What a plugin holds on to, over many frames: memory, open files, threads.
 
-use super::with_task;
 use crate::course::{HERE, of_able};
 use crate::work::{Task, Work};
 use crate::{Check, Fault, Subject, Verdict};
@@ -68,28 +67,22 @@ fn growth(subject: &Subject, n_frames: usize) -> Result<Verdict, Fault> {
     if subject.info.is_program() {
         return Ok(Verdict::Beside("it is a program, whose process is its own".into()));
     }
-    with_task(subject, Task::endless, |task| {
-        let mut work = Work::start(subject, HERE, task)?;
-        // What is made once is made in the first tenth.
-        go(&mut work, task, n_frames / 10)?;
-        let before = Held::now()?;
-        go(&mut work, task, n_frames)?;
-        let after = Held::after(&before)?;
-        let grown = after.bytes.saturating_sub(before.bytes);
-        let (files, threads) =
-            (after.files.saturating_sub(before.files), after.threads.saturating_sub(before.threads));
-        let said =
-            format!("{} kB, {files} files, {threads} threads more after {n_frames} frames", grown >> 10);
-        if grown > SLACK_BYTES || files > 0 || threads > 0 {
-            Err(Fault(said))
-        } else {
-            Ok(Verdict::Holds(said))
-        }
-    })
+    let task = &Task::endless(subject);
+    let mut work = Work::start(subject, HERE, task)?;
+    // What is made once is made in the first tenth.
+    go(&mut work, task, n_frames / 10)?;
+    let before = Held::now()?;
+    go(&mut work, task, n_frames)?;
+    let after = Held::after(&before)?;
+    let grown = after.bytes.saturating_sub(before.bytes);
+    let (files, threads) =
+        (after.files.saturating_sub(before.files), after.threads.saturating_sub(before.threads));
+    let said = format!("{} kB, {files} files, {threads} threads more after {n_frames} frames", grown >> 10);
+    if grown > SLACK_BYTES || files > 0 || threads > 0 { Err(Fault(said)) } else { Ok(Verdict::Holds(said)) }
 }
 
-/// Leads a tracker to and fro through the frames of a task, in streams of 200 frames; a clusterer groups ever again, a
-/// fiftieth as often.
+/// Leads a tracker to and fro through the frames of a task, in streams of 200 frames; a clusterer groups, and a structure
+/// builder grows, ever again, a fiftieth as often.
 fn go(work: &mut Work<'_>, task: &Task, n_frames: usize) -> Result<(), HostError> {
     const STREAM: usize = 200;
     let cx = CallContext::silent();

@@ -1,6 +1,6 @@
 //! A call that takes a while: it says how far it is, and stops when it is told to.
 
-use super::{DEADLINE, with_task};
+use super::DEADLINE;
 use crate::course::{HERE, of_able};
 use crate::work::{Task, Work};
 use crate::{Check, Fault, Subject, Verdict};
@@ -15,18 +15,14 @@ pub(super) const CHECKS: &[Check] = &[
         level: 9,
         claim: "a long call says how far it is at least four times a second, and never goes back",
         deadline: DEADLINE,
-        run: |subject| {
-            of_able(subject, |subject| with_task(subject, Task::large, |task| progress(subject, task)))
-        },
+        run: |subject| of_able(subject, |subject| progress(subject, &Task::large(subject))),
     },
     Check {
         id: "running.stop",
         level: 9,
         claim: "told to stop it does within half a second, gives no result, and can work again",
         deadline: DEADLINE,
-        run: |subject| {
-            of_able(subject, |subject| with_task(subject, Task::large, |task| stop(subject, task)))
-        },
+        run: |subject| of_able(subject, |subject| stop(subject, &Task::large(subject))),
     },
 ];
 
@@ -149,7 +145,7 @@ fn stop(subject: &Subject, task: &Task) -> Result<Verdict, Fault> {
         return Ok(if slowest.clock > PATIENCE { Verdict::Doubtful(said) } else { Verdict::Beside(said) });
     }
     // The same instance is idle again, and as good as a fresh one.
-    let Some(small) = Task::small(subject) else { return Ok(Verdict::Holds(slowest.to_string())) };
+    let small = Task::small(subject);
     let (again, fresh) = (work.again(&small).finish()?, Work::start(subject, HERE, &small)?.finish()?);
     if let Some(what) = again.difference(&fresh).filter(|_| subject.info.caps.deterministic) {
         return Err(Fault(format!("after a stop its work differs from that of a fresh instance: {what}")));

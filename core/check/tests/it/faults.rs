@@ -21,6 +21,7 @@ struct Bad {
 const LOADED: &str = "tests/bad/loaded.c";
 const TRACKER: &str = "tests/bad/tracker.c";
 const CLUSTERER: &str = "tests/bad/clusterer.c";
+const STRUCTURE: &str = "tests/bad/structure.c";
 const SIMULATOR: &str = "tests/bad/simulator.c";
 
 /// Levels 1 to 3.
@@ -322,6 +323,26 @@ fn a_fault_in_the_way_of_working_is_found_at_its_level() {
     finds(HIGH);
 }
 
+/// Of structure builders.
+const GROWING: &[Bad] = &[
+    growing("DIES_OF_ONE", "structure.few", "SIGSEGV"),
+    growing("DIES_OF_LOST", "structure.hard", "SIGSEGV"),
+    growing("STILL", "structure.follows", "is not that of its joint"),
+    growing("LEAVES_ONE_OUT", "structure.follows", "has no joint"),
+    growing("BARE_LEAVES", "structure.leaves", "px from it"),
+    growing("BY_ORDER", "structure.order", "in another order"),
+    growing("OWN_ROOT", "structure.root", "it stands at"),
+];
+
+const fn growing(fault: &'static str, check: &'static str, says: &'static str) -> Bad {
+    Bad { fault, source: STRUCTURE, flags: &["-lm"], check, says }
+}
+
+#[test]
+fn a_fault_of_a_structure_builder_is_found_at_its_level() {
+    finds(GROWING);
+}
+
 /// Of simulators.
 const SWAYING: &[Bad] = &[
     swaying("DRIFTS", "simulator.rest", "in no wind a node is"),
@@ -403,7 +424,7 @@ const WITHOUT: &[(&str, &str)] = &[
 
 #[test]
 fn every_check_has_a_bad_plugin_or_a_reason_why_it_has_none() {
-    let single = [LOW, MIDDLE, HIGH, SWAYING].into_iter().flatten().map(|bad| bad.check);
+    let single = [LOW, MIDDLE, HIGH, GROWING, SWAYING].into_iter().flatten().map(|bad| bad.check);
     let several = SEVERAL.iter().flat_map(|(_, _, wanted)| wanted.iter().copied());
     let found: BTreeSet<&str> = single.chain(several).chain(["file.needed"]).collect();
     let without: BTreeSet<&str> = WITHOUT.iter().map(|(id, _)| *id).collect();

@@ -22,7 +22,7 @@ fn what_the_bad_ones_are_made_from_passes_all_that_is_asked_of_everybody() {
     if !has_cc() {
         return;
     }
-    for name in ["tracker", "clusterer", "simulator"] {
+    for name in ["tracker", "clusterer", "structure", "simulator"] {
         let library = compile(&format!("tests/bad/{name}.c"), name, &["-DFAULT=NONE", "-lm"]);
         let failed = failed(&check(&library, |check| check.level <= 9));
         assert!(failed.is_empty(), "{name}: {failed:?}");

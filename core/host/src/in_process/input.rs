@@ -1,8 +1,8 @@
 //! What goes to a plugin, in the shapes of the header. Everything borrows; nothing outlives the call.
 
 use crate::simulator::{Detail, PlantInstance, Steps, WindRows};
-use crate::types::{DetectRequest, FrameView, Node, Point, StreamInfo, Tracks};
-use honami_abi::{self as abi, draft, dtype, schema};
+use crate::types::{DetectRequest, Filmed, FrameView, GroupTree, Node, Point, StreamInfo, Tracks};
+use honami_abi::{self as abi, dtype, schema};
 use honami_model::picture::Range;
 use std::ffi::CStr;
 use std::ptr::null;
@@ -83,6 +83,12 @@ impl InputTable {
         let n = tracks.frames.len();
         let frames = column(c"frame", dtype::I64, n, &tracks.frames);
         Self::new(schema::TIMES, n, vec![frames, column(c"time_s", dtype::F64, n, &tracks.times_s)])
+    }
+
+    pub(super) fn groups(groups: &GroupTree) -> Self {
+        let (n, tracks) = (groups.parents.len(), groups.of.len());
+        let parents = column(c"parent", dtype::I32, n, &groups.parents);
+        Self::new(schema::GROUPS, n, vec![parents, column(c"group", dtype::I32, tracks, &groups.of)])
     }
 
     pub(super) fn skeleton(nodes: &[Node]) -> Self {
@@ -211,17 +217,22 @@ pub(super) fn clusterer(
 }
 
 pub(super) fn structure(
-    tracks: &Tracks,
-    rows: *const abi::Table,
-    times: *const abi::Table,
-) -> draft::StructureInput {
-    draft::StructureInput {
-        struct_size: size_of::<draft::StructureInput>() as u32,
-        max_threads: tracks.max_threads.max(1),
-        seed: tracks.seed,
-        tracks: rows,
-        times,
-        dendrogram: null(),
+    filmed: &Filmed<'_>,
+    [tracks, times, groups]: [&InputTable; 3],
+) -> abi::StructureInput {
+    let Filmed { tracks: of, root, mask, .. } = filmed;
+    abi::StructureInput {
+        struct_size: size_of::<abi::StructureInput>() as u32,
+        max_threads: of.max_threads.max(1),
+        width: of.width,
+        height: of.height,
+        seed: of.seed,
+        tracks: tracks.raw(),
+        times: times.raw(),
+        groups: groups.raw(),
+        root: root.as_ref().map_or(null(), |root| root.as_ptr()),
+        mask: mask.map_or(null(), |mask| mask.data.as_ptr()),
+        mask_stride: mask.map_or(0, |mask| mask.stride as i64),
     }
 }
 

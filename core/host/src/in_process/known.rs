@@ -1,6 +1,6 @@
 //! Structs of a plugin's, which may end before the newest field that this host knows.
 
-use honami_abi::{self as abi, draft};
+use honami_abi as abi;
 use std::mem::MaybeUninit;
 use std::ptr::copy_nonoverlapping;
 
@@ -24,7 +24,7 @@ growing!(
     abi::FieldV1,
     abi::StateV1,
     abi::ClustererV1,
-    draft::StructureV1,
+    abi::StructureV1,
     abi::SimulatorV1
 );
 

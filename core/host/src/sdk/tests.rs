@@ -34,8 +34,10 @@ fn a_plugin_that_was_just_begun_has_its_own_id_and_nothing_of_the_template() {
     for (language, kind) in [
         (Language::Python, Kind::Tracker),
         (Language::Python, Kind::Clusterer),
+        (Language::Python, Kind::Structure),
         (Language::Rust, Kind::Tracker),
         (Language::Rust, Kind::Clusterer),
+        (Language::Rust, Kind::Structure),
         (Language::C, Kind::Tracker),
         (Language::Cpp, Kind::Tracker),
     ] {
@@ -81,6 +83,7 @@ fn names_that_would_not_work_are_refused() {
     }
     assert!(begin("json", Kind::Tracker, Language::Rust).is_ok());
     assert!(begin("a", Kind::Clusterer, Language::C).unwrap_err().contains("in Python and in Rust"));
+    assert!(begin("a", Kind::Structure, Language::Cpp).unwrap_err().contains("in Python and in Rust"));
     assert!(begin("a", Kind::Simulator, Language::Rust).unwrap_err().contains("no template of a simulator"));
 }
 

@@ -5,7 +5,7 @@ use super::{Ask, Columns, FULL, Frame, LIMITED, Movement, Plane};
 use crate::instance::Request;
 use crate::reply::Element;
 use crate::simulator::{Detail, PlantInstance, Steps, WindRows};
-use crate::types::{DetectRequest, FrameView, Node, Point, StreamInfo, Tracks};
+use crate::types::{DetectRequest, Filmed, FrameView, GroupTree, Node, Point, StreamInfo, Tracks};
 use honami_model::picture::{Chroma, Gray, Range};
 
 /// Takes what was said apart in the plugin's process, and hands it on.
@@ -60,7 +60,12 @@ pub(crate) fn hear<R>(
             return Ok(act(&Request::Field { from: &from, to: &to, max_threads: *max_threads }));
         }
         Ask::Cluster(movement) => return Ok(act(&Request::Cluster(&take_tracks(movement, inbox)?))),
-        Ask::Grow(movement) => return Ok(act(&Request::Grow(&take_tracks(movement, inbox)?))),
+        Ask::Grow { movement, groups, root, mask } => {
+            let tracks = &take_tracks(movement, inbox)?;
+            let groups = &take_groups(groups, tracks.len(), inbox)?;
+            let mask = mask.map(|mask| take_plane(mask, inbox)).transpose()?;
+            return Ok(act(&Request::Grow(&Filmed { tracks, groups, root: *root, mask })));
+        }
         Ask::Prepare { skeleton, instances, max_threads, seed } => {
             let (nodes, instances) = (take_nodes(skeleton, inbox)?, take_instances(instances, inbox)?);
             let (nodes, instances, max_threads, seed) = (&nodes, &instances, *max_threads, *seed);
@@ -140,6 +145,15 @@ fn take_tracks(movement: &Movement, inbox: &Inbox) -> Result<Tracks, &'static st
         height: movement.height,
         max_threads: movement.max_threads,
         seed: movement.seed,
+    })
+}
+
+fn take_groups(groups: &Columns, n_tracks: usize, inbox: &Inbox) -> Result<GroupTree, &'static str> {
+    let of = Columns { rows: n_tracks as u64, at: groups.at.clone() };
+    Ok(GroupTree {
+        parents: take(groups, inbox, "parent", 1)?.to_vec(),
+        of: take(&of, inbox, "group", 1)?.to_vec(),
+        numbers: Vec::new(),
     })
 }
 

@@ -4,7 +4,7 @@ use super::memory::{Outbox, bytes_of};
 use super::{Ask, Columns, FULL, Frame, LIMITED, Movement, Plane, Stream};
 use crate::instance::Request;
 use crate::simulator::{Detail, PlantInstance, WindRows};
-use crate::types::{FrameView, Node, Point, Tracks};
+use crate::types::{Filmed, FrameView, GroupTree, Node, Point, Tracks};
 use honami_model::picture::{Gray, Range};
 
 /// Lays what belongs to a request into the memory and says it; `None` when it does not fit.
@@ -35,10 +35,7 @@ pub(crate) fn ask(request: &Request<'_>, out: &mut Outbox) -> Option<Ask> {
         Request::Detect(wanted) => Ask::Detect {
             frame: put_frame(&wanted.frame, out)?,
             max_features: wanted.max_features,
-            mask: match &wanted.mask {
-                Some(mask) => Some(put_plane(mask, out)?),
-                None => None,
-            },
+            mask: put_mask(wanted.mask.as_ref(), out)?,
             points: put_points(wanted.points, out)?,
             max_threads: wanted.max_threads,
             seed: wanted.seed,
@@ -47,7 +44,7 @@ pub(crate) fn ask(request: &Request<'_>, out: &mut Outbox) -> Option<Ask> {
             Ask::Field { from: put_frame(from, out)?, to: put_frame(to, out)?, max_threads }
         }
         Request::Cluster(tracks) => Ask::Cluster(put_tracks(tracks, out)?),
-        Request::Grow(tracks) => Ask::Grow(put_tracks(tracks, out)?),
+        Request::Grow(filmed) => put_filmed(filmed, out)?,
         Request::Prepare { nodes, instances, max_threads, seed } => {
             let (skeleton, instances) = (put_nodes(nodes, out)?, put_instances(instances, out)?);
             Ask::Prepare { skeleton, instances, max_threads, seed }
@@ -135,6 +132,24 @@ fn put_tracks(tracks: &Tracks, out: &mut Outbox) -> Option<Movement> {
         max_threads: tracks.max_threads,
         seed: tracks.seed,
     })
+}
+
+fn put_filmed(filmed: &Filmed<'_>, out: &mut Outbox) -> Option<Ask> {
+    let GroupTree { parents, of, .. } = filmed.groups;
+    Some(Ask::Grow {
+        movement: put_tracks(filmed.tracks, out)?,
+        groups: put(out, parents.len(), &[("parent", bytes_of(parents)), ("group", bytes_of(of))])?,
+        root: filmed.root,
+        mask: put_mask(filmed.mask.as_ref(), out)?,
+    })
+}
+
+/// The plane of a mask, where there is one; `None` when it does not fit.
+fn put_mask(mask: Option<&Gray<'_>>, out: &mut Outbox) -> Option<Option<Plane>> {
+    match mask {
+        Some(mask) => put_plane(mask, out).map(Some),
+        None => Some(None),
+    }
 }
 
 fn put_plane(gray: &Gray<'_>, out: &mut Outbox) -> Option<Plane> {

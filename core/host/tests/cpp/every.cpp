@@ -95,4 +95,33 @@ public:
   }
 };
 
-HONAMI_LIBRARY("org.test.every", "1.0.0", "MIT", Faster, Chain);
+// A bone from the root to where each group without parts is, in a frame where all of it is seen.
+class Fan : public honami::Structure {
+public:
+  static constexpr honami::Info info{"org.test.fan", "Fan"};
+  explicit Fan(const honami::Values &) {}
+
+  honami::Skeleton run(const honami::Filmed &filmed, const honami::Call &call) override {
+    if (!filmed.root) throw honami::Error("a fan wants a root");
+    const double *root = filmed.root;
+    honami::Skeleton fan(filmed.tracks.n_frames(), root[0], filmed.may(1, 1) ? 0 : 5, -root[1]);
+    for (std::size_t group = 0; group < filmed.groups.size(); group++) {
+      if (filmed.groups.has_parts(group)) continue;
+      call.progress(double(group) / double(filmed.groups.size()));
+      const std::size_t joint = fan.joint(0, 1 + double(filmed.groups.parent(group)));
+      fan.bear(joint, group);
+      for (std::size_t k = 0; k < filmed.tracks.size(); k++) {
+        if (filmed.groups.of(k) != int32_t(group)) continue;
+        const honami::Track track = filmed.tracks[k];
+        const std::size_t leaf = fan.leaf(joint, k);
+        for (std::size_t t = 0; t < track.n; t++) {
+          fan.point(joint, t, track.x[t] - root[0], 0, root[1] - track.y[t]);
+          fan.place(leaf, t, track.x[t], 0.5, track.y[t]);
+        }
+      }
+    }
+    return fan;
+  }
+};
+
+HONAMI_LIBRARY("org.test.every", "1.0.0", "MIT", Faster, Chain, Fan);

@@ -1,7 +1,10 @@
-//! Plugins in C++ that have all that the header for C++ offers: detection, dense motion, state, clusterers.
+//! Plugins in C++ that have all that the header for C++ offers: detection, dense motion, state, clusterers,
+//! structure builders.
 
 use crate::tools::{has_compiler, host, isolating, named, pixels, point, scratch, start_in, stream, view};
-use honami_host::{CallContext, DetectRequest, Host, HostError, Kind, Registry, Tracker, Tracks};
+use honami_host::{
+    CallContext, DetectRequest, Filmed, GroupTree, Host, HostError, Kind, Registry, Tracker, Tracks,
+};
 use honami_model::picture::Gray;
 use honami_model::track::Status;
 use std::path::Path;
@@ -50,6 +53,7 @@ fn what_a_class_has_is_in_its_manifest() {
         ["honami.tracker/1", "honami.detect/1", "honami.field/1", "honami.state/1"]
     );
     assert_eq!(interfaces(Kind::Clusterer, "chain"), ["honami.clusterer/1"]);
+    assert_eq!(interfaces(Kind::Structure, "fan"), ["honami.structure/1"]);
 }
 
 #[test]
@@ -136,5 +140,51 @@ fn a_clusterer_in_cpp_gives_a_tree_and_says_why_it_cannot() {
         assert_eq!(merges.collect::<Vec<_>>(), [(0, 1, 3.0, 2), (3, 2, 5.0, 3)]);
         let frames = found.frames.iter().map(|note| (note.frame, note.outlier, note.distance));
         assert_eq!(frames.collect::<Vec<_>>(), [(10, false, 0.5), (11, true, 1.0)]);
+    }
+}
+
+#[test]
+fn a_structure_builder_in_cpp_gives_a_skeleton_and_says_why_it_cannot() {
+    let Some(registry) = every() else { return };
+    let info = registry.find(Kind::Structure, "fan").unwrap();
+    let cx = CallContext::silent();
+    let mut tracks = Tracks::new(8, 4, 0, vec![0.5, 1.0]);
+    tracks.push(4, 0, [(5.0, 1.0, Status::Tracked), (2.0, 4.0, Status::Tracked)]);
+    tracks.push(6, 0, [(2.0, 2.0, Status::Tracked), (6.0, 1.0, Status::Tracked)]);
+    let mut groups = GroupTree::new(2);
+    groups.push(None, 9, &[]);
+    groups.push(Some(0), 2, &[1]);
+    groups.push(Some(0), 7, &[0]);
+    let black = [0; 32];
+    let filmed = Filmed {
+        tracks: &tracks,
+        groups: &groups,
+        root: Some([2.0, 1.0]),
+        mask: Some(Gray::packed(&black, 8, 4)),
+    };
+    for host in [host(), isolating()] {
+        let grow = |filmed: &Filmed<'_>| {
+            let (mut fan, _) = host.structure(info, &honami_host::Values::default(), &cx).unwrap();
+            fan.run(filmed, &cx)
+        };
+        let rootless = grow(&Filmed { root: None, ..filmed }).unwrap_err();
+        assert!(
+            matches!(&rootless, HostError::Failed { text, .. } if text == "a fan wants a root"),
+            "{rootless}"
+        );
+        let grown = grow(&filmed).unwrap();
+        let skeleton = &grown.skeleton;
+        assert_eq!((skeleton.root(), &grown.bears[..]), ([2.0, 5.0, -1.0], &[(1, 1), (2, 2)][..]));
+        assert_eq!(skeleton.directions(0)[1..], [[0.0, 0.0, -1.0], [1.0, 0.0, 0.0]]);
+        assert_eq!(skeleton.directions(1)[1..], [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0]]);
+        let joints = skeleton.joints().iter().map(|joint| (joint.parent, joint.length, joint.groups.clone()));
+        assert_eq!(
+            joints.collect::<Vec<_>>(),
+            [(None, 0.0, vec![]), (Some(0), 1.0, vec![2]), (Some(0), 1.0, vec![7])]
+        );
+        let leaves = skeleton.leaves().iter().map(|leaf| (leaf.track.0, leaf.joint, leaf.offsets.clone()));
+        let wanted =
+            [(6, 1, vec![[2.0, 0.5, 2.0], [6.0, 0.5, 1.0]]), (4, 2, vec![[5.0, 0.5, 1.0], [2.0, 0.5, 4.0]])];
+        assert_eq!(leaves.collect::<Vec<_>>(), wanted);
     }
 }

@@ -10,6 +10,7 @@ mod isolated;
 mod registry;
 mod simulator;
 mod state;
+mod structure;
 mod threads;
 mod tools;
 mod zoo;

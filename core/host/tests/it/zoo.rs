@@ -320,19 +320,6 @@ fn clusterings_come_checked_with_their_frame_notes() {
 }
 
 #[test]
-fn the_draft_works_end_to_end() {
-    let cx = CallContext::silent();
-    let mut tracks = Tracks::new(WIDTH, HEIGHT, 0, vec![0.0]);
-    for id in 0..3 {
-        tracks.push(id, 0, [(1.0, 1.0, Status::Tracked)]);
-    }
-    let (mut stick, _) =
-        host().structure(&of_zoo(Kind::Structure, "stick"), &Values::default(), &cx).unwrap();
-    let nodes = stick.grow(&tracks, &cx).unwrap();
-    assert_eq!(nodes.iter().map(|node| node.parent).collect::<Vec<_>>(), [None, Some(0), Some(1)]);
-}
-
-#[test]
 fn the_manifest_says_what_the_source_says() {
     let info = of_zoo(Kind::Tracker, "drift");
     assert_eq!(info.interfaces, ["honami.tracker/1", "honami.detect/1", "honami.field/1"]);

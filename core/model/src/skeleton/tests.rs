@@ -97,3 +97,15 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_skeleton_taken_apart_and_put_together_is_the_same() {
+    let directions = (0..400).map(|k| {
+        let (a, b) = (f64::from(k) * 0.7, f64::from(k) * 1.3);
+        [a.sin() * b.cos(), a.sin() * b.sin(), a.cos()].map(|v| v * (1.0 + 1e-9 * f64::from(k % 5)))
+    });
+    let joints = vec![joint(None, 0.0), joint(Some(0), 2.0)];
+    let once = Skeleton::new([0.0; 3], joints.clone(), directions.collect(), times(200)).unwrap();
+    let again = Skeleton::new([0.0; 3], joints, once.directions.clone(), times(200)).unwrap();
+    assert_eq!(once, again);
+}

@@ -2,7 +2,7 @@
 
 use super::HostCall;
 use crate::{Error, Result};
-use honami_abi::{self as abi, Column, Table, code, draft, dtype};
+use honami_abi::{self as abi, Column, Table, code, dtype};
 use std::ffi::CStr;
 use std::mem::MaybeUninit;
 use std::ptr::copy_nonoverlapping;
@@ -59,7 +59,7 @@ all_given!(
     abi::ClustererInput: times,
     abi::SimulatorInput: instances,
     abi::StepInput: detail,
-    draft::StructureInput: dendrogram,
+    abi::StructureInput: mask_stride,
 );
 
 /// As much of a host's struct as the host knew; the fields after that are zero.
