@@ -118,7 +118,9 @@ impl<'a> Pairs<'a> {
 
     fn between(&self, i: usize, j: usize) -> Option<f64> {
         let (a, b) = (self.places[i]?, self.places[j]?);
-        Some((a[0] - b[0]).hypot(a[1] - b[1]))
+        let [x, y] = [a[0] - b[0], a[1] - b[1]];
+        // Pixels: nothing that `hypot`, which is many times slower, would be needed for.
+        Some((x * x + y * y).sqrt())
     }
 
     /// Distances of the features of some tracks to all from one on, a row a track.
@@ -226,7 +228,8 @@ impl<'a> Pairs<'a> {
             all.truncate(n_nearest);
         }
         all.sort_unstable_by(by);
-        all
+        // With no room left for those that were not taken.
+        all.as_slice().to_vec()
     }
 
     /// Rows of how alike some tracks are to all, to a power, times how near they are: `r^sharpness exp(-(w_pos d / s)^2)`. One

@@ -139,10 +139,10 @@ fn largest(row: &[f64], node: usize, n_kept: usize) -> Vec<(u32, f64)> {
         let by = |a: &(u32, f64), b: &(u32, f64)| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0));
         entries[1..].select_nth_unstable_by(n_kept - 1, by);
         entries.truncate(n_kept + 1);
-        entries.shrink_to_fit();
     }
     entries.sort_unstable_by_key(|(other, _)| *other);
-    entries
+    // With no room left for those that were not kept.
+    entries.as_slice().to_vec()
 }
 
 /// Puts every edge into the rows of both its ends.
