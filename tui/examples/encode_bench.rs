@@ -1,13 +1,25 @@
 //! What the encoder makes of pictures in motion: time, bytes and likeness, as one line of JSON per size and clip.
 //!
 //! `cargo run --release -p honami --example encode_bench -- [BYTES] [CLIP…]`: waves with noise, and the clips, stepped
-//! through frame by frame with so many bytes a frame. The likeness is that of what a terminal emulator shows.
+//! through frame by frame with so many bytes a frame. The likeness is that of what a terminal emulator shows. A last line
+//! has what it takes from a hierarchy of 2,000 tracks that is cut elsewhere to the bytes of a screen in other colours.
 
 use std::io::Write as _;
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
 use anyhow::Context as _;
+use honami_model::clip::{Clip, FrameTimes};
+use honami_model::hierarchy::{Dendrogram, Merge};
+use honami_model::track::{Quality, Sample, Source, Span, Status, TrackId};
+use honami_tui::app::groups::Groups;
+use honami_tui::app::layout::{Layout, Lens};
+use honami_tui::app::panel::Panel;
+use honami_tui::app::state::State;
+use honami_tui::app::tracks::TrackRow;
+use honami_tui::app::update::{Fact, Msg, update};
+use honami_tui::app::view::{Shot, draw};
 use honami_tui::term::colour::Depth;
 use honami_tui::term::encode::{Encoder, Frame, HALF_BLOCK};
 use honami_workbench::media::{self, OpenOptions, Rect};
@@ -16,6 +28,8 @@ use ratatui::style::{Color, Style};
 /// Bytes of a frame, as on a link of 2 Mbit/s.
 const BUDGET: usize = 8 << 10;
 const N_FRAMES: u16 = 300;
+/// Tracks whose hierarchy is cut.
+const N_TRACKS: u32 = 2000;
 /// Columns and rows of a screen, of which four lines are no picture.
 const SIZES: [(u16, u16); 3] = [(80, 24), (120, 36), (160, 45)];
 
@@ -31,7 +45,7 @@ fn main() -> anyhow::Result<()> {
             measure(clip, pictures(Path::new(clip), columns, rows - 4)?.into_iter(), budget)?;
         }
     }
-    Ok(())
+    cuts(160, 45)
 }
 
 /// Shows frames one after another; prints what it took.
@@ -57,11 +71,7 @@ fn measure(clip: &str, frames: impl Iterator<Item = Frame>, budget: usize) -> an
         emulator.process(&bytes);
         psnr.push(likeness(emulator.screen(), &frame));
     }
-    let round = |x: f64| (x * 1e3).round() / 1e3;
-    let [times, sizes, psnr] = [&mut times_ms, &mut sizes, &mut psnr].map(|values| {
-        values.sort_by(f64::total_cmp);
-        [0.01, 0.1, 0.5, 0.99].map(|part| round(values[(values.len() as f64 * part) as usize]))
-    });
+    let [times, sizes, psnr] = [times_ms, sizes, psnr].map(quantiles);
     let line = serde_json::json!({
         "clip": clip, "columns": size.0, "rows": size.1, "p50_ms": times[2], "p99_ms": times[3],
         "bytes_p50": sizes[2], "bytes_p99": sizes[3],
@@ -69,6 +79,60 @@ fn measure(clip: &str, frames: impl Iterator<Item = Frame>, budget: usize) -> an
     });
     writeln!(std::io::stdout(), "{line}")?;
     Ok(())
+}
+
+/// The least hundredth and tenth of some values, their median and their largest hundredth.
+fn quantiles(mut values: Vec<f64>) -> [f64; 4] {
+    let round = |x: f64| (x * 1e3).round() / 1e3;
+    values.sort_by(f64::total_cmp);
+    [0.01, 0.1, 0.5, 0.99].map(|part| round(values[(values.len() as f64 * part) as usize]))
+}
+
+/// Cuts a hierarchy of many tracks into more and more groups; prints what the groups, the screen and its bytes took.
+fn cuts(columns: u16, rows: u16) -> anyhow::Result<()> {
+    let clip = Clip { width: 1280, height: 720, times: FrameTimes::constant(2, 25.0)? };
+    let mut state = State::new("cuts".to_owned(), clip, (columns, rows));
+    state.panel = Some(Panel::Groups);
+    state.tracks = (0..N_TRACKS).map(row).collect();
+    let tracks: Vec<TrackId> = (0..N_TRACKS).map(TrackId).collect();
+    // The first two that are left join, again and again.
+    let merge = |row| Merge { a: 2 * row, b: 2 * row + 1, height: f64::from(row), size: 0 };
+    let mut merges: Vec<Merge> = (0..N_TRACKS - 1).map(merge).collect();
+    for row in 0..merges.len() {
+        let size = |part: u32| part.checked_sub(N_TRACKS).map_or(1, |row| merges[row as usize].size);
+        merges[row].size = size(merges[row].a) + size(merges[row].b);
+    }
+    let tree = Dendrogram::new(N_TRACKS, merges)?;
+    let lens = Lens::of(&state, Layout::of(&state).picture);
+    let (width, height) = lens.size();
+    let pixels = (0..width * height).map(|i| [(i % 251) as u8, (i % 83) as u8, 40]).collect();
+    let shot = Shot { frame: state.frame, lens, pixels };
+    let mut encoder = Encoder::new(Depth::True);
+    let (mut times_ms, mut sizes) = (Vec::new(), Vec::new());
+    for n_groups in 2..100 {
+        let mut bytes = Vec::new();
+        let start = Instant::now();
+        let groups = (tracks.clone(), tree.clone());
+        let groups = Groups::new("by bod".to_owned(), groups, (n_groups, &[]), Vec::new());
+        update(&mut state, Msg::Fact(Fact::Groups(Some(Box::new(groups)))));
+        encoder.encode(&draw(&state, Some(&shot)), usize::MAX, false, &mut bytes);
+        times_ms.push(start.elapsed().as_secs_f64() * 1e3);
+        sizes.push(bytes.len() as f64);
+    }
+    let [times, sizes] = [times_ms, sizes].map(quantiles);
+    let line = serde_json::json!({
+        "cuts": N_TRACKS, "columns": columns, "rows": rows, "p50_ms": times[2], "p99_ms": times[3], "bytes_p50": sizes[2],
+    });
+    writeln!(std::io::stdout(), "{line}")?;
+    Ok(())
+}
+
+/// A track that is seen in two frames.
+fn row(track: u32) -> TrackRow {
+    let (x, y) = ((track * 7 % 1280) as f32, (track * 3 % 720) as f32);
+    let sample =
+        Sample { x, y, status: Status::Tracked, source: Source::Tracked, quality: Quality::default() };
+    TrackRow::new(TrackId(track), None, Arc::new(Span { first_frame: 0, samples: vec![sample; 2] }))
 }
 
 /// Peak signal to noise ratio of the screen, dB.

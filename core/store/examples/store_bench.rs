@@ -10,10 +10,11 @@ use std::time::Instant;
 
 use honami_model::clip::{Clip, FrameTimes};
 use honami_model::edit::Transaction;
+use honami_model::hierarchy::{Dendrogram, Merge};
 use honami_model::history::EntryId;
 use honami_model::provenance::Provenance;
 use honami_model::track::{Quality, Sample, Source, Status, TrackId};
-use honami_store::{Access, ClipRecord, Project, RunHead};
+use honami_store::{Access, ClipRecord, Clustering, Project, RunHead};
 
 type Outcome<T> = Result<T, Box<dyn Error>>;
 
@@ -47,6 +48,14 @@ fn write(path: &Path, n_tracks: u32, n_frames: u32, n_edits: u32) -> Outcome<()>
         date: honami_store::now(),
         honami_version: "0.1.0".to_owned(),
     };
+    let clustering = Clustering {
+        provenance: provenance.clone(),
+        tracks: numbers.clone().map(TrackId).collect(),
+        dendrogram: halves(n_tracks)?,
+        cut: 8,
+        outlier_frames: Vec::new(),
+        notes: Vec::new(),
+    };
     let tracks = numbers.clone().map(TrackId).collect();
     let mut writer = project.begin_run(&RunHead { provenance, tracks, frames: 0..n_frames })?;
     let frames: Vec<Vec<_>> = (0..n_frames)
@@ -76,6 +85,13 @@ fn write(path: &Path, n_tracks: u32, n_frames: u32, n_edits: u32) -> Outcome<()>
         project.shown_all()
     })?;
     timed("undo", || project.undo())?;
+    let clustering = project.save_clustering(&clustering)?;
+    project.commit(Transaction::show_clustering(clustering, 8))?;
+    timed("one cut, tracks and groups again", || {
+        project.commit(Transaction::set_cut(9))?;
+        project.shown_all()?;
+        project.grouping()
+    })?;
     println!("{:>34} {:9.1} MB", "file", std::fs::metadata(path)?.len() as f64 / 1e6);
     Ok(())
 }
@@ -88,6 +104,19 @@ fn read(path: &Path) -> Outcome<()> {
     timed("shown tracks again", || project.shown_all())?;
     timed("undo everything", || project.jump(EntryId::ROOT))?;
     Ok(())
+}
+
+/// A hierarchy in which the first two that are left join, again and again.
+fn halves(n_leaves: u32) -> Outcome<Dendrogram> {
+    let mut sizes = vec![1; n_leaves as usize];
+    let mut merges = Vec::new();
+    for row in 0..n_leaves - 1 {
+        let [a, b] = [2 * row, 2 * row + 1];
+        let size = sizes[a as usize] + sizes[b as usize];
+        sizes.push(size);
+        merges.push(Merge { a, b, height: f64::from(row), size });
+    }
+    Ok(Dendrogram::new(n_leaves, merges)?)
 }
 
 fn sample(track: u32, frame: u32) -> Sample {
