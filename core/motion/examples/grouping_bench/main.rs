@@ -93,8 +93,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     }
     for ((.., case), found) in CASES.iter().zip(&found) {
-        let names: Vec<String> =
-            trees.iter().map(|(habit, seed)| format!("{habit:?} {seed}").to_lowercase()).collect();
+        let names: Vec<String> = trees.iter().map(|(habit, seed)| format!("{habit} {seed}")).collect();
         println!("| {case} | mean | sd | {} |", names.join(" | "));
         println!("|---|---|---|{}", "---|".repeat(trees.len()));
         for ((name, _), found) in METHODS.iter().zip(found) {

@@ -7,6 +7,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::error::Error;
 use std::f64::consts::TAU;
+use std::fmt;
 use std::path::PathBuf;
 
 /// How a tree is built.
@@ -22,6 +23,18 @@ pub(crate) enum Habit {
     Walnut,
     /// An ash, a maple or an oak that was scanned (Jackson and others 2019), by its number.
     Wytham(&'static str),
+}
+
+impl fmt::Display for Habit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Forking => "forking",
+            Self::Conifer => "conifer",
+            Self::Shrub => "shrub",
+            Self::Walnut => "walnut",
+            Self::Wytham(number) => return write!(f, "Wytham {number}"),
+        })
+    }
 }
 
 impl Habit {
