@@ -26,6 +26,7 @@ mod real_clips;
 mod rebuilt;
 mod replay;
 mod retrack;
+mod rigs;
 mod schema;
 mod sdk;
 mod settings;

@@ -79,7 +79,7 @@ fn test(args: &[&str]) -> anyhow::Result<()> {
     }
     let peers = if args.is_empty() { peers::want() } else { None };
     if args.is_empty() && peers.is_none() {
-        system::may_skip("what OpenSees, bvhio and glTF's validator say")?;
+        system::may_skip("what OpenSees, readers of rigs and glTF's validator say")?;
     }
     // The end-to-end tests run the real program with the real plugins: build them first.
     cargo(&["build"]).run()?;

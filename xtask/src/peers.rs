@@ -1,5 +1,5 @@
-//! Other programs that tests hold honami against, in the target folder: OpenSees and bvhio for Python, glTF's validator for
-//! node.
+//! Other programs that tests hold honami against, in the target folder: OpenSees, bvhio, pygltflib and trimesh for Python,
+//! glTF's validator for node.
 
 use std::ffi::OsString;
 use std::fs;
@@ -11,8 +11,8 @@ use crate::shell::{Step, target_dir};
 use crate::system;
 
 /// What Python is to have, and what it imports.
-const PACKAGES: [&str; 3] = ["openseespy", "bvhio", "numpy"];
-const IMPORTS: &str = "import openseespy.opensees, bvhio, numpy";
+const PACKAGES: [&str; 5] = ["openseespy", "bvhio", "numpy", "pygltflib", "trimesh"];
+const IMPORTS: &str = "import openseespy.opensees, bvhio, numpy, pygltflib, trimesh";
 const VALIDATOR: &str = "gltf-validator";
 
 /// What tests must be told to find them.
@@ -36,7 +36,7 @@ pub(crate) fn want() -> Option<Env> {
         Ok(vec![("HONAMI_PYTHON", python), ("NODE_PATH", modules.into())])
     });
     made.map_err(|error| {
-        eprintln!("skipped: what OpenSees, bvhio and glTF's validator say is not asked: {error:#}");
+        eprintln!("skipped: what OpenSees, readers of rigs and glTF's validator say is not asked: {error:#}");
     })
     .ok()
 }

@@ -21,6 +21,7 @@
 mod atomic;
 pub mod flo;
 pub mod foreign;
+pub mod glb;
 pub mod origin;
 mod parquet;
 pub mod plant;

@@ -1,15 +1,17 @@
 //! Skeletons for other programs, out: their motion as BVH and as a table of angles, their shape at rest as SWC, their
-//! leaves as a table.
+//! leaves as a table; and meshes that they carry, as rigs.
 
 mod angles;
 mod bvh;
 mod leaf_table;
+mod rig;
 mod swc;
 #[cfg(test)]
 mod tests;
 
 pub use angles::AngleRow;
 pub use leaf_table::LeafRow;
+pub use rig::{RigError, rigged};
 
 use std::io::Write;
 use std::path::Path;

@@ -1,13 +1,15 @@
 //! Skeletons: joints at the ends of bones of constant length, and where each bone points in every frame.
 //!
-//! Lengths are pixels of the clip; axes are those of plants: x right, y away from the camera, z up, right-handed. So a
-//! place is seen in the picture at (x, -z), see [`seen`] and [`placed`].
+//! Lengths are pixels of the clip, until a skeleton [`stands`](Skeleton::standing) elsewhere; axes are those of plants: x
+//! right, y away from the camera, z up, right-handed. So a place is seen in the picture at (x, -z), see [`seen`] and
+//! [`placed`].
 
 #[cfg(test)]
 mod tests;
 
 use crate::clip::FrameTimes;
 use crate::track::TrackId;
+use crate::turn::{Turn, norm};
 
 /// A direction may be so far from unit length; it is made unit.
 const UNIT: f64 = 1e-6;
@@ -119,8 +121,10 @@ pub fn placed(at: [f64; 2], depth: f64) -> [f64; 3] {
     [at[0], depth, -at[1]]
 }
 
-fn norm(v: [f64; 3]) -> f64 {
-    v[0].hypot(v[1]).hypot(v[2])
+/// By what bones are turned that have pointed one way and point another, the shortest way; a turn a bone.
+#[must_use]
+pub fn turns(before: &[[f64; 3]], now: &[[f64; 3]]) -> Vec<Turn> {
+    before.iter().zip(now).map(|(before, now)| Turn::between(*before, *now)).collect()
 }
 
 impl Skeleton {
@@ -179,6 +183,23 @@ impl Skeleton {
         }
         self.leaves = leaves;
         Ok(self)
+    }
+
+    /// The same elsewhere: its root in `foot`, so many times as large, turned about the upright, counterclockwise from above,
+    /// radians. Bones turn as they did.
+    ///
+    /// # Errors
+    /// [`SkeletonError`] where that is nowhere, or of no size.
+    pub fn standing(&self, foot: [f64; 3], size: f64, turn_rad: f64) -> Result<Self, SkeletonError> {
+        let turn = Turn::about([0.0, 0.0, 1.0], turn_rad);
+        let joint = |joint: &Joint| Joint { length: size * joint.length, ..joint.clone() };
+        let directions = self.directions.iter().map(|direction| turn.apply(*direction)).collect();
+        let leaf = |leaf: &Leaf| {
+            let offset = |by: &[f64; 3]| turn.apply(*by).map(|v| size * v);
+            Leaf { offsets: leaf.offsets.iter().map(offset).collect(), ..leaf.clone() }
+        };
+        Self::new(foot, self.joints.iter().map(joint).collect(), directions, self.times.clone())?
+            .with_leaves(self.leaves.iter().map(leaf).collect())
     }
 
     /// Its joints, each after its parent.

@@ -538,6 +538,18 @@ pub enum WorkbenchError {
     /// No skeleton grows from these tracks.
     #[error(transparent)]
     Structure(#[from] honami_structure::StructureError),
+    /// A skeleton stands nowhere.
+    #[error(transparent)]
+    Skeleton(#[from] honami_model::skeleton::SkeletonError),
+    /// Bones that no tube goes along.
+    #[error(transparent)]
+    Wood(#[from] honami_model::plant::PlantError),
+    /// There is no rig.
+    #[error(transparent)]
+    Rig(#[from] honami_exchange::skeleton::RigError),
+    /// A `.glb` could not be written.
+    #[error(transparent)]
+    Document(#[from] honami_exchange::glb::DocumentError),
     /// A thread of the program has panicked.
     #[error("a fault of the program's own; the session's log has its report")]
     Fault,

@@ -1,6 +1,8 @@
 //! Growing: the branches behind the shown tracks, from the groups that the shown clustering is cut into.
 
+mod body;
 mod judge;
+mod outs;
 
 use std::ops::Range;
 use std::path::{Path as File, PathBuf};
@@ -19,6 +21,7 @@ use honami_structure::zeng::{self, Alpha};
 pub use honami_structure::zeng::{COPIES, SHIFT};
 
 pub use self::judge::{Judged, judge};
+pub use self::outs::{Out, UNIT, write};
 use crate::error::WorkbenchError;
 use crate::track::{Area, mask};
 
@@ -168,14 +171,6 @@ pub fn siblings<'a>(
 /// [`WorkbenchError::Structure`].
 pub fn draw(siblings: &Siblings, seed: u64, number: u32) -> Result<Skeleton, WorkbenchError> {
     Ok(siblings.draw(seed, number)?)
-}
-
-/// Writes a skeleton.
-///
-/// # Errors
-/// What the disk met.
-pub fn write(skeleton: &Skeleton, format: SkeletonFormat, out: &File) -> Result<(), WorkbenchError> {
-    Ok(honami_exchange::skeleton::write(out, format, skeleton)?)
 }
 
 /// Writes where the leaves of a skeleton are; returns the number of rows.

@@ -13,7 +13,7 @@ pub mod sway;
 #[cfg(test)]
 mod tests;
 pub mod told;
-mod tubes;
+pub(crate) mod tubes;
 pub mod weather;
 
 use std::fs;

@@ -4,8 +4,9 @@ mod siblings;
 
 use std::path::PathBuf;
 
+use honami_model::brief::Brief;
 use honami_workbench::grow::siblings::Settings;
-use honami_workbench::grow::{self, GrowRequest, Growth, Judged, SkeletonFormat};
+use honami_workbench::grow::{self, GrowRequest, Growth, Judged, Out, SkeletonFormat};
 use serde_json::json;
 
 use super::args::grow::{Grow, Method};
@@ -27,8 +28,9 @@ pub(super) fn grow(args: &Grow) -> anyhow::Result<Answer> {
     let judged = args.truth.as_ref().map(|truth| grow::judge(&growth, &project, truth)).transpose()?;
     let settings = Settings { level: args.level, threshold: args.threshold };
     let siblings = args.siblings.map(|n| grow::siblings(&growth, settings).map(|of| (n, of))).transpose()?;
-    for (format, out) in &files {
-        grow::write(&growth.skeleton, *format, out)?;
+    let unit = args.unit.unwrap_or(grow::UNIT);
+    for (kind, out) in &files {
+        grow::write(&growth.skeleton, *kind, unit, out)?;
     }
     let n_rows = args.leaves.as_ref().map(|out| grow::write_leaves(&growth.skeleton, out)).transpose()?;
     let mut answer = describe(args, &growth);
@@ -42,11 +44,14 @@ pub(super) fn grow(args: &Grow) -> anyhow::Result<Answer> {
             "motion_px": judged.motion_px,
         });
     }
-    for (format, out) in &files {
-        let what = match format {
-            SkeletonFormat::Bvh => "motion, degrees, y up",
-            SkeletonFormat::Angles => "joints and angles, radians, a row a joint and frame",
-            SkeletonFormat::Swc => "the shape at rest, z up",
+    for (kind, out) in &files {
+        let what = match kind {
+            Out::Skeleton(SkeletonFormat::Bvh) => "motion, degrees, y up".to_owned(),
+            Out::Skeleton(SkeletonFormat::Angles) => {
+                "joints and angles, radians, a row a joint and frame".to_owned()
+            }
+            Out::Skeleton(SkeletonFormat::Swc) => "the shape at rest, z up".to_owned(),
+            Out::Rig => format!("a rig that moves, y up, a pixel taken as {} m", Brief(unit)),
         };
         answer.text += &format!("\n{}: {what}", out.display());
     }
@@ -84,15 +89,20 @@ fn method(args: &Grow) -> anyhow::Result<grow::Method> {
 }
 
 /// What is to be written, and as what.
-fn files(args: &Grow) -> anyhow::Result<Vec<(SkeletonFormat, &PathBuf)>> {
+fn files(args: &Grow) -> anyhow::Result<Vec<(Out, &PathBuf)>> {
     let mut files = Vec::new();
     for out in &args.out {
-        let format = SkeletonFormat::of(out);
-        want(format.is_some(), || {
-            format!("skeletons are written as .bvh, .csv or .swc, not as {}", out.display())
+        let kind = Out::of(out);
+        want(kind.is_some(), || {
+            format!("skeletons are written as .bvh, .csv, .swc or .glb, not as {}", out.display())
         })?;
-        files.extend(format.map(|format| (format, out)));
+        files.extend(kind.map(|kind| (kind, out)));
     }
+    want(args.unit.is_none_or(|unit| unit.is_finite() && unit > 0.0), || {
+        "--unit takes metres of a pixel, more than 0".to_owned()
+    })?;
+    let has_rig = files.iter().any(|(kind, _)| *kind == Out::Rig);
+    want(args.unit.is_none() || has_rig, || "--unit goes with a .glb, as out.glb".to_owned())?;
     let is_csv = |file: &PathBuf| file.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
     if let Some(leaves) = args.leaves.as_ref().filter(|file| !is_csv(file)) {
         want(false, || format!("leaves are written as .csv, not as {}", leaves.display()))?;
@@ -128,7 +138,7 @@ fn describe(args: &Grow, growth: &Growth) -> Answer {
     let frames = &growth.frames;
     text += &format!("\nframes {}..{}, {:.3} s", frames.start, frames.end, growth.seconds);
     let is_uneven = skeleton.times().is_variable()
-        && args.out.iter().any(|out| SkeletonFormat::of(out) == Some(SkeletonFormat::Bvh));
+        && args.out.iter().any(|out| Out::of(out) == Some(Out::Skeleton(SkeletonFormat::Bvh)));
     let uneven =
         "frames of the clip are not evenly spaced, those of .bvh are: their times are not kept there";
     let notes: Vec<&str> =

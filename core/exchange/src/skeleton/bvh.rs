@@ -7,9 +7,8 @@
 
 use std::fmt::Write as _;
 
-use honami_model::skeleton::Skeleton;
-
-type Matrix = [[f64; 3]; 3];
+use honami_model::skeleton::{Skeleton, turns};
+use honami_model::turn::Turn;
 
 /// The file.
 pub(super) fn text(skeleton: &Skeleton) -> String {
@@ -67,17 +66,12 @@ fn motion(skeleton: &Skeleton, order: &[usize], text: &mut String) {
     put(text, format_args!("MOTION\nFrames: {}\nFrame Time: {step:.9}\n", times.len()));
     let mut before = vec![[0.0; 3]; skeleton.joints().len()];
     for frame in 0..skeleton.times().len() {
-        let turns: Vec<Matrix> = skeleton
-            .directions(frame)
-            .iter()
-            .zip(skeleton.rest())
-            .map(|(now, rest)| swing(turned(*rest), turned(*now)))
-            .collect();
+        let turns = turns(skeleton.rest(), skeleton.directions(frame));
         text.push_str("0 0 0 0 0 0");
         for &row in order {
             let own = skeleton.joints()[row].parent.filter(|&parent| parent > 0);
-            let local =
-                own.map_or(turns[row], |parent| product(&transposed(&turns[parent as usize]), &turns[row]));
+            let turn = turns[row];
+            let local = own.map_or(turn, |parent| turns[parent as usize].back().after(&turn));
             // The turn of the same orientation that is nearest to the frame before, so that nothing spins between frames.
             for (angle, before) in angles(&local).into_iter().zip(&mut before[row]) {
                 *before = angle + 360.0 * ((*before - angle) / 360.0).round();
@@ -98,54 +92,17 @@ fn turned([x, y, z]: [f64; 3]) -> [f64; 3] {
     [x, z, -y]
 }
 
-/// The shortest turn from one direction to another; half a turn is one about the axis nearest to the camera's.
-fn swing(from: [f64; 3], to: [f64; 3]) -> Matrix {
-    let cosine = dot(from, to);
-    if cosine < -1.0 + 1e-12 {
-        // Towards the camera, less what of it is along the bone; about x where nothing is left.
-        let aside = |axis: [f64; 3]| {
-            let along = dot(axis, from);
-            let rest: [f64; 3] = std::array::from_fn(|k| axis[k] - along * from[k]);
-            let length = dot(rest, rest).sqrt();
-            (length > 0.1).then(|| rest.map(|v| v / length))
-        };
-        let axis = aside([0.0, 0.0, 1.0]).or_else(|| aside([1.0, 0.0, 0.0])).unwrap_or([0.0, 1.0, 0.0]);
-        return std::array::from_fn(|r| {
-            std::array::from_fn(|c| 2.0 * axis[r] * axis[c] - f64::from(u8::from(r == c)))
-        });
-    }
-    let [x, y, z] = [
-        from[1] * to[2] - from[2] * to[1],
-        from[2] * to[0] - from[0] * to[2],
-        from[0] * to[1] - from[1] * to[0],
-    ];
-    let cross = [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]];
-    let twice = product(&cross, &cross);
-    std::array::from_fn(|r| {
-        std::array::from_fn(|c| f64::from(u8::from(r == c)) + cross[r][c] + twice[r][c] / (1.0 + cosine))
-    })
-}
-
-/// Angles about z, x and y, degrees, whose product Rz Rx Ry the matrix is.
-pub(super) fn angles(m: &Matrix) -> [f64; 3] {
-    let x = m[2][1].clamp(-1.0, 1.0).asin();
-    let (z, y) = if m[2][1].abs() < 1.0 - 1e-12 {
-        ((-m[0][1]).atan2(m[1][1]), (-m[2][0]).atan2(m[2][2]))
+/// Angles about z, x and y of the file, degrees, whose product Rz Rx Ry the turn is.
+fn angles(turn: &Turn) -> [f64; 3] {
+    // Column by column as its axes are turned.
+    let columns = [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]].map(|axis| turned(turn.apply(axis)));
+    let m = |row: usize, column: usize| columns[column][row];
+    let x = m(2, 1).clamp(-1.0, 1.0).asin();
+    let (z, y) = if m(2, 1).abs() < 1.0 - 1e-12 {
+        ((-m(0, 1)).atan2(m(1, 1)), (-m(2, 0)).atan2(m(2, 2)))
     } else {
         // A quarter turn about x makes the others one: all of it is put into the first.
-        (m[1][0].atan2(m[0][0]), 0.0)
+        (m(1, 0).atan2(m(0, 0)), 0.0)
     };
     [z, x, y].map(f64::to_degrees)
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn product(a: &Matrix, b: &Matrix) -> Matrix {
-    std::array::from_fn(|r| std::array::from_fn(|c| (0..3).map(|k| a[r][k] * b[k][c]).sum()))
-}
-
-fn transposed(m: &Matrix) -> Matrix {
-    std::array::from_fn(|r| std::array::from_fn(|c| m[c][r]))
 }

@@ -12,7 +12,7 @@ use super::*;
 type Matrix = [[f64; 3]; 3];
 
 /// Joints of these parents and lengths, bones pointing as these angles say (in the picture, and behind it).
-fn skeleton(bones: &[(u32, f64)], angles: &[(f64, f64)], n_frames: u32) -> Skeleton {
+pub(super) fn skeleton(bones: &[(u32, f64)], angles: &[(f64, f64)], n_frames: u32) -> Skeleton {
     let mut joints = vec![Joint::default()];
     for (row, &(parent, length)) in bones.iter().enumerate() {
         let parent = Some(parent % (row as u32 + 1));

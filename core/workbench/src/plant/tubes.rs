@@ -9,15 +9,15 @@ mod tests;
 use honami_mechanics::{Beams, Direction};
 
 /// Vertices of a ring.
-pub(super) const SIDES: usize = 6;
+pub(crate) const SIDES: usize = 6;
 
 /// A ring of vertices about a node.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Ring {
+pub(crate) struct Ring {
     /// Of the beams.
-    pub(super) node: u32,
+    pub(crate) node: u32,
     /// Metres.
-    pub(super) radius: f64,
+    pub(crate) radius: f64,
     /// At right angles to the branch and to each other, of length 1.
     across: [Direction; 2],
     /// Segments before and after it: from node to node, and which way by metres of their length.
@@ -26,7 +26,7 @@ pub(super) struct Ring {
 
 /// Rings of all branches, branch after branch.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Tubes {
+pub(crate) struct Tubes {
     rings: Vec<Ring>,
     /// How many rings each branch has.
     lengths: Vec<usize>,
@@ -35,7 +35,7 @@ pub(super) struct Tubes {
 impl Tubes {
     /// Of a fork the thickest goes on; the others begin in its middle.
     #[must_use]
-    pub(super) fn new(beams: &Beams) -> Self {
+    pub(crate) fn new(beams: &Beams) -> Self {
         let mut next: Vec<Option<u32>> = vec![None; beams.len()];
         for node in 1..beams.len() as u32 {
             let Some(parent) = beams.parent(node as usize) else { continue };
@@ -86,19 +86,19 @@ impl Tubes {
 
     /// All rings.
     #[must_use]
-    pub(super) fn rings(&self) -> &[Ring] {
+    pub(crate) fn rings(&self) -> &[Ring] {
         &self.rings
     }
 
     /// Vertices, [`SIDES`] a ring.
     #[must_use]
-    pub(super) fn n_vertices(&self) -> usize {
+    pub(crate) fn n_vertices(&self) -> usize {
         SIDES * self.rings.len()
     }
 
     /// Triangles, anticlockwise as seen from outside: two a side, and a lid on every tip.
     #[must_use]
-    pub(super) fn triangles(&self) -> Vec<[u32; 3]> {
+    pub(crate) fn triangles(&self) -> Vec<[u32; 3]> {
         let (mut triangles, mut first) = (Vec::new(), 0);
         for n_rings in &self.lengths {
             for _ in 1..*n_rings {
@@ -119,13 +119,18 @@ impl Tubes {
 
 impl Ring {
     /// By what it turns when nodes are moved so, radians about an axis.
-    pub(super) fn turn(&self, moved: impl Fn(u32) -> Direction) -> Direction {
+    pub(crate) fn turn(&self, moved: impl Fn(u32) -> Direction) -> Direction {
         let turn = |([base, tip], along): &([u32; 2], Direction)| along.cross(&(moved(*tip) - moved(*base)));
         self.beside.iter().map(turn).sum::<Direction>() / 2.0
     }
 
+    /// Nodes at the tips of the segments before and after it.
+    pub(crate) fn tips(&self) -> [u32; 2] {
+        self.beside.map(|([_, tip], _)| tip)
+    }
+
     /// From the node to each vertex, of length 1.
-    pub(super) fn outward(&self) -> impl Iterator<Item = Direction> {
+    pub(crate) fn outward(&self) -> impl Iterator<Item = Direction> {
         let [side, other] = self.across;
         (0..SIDES).map(move |k| {
             let (sin, cos) = (std::f64::consts::TAU * k as f64 / SIDES as f64).sin_cos();

@@ -13,7 +13,8 @@ use clap::{Args, ValueEnum};
 pub(in crate::cli) struct Grow {
     /// Project file (.honami).
     pub(in crate::cli) project: PathBuf,
-    /// Files to write: .bvh (motion capture), .csv (joints and angles in every frame), .swc (the shape at rest).
+    /// Files to write: .bvh (motion capture), .csv (joints and angles in every frame), .swc (the shape at rest), .glb (a rig:
+    /// tubes on bones that move, for modellers and engines).
     pub(in crate::cli) out: Vec<PathBuf>,
     /// How joints are found.
     #[arg(long, value_enum, default_value_t = Method::Diener)]
@@ -43,6 +44,9 @@ pub(in crate::cli) struct Grow {
     /// Only the frames after which the motion is most as it began, so that it repeats without a jump.
     #[arg(long = "loop")]
     pub(in crate::cli) is_loop: bool,
+    /// Metres of a pixel in a .glb (default: 0.001).
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    pub(in crate::cli) unit: Option<f64>,
     /// Write where every track is as a leaf of the skeleton: track,joint,frame,time_s,x_px,y_px,depth_px.
     #[arg(long, value_name = "FILE.csv")]
     pub(in crate::cli) leaves: Option<PathBuf>,

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use honami_workbench::grow::{self, Siblings, SkeletonFormat};
+use honami_workbench::grow::{self, Out, Siblings};
 use serde_json::json;
 
 use super::super::Answer;
@@ -14,7 +14,7 @@ pub(super) fn draw(
     n: u32,
     siblings: &Siblings,
     args: &Grow,
-    files: &[(SkeletonFormat, &PathBuf)],
+    files: &[(Out, &PathBuf)],
     answer: &mut Answer,
 ) -> anyhow::Result<()> {
     let (mut written, mut drawing) = (Vec::new(), Duration::ZERO);
@@ -22,9 +22,9 @@ pub(super) fn draw(
         let begun = Instant::now();
         let sibling = grow::draw(siblings, args.seed, number)?;
         drawing += begun.elapsed();
-        for (format, out) in files {
+        for (kind, out) in files {
             let out = numbered(out, number);
-            grow::write(&sibling, *format, &out)?;
+            grow::write(&sibling, *kind, args.unit.unwrap_or(grow::UNIT), &out)?;
             written.push(out);
         }
         if let Some(leaves) = &args.leaves {

@@ -1,0 +1,250 @@
+//! Rigs, read back by another's reader and posed by arithmetic of their own, are the skeleton.
+
+use gltf::animation::util::ReadOutputs;
+use honami_model::clip::FrameTimes;
+use honami_model::skeleton::Joint;
+use proptest::prelude::*;
+
+use super::super::tests::skeleton;
+use super::*;
+
+type Matrix = [[f64; 4]; 4];
+
+/// `a` after `b`; columns, as glTF has them.
+fn after(a: &Matrix, b: &Matrix) -> Matrix {
+    b.map(|column| std::array::from_fn(|row| (0..4).map(|k| a[k][row] * column[k]).sum()))
+}
+
+fn moved(m: &Matrix, [x, y, z]: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|row| m[0][row] * x + m[1][row] * y + m[2][row] * z + m[3][row])
+}
+
+fn matrix([x, y, z, w]: [f64; 4], [a, b, c]: [f64; 3]) -> Matrix {
+    [
+        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + z * w), 2.0 * (x * z - y * w), 0.0],
+        [2.0 * (x * y - z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + x * w), 0.0],
+        [2.0 * (x * z + y * w), 2.0 * (y * z - x * w), 1.0 - 2.0 * (x * x + y * y), 0.0],
+        [a, b, c, 1.0],
+    ]
+}
+
+fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt()
+}
+
+/// A rig as another reader finds it.
+struct Rig {
+    names: Vec<String>,
+    /// Of every joint, frame after frame.
+    turns: Vec<Vec<[f64; 4]>>,
+    /// Of every joint in every frame, to the scene.
+    poses: Vec<Vec<Matrix>>,
+    /// From the mesh to each joint.
+    inverse: Vec<Matrix>,
+    times: Vec<f32>,
+    vertices: Vec<[f64; 3]>,
+    bindings: Vec<([u16; 4], [f32; 4])>,
+}
+
+impl Rig {
+    fn read(document: Document) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rig.glb");
+        let n_bytes = document.write(&path).unwrap();
+        let bytes = std::fs::read(&path).unwrap();
+        assert_eq!(bytes.len() as u64, n_bytes);
+        let gltf::Gltf { document, blob } = gltf::Gltf::from_slice(&bytes).unwrap();
+        let blob = blob.unwrap();
+        let data = |_: gltf::Buffer<'_>| Some(blob.as_slice());
+        let (skin, animation) = (document.skins().next().unwrap(), document.animations().next().unwrap());
+        let joints: Vec<gltf::Node<'_>> = skin.joints().collect();
+        let (mut times, mut turns) = (Vec::new(), vec![None; document.nodes().len()]);
+        for channel in animation.channels() {
+            let reader = channel.reader(data);
+            times = reader.read_inputs().unwrap().collect();
+            let Some(ReadOutputs::Rotations(found)) = reader.read_outputs() else { unreachable!() };
+            let found: Vec<[f64; 4]> = found.into_f32().map(|q| q.map(f64::from)).collect();
+            turns[channel.target().node().index()] = Some(found);
+        }
+        let mut parents = vec![None; document.nodes().len()];
+        for node in document.nodes() {
+            node.children().for_each(|child| parents[child.index()] = Some(node.index()));
+        }
+        let n_frames = times.len();
+        let still = vec![[0.0, 0.0, 0.0, 1.0]; n_frames];
+        let turns: Vec<Vec<[f64; 4]>> =
+            turns.into_iter().map(|found| found.unwrap_or_else(|| still.clone())).collect();
+        let by: Vec<[f64; 3]> =
+            document.nodes().map(|node| node.transform().decomposed().0.map(f64::from)).collect();
+        let pose = |frame: usize| {
+            let chain = |joint: &gltf::Node<'_>| {
+                let mut pose = matrix(turns[joint.index()][frame], by[joint.index()]);
+                let mut at = parents[joint.index()];
+                while let Some(node) = at {
+                    pose = after(&matrix(turns[node][frame], by[node]), &pose);
+                    at = parents[node];
+                }
+                pose
+            };
+            joints.iter().map(chain).collect()
+        };
+        let primitive = document.meshes().next().unwrap().primitives().next().unwrap();
+        let reader = primitive.reader(data);
+        let bones = reader.read_joints(0).unwrap().into_u16();
+        Self {
+            names: joints.iter().map(|joint| joint.name().unwrap().to_owned()).collect(),
+            turns: joints.iter().map(|joint| turns[joint.index()].clone()).collect(),
+            poses: (0..n_frames).map(pose).collect(),
+            inverse: skin
+                .reader(data)
+                .read_inverse_bind_matrices()
+                .unwrap()
+                .map(|m| m.map(|column| column.map(f64::from)))
+                .collect(),
+            times,
+            vertices: reader.read_positions().unwrap().map(|v| v.map(f64::from)).collect(),
+            bindings: bones.zip(reader.read_weights(0).unwrap().into_f32()).collect(),
+        }
+    }
+
+    /// Where a vertex is in a frame, blended linearly, as every program that reads the file does.
+    fn vertex(&self, vertex: usize, frame: usize) -> [f64; 3] {
+        let (bones, weights) = self.bindings[vertex];
+        let mut sum = [0.0; 3];
+        for (bone, weight) in bones.into_iter().map(usize::from).zip(weights) {
+            let carried = after(&self.poses[frame][bone], &self.inverse[bone]);
+            let place = moved(&carried, self.vertices[vertex]);
+            (0..3).for_each(|axis| sum[axis] += f64::from(weight) * place[axis]);
+        }
+        sum
+    }
+}
+
+/// A mesh with a vertex in the end of every bone, bound to it, and one half-way along, bound half to the bone before.
+fn marks(skeleton: &Skeleton) -> (Mesh, Vec<Binding>) {
+    let ends = skeleton.places(skeleton.rest());
+    let (mut mesh, mut bindings) = (Mesh::default(), Vec::new());
+    for (row, joint) in skeleton.joints().iter().enumerate() {
+        let parent = joint.parent.unwrap_or(0);
+        let middle = std::array::from_fn(|axis| f64::midpoint(ends[row][axis], ends[parent as usize][axis]));
+        mesh.positions.extend([ends[row], middle]);
+        bindings.push(Binding::new([(row as u16, 1.0), (0, 0.0), (0, 0.0), (0, 0.0)]));
+        bindings.push(Binding::new([(row as u16, 0.5), (parent as u16, 0.5), (0, 0.0), (0, 0.0)]));
+    }
+    mesh.triangles = (2..mesh.positions.len() as u32).map(|k| [0, k - 1, k]).collect();
+    (mesh, bindings)
+}
+
+#[track_caller]
+fn assert_is_it(skeleton: &Skeleton) {
+    let (mesh, bindings) = marks(skeleton);
+    let rig = Rig::read(rigged(&mesh, &bindings, skeleton, skeleton).unwrap());
+    let n = skeleton.joints().len();
+    let rest = skeleton.places(skeleton.rest());
+    let size = rest.iter().map(|place| apart(*place, rest[0])).fold(1.0, f64::max) + apart(rest[0], [0.0; 3]);
+    let tips: Vec<usize> = (1..n).filter(|row| skeleton.are_tips()[*row]).collect();
+    assert_eq!(rig.names.len(), n + tips.len());
+    assert_eq!(rig.poses.len(), skeleton.times().len() as usize);
+    for (frame, poses) in rig.poses.iter().enumerate() {
+        let places = skeleton.places(skeleton.directions(frame as u32));
+        let near = |found: [f64; 3], wanted: [f64; 3], what: &str| {
+            let off = apart(found, upright(wanted)) / size;
+            assert!(off < 1e-5, "frame {frame}, {what}: {off} of the size off");
+        };
+        for (row, (name, pose)) in rig.names.iter().zip(poses).enumerate() {
+            let place = match name.split_once('_') {
+                None => 0,
+                Some(("bone", row)) => {
+                    skeleton.joints()[row.parse::<usize>().unwrap()].parent.unwrap() as usize
+                }
+                Some((_, tip)) => tip.parse().unwrap(),
+            };
+            near([pose[3][0], pose[3][1], pose[3][2]], places[place], name);
+            assert!(row < n || name == &format!("tip_{}", tips[row - n]));
+        }
+        for (row, place) in places.iter().enumerate() {
+            near(rig.vertex(2 * row, frame), *place, "the end of a bone");
+        }
+    }
+    for turns in &rig.turns {
+        for turn in turns {
+            assert!((turn.iter().map(|v| v * v).sum::<f64>() - 1.0).abs() < 1e-6, "{turn:?}");
+        }
+        for pair in turns.windows(2) {
+            let along: f64 = pair[0].iter().zip(pair[1]).map(|(a, b)| a * b).sum();
+            assert!(along >= 0.0, "not the long way round: {pair:?}");
+        }
+    }
+}
+
+#[test]
+fn joints_and_what_they_carry_are_where_the_skeleton_has_them() {
+    let round: Vec<(f64, f64)> = (0..26).map(|k| (f64::from(k) * 0.5, 0.0)).collect();
+    assert_is_it(&skeleton(&[(0, 10.0)], &round, 13));
+    let opposite = [(0.0, 0.0), (0.4, 0.0), (0.0, 0.0), (0.4 + std::f64::consts::PI, 0.0)];
+    assert_is_it(&skeleton(&[(0, 10.0)], &opposite, 2));
+    let deep = [(0.0, 0.0), (0.0, 1.5), (0.0, -1.5), (1.0, std::f64::consts::FRAC_PI_2), (0.0, 0.2)];
+    assert_is_it(&skeleton(&[(0, 10.0), (1, 20.0), (2, 5.0)], &deep, 5));
+    assert_is_it(&skeleton(&[(0, 10.0)], &[(0.2, 0.1)], 1));
+}
+
+/// Where two bones carry a vertex half and half, it is half-way between where each would have it.
+#[test]
+fn weights_blend() {
+    let bent = skeleton(&[(0, 10.0), (1, 10.0)], &[(0.0, 0.0), (0.3, 0.0), (-0.4, 0.2), (0.1, 0.1)], 6);
+    let (mesh, bindings) = marks(&bent);
+    let rig = Rig::read(rigged(&mesh, &bindings, &bent, &bent).unwrap());
+    let rest = bent.places(bent.rest());
+    for frame in 0..6 {
+        let directions = bent.directions(frame);
+        let (places, turns) = (bent.places(directions), turns(bent.rest(), directions));
+        let middle = mesh.positions[5];
+        // Bone 2 begins in joint 1, bone 1 in the root.
+        let by = |bone: usize, base: usize| -> [f64; 3] {
+            let from = turns[bone].apply(std::array::from_fn(|axis| middle[axis] - rest[base][axis]));
+            std::array::from_fn(|axis| places[base][axis] + from[axis])
+        };
+        let (own, before) = (by(2, 1), by(1, 0));
+        let wanted = std::array::from_fn(|axis| f64::midpoint(own[axis], before[axis]));
+        assert!(apart(rig.vertex(5, frame as usize), upright(wanted)) < 1e-3, "frame {frame}");
+        assert!(apart(own, before) > 0.1, "else nothing was blended");
+    }
+}
+
+#[test]
+fn frames_have_the_times_of_the_clip_from_the_first_on() {
+    let times = |times_s: &[f64]| {
+        let joints = vec![Joint::default(), Joint { parent: Some(0), length: 1.0, ..Joint::default() }];
+        let directions = vec![[0.0, 0.0, 1.0]; 2 * times_s.len()];
+        let times = FrameTimes::new(times_s.to_vec()).unwrap();
+        let skeleton = Skeleton::new([0.0; 3], joints, directions, times).unwrap();
+        let (mesh, bindings) = marks(&skeleton);
+        rigged(&mesh, &bindings, &skeleton, &skeleton).map(|document| Rig::read(document).times)
+    };
+    assert_eq!(times(&[4.0, 4.5, 6.0]).unwrap(), [0.0, 0.5, 2.0]);
+    assert_eq!(times(&[0.0, 1000.0, 1000.0 + 1e-6]).unwrap_err(), RigError::Times(1));
+}
+
+#[test]
+fn what_is_no_rig_is_named() {
+    let small = skeleton(&[(0, 10.0)], &[(0.2, 0.1)], 1);
+    let (mesh, mut bindings) = marks(&small);
+    bindings[1] = Binding::new([(2, 1.0), (0, 0.0), (0, 0.0), (0, 0.0)]);
+    let error = rigged(&mesh, &bindings, &small, &small).unwrap_err();
+    assert_eq!(error, RigError::Bindings { came: 3, wanted: 4 });
+    let error = rigged(&mesh, &bindings[..1], &small, &small).unwrap_err();
+    assert_eq!(error, RigError::Bindings { came: 1, wanted: 4 });
+    let broom = skeleton(&vec![(0, 1.0); 33_000], &[(0.0, 0.0)], 1);
+    let error = rigged(&Mesh::default(), &[], &broom, &broom).unwrap_err();
+    assert!(matches!(error, RigError::TooMany(n) if n > 65_535), "{error}");
+}
+
+proptest! {
+    #[test]
+    fn any_motion_is_read_back(
+        bones in prop::collection::vec((0..100_u32, 1.0..200.0_f64), 1..12),
+        angles in prop::collection::vec((-3.5..3.5_f64, -1.57..1.57_f64), 40),
+    ) {
+        assert_is_it(&skeleton(&bones, &angles, 4));
+    }
+}

@@ -1,0 +1,52 @@
+//! A body for bones: tubes along them, so that a skeleton is seen wherever it is opened.
+
+#[cfg(test)]
+mod tests;
+
+use honami_mechanics::{Beams, Options};
+use honami_model::mesh::{Binding, Mesh};
+use honami_model::plant::{Node, Plant};
+use honami_model::skeleton::Skeleton;
+use honami_model::turn::norm;
+
+use crate::error::WorkbenchError;
+use crate::plant::tubes::Tubes;
+
+/// The thickest bone has such a radius, of how far the farthest joint is from the root.
+const THICKEST: f64 = 0.02;
+
+/// Tubes about the bones of a skeleton at rest, each bound to its own; between two that go on, half to either.
+pub(super) fn body(skeleton: &Skeleton) -> Result<(Mesh, Vec<Binding>), WorkbenchError> {
+    let places = skeleton.places(skeleton.rest());
+    let joints = skeleton.joints().iter().zip(&places).zip(radii(skeleton, &places));
+    let nodes = joints.map(|((joint, &position), radius)| Node { parent: joint.parent, position, radius });
+    let beams = Beams::new(&Plant::new(nodes.collect())?, &Options::default())?;
+    let mut bones = vec![0; beams.len()];
+    // Rows beyond 16 bits are refused where a rig is made.
+    let row = |row: usize| u16::try_from(row).unwrap_or(u16::MAX);
+    beams.of_plant().iter().enumerate().for_each(|(joint, node)| bones[*node as usize] = row(joint));
+    let tubes = Tubes::new(&beams);
+    let (mut mesh, mut bindings) = (Mesh { triangles: tubes.triangles(), ..Mesh::default() }, Vec::new());
+    for ring in tubes.rings() {
+        let [before, after] = ring.tips().map(|tip| (bones[tip as usize], 0.5));
+        let centre = beams.position(ring.node as usize);
+        for outward in ring.outward() {
+            mesh.positions.push((centre + outward * ring.radius).into());
+            mesh.normals.push(outward.into());
+            bindings.push(Binding::new([before, after, (0, 0.0), (0, 0.0)]));
+        }
+    }
+    Ok((mesh, bindings))
+}
+
+/// Every bone has the area of all that it bears (Shinozaki and others, 1964), ends of branches all the same.
+fn radii(skeleton: &Skeleton, places: &[[f64; 3]]) -> Vec<f64> {
+    let are_tips = skeleton.are_tips();
+    let mut areas: Vec<f64> = are_tips.iter().map(|is_tip| f64::from(u8::from(*is_tip))).collect();
+    for (row, joint) in skeleton.joints().iter().enumerate().rev() {
+        joint.parent.iter().for_each(|&parent| areas[parent as usize] += areas[row]);
+    }
+    let from_root = |place: &[f64; 3]| norm(std::array::from_fn(|axis| place[axis] - places[0][axis]));
+    let size = places.iter().map(from_root).fold(0.0, f64::max);
+    areas.iter().map(|area| THICKEST * size * (area / areas[0]).sqrt()).collect()
+}

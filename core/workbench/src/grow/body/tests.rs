@@ -1,0 +1,49 @@
+//! Tubes go from joint to joint, carried by the bones that they are about, as thick as what they bear.
+
+use honami_model::clip::FrameTimes;
+use honami_model::skeleton::Joint;
+
+use super::*;
+
+/// A stem, and two branches from its end, the first of which bears two more; rows are not in the order of branches.
+fn shrub() -> Skeleton {
+    let joint = |parent: u32, length: f64| Joint { parent: Some(parent), length, ..Joint::default() };
+    let joints =
+        vec![Joint::default(), joint(0, 2.0), joint(1, 1.0), joint(1, 1.0), joint(2, 1.0), joint(2, 1.0)];
+    let lean = |degrees: f64| [degrees.to_radians().sin(), 0.0, degrees.to_radians().cos()];
+    let directions = [0.0, 0.0, 30.0, -40.0, 10.0, 60.0].map(lean).to_vec();
+    Skeleton::new([3.0, 0.0, 1.0], joints, directions, FrameTimes::constant(1, 25.0).unwrap()).unwrap()
+}
+
+#[test]
+fn tubes_are_about_the_bones_that_carry_them() {
+    let skeleton = shrub();
+    let (mesh, bindings) = body(&skeleton).unwrap();
+    assert_eq!((mesh.positions.len(), mesh.normals.len()), (bindings.len(), bindings.len()));
+    let ends = skeleton.places(skeleton.rest());
+    let mut is_carrying = [false; 6];
+    for (place, binding) in mesh.positions.iter().zip(&bindings) {
+        let bones: Vec<usize> = binding.shares().map(|(bone, _)| bone).collect();
+        for &bone in &bones {
+            is_carrying[bone] = true;
+            let base = skeleton.joints()[bone].parent.unwrap() as usize;
+            let far = |end: [f64; 3]| norm(std::array::from_fn(|axis| place[axis] - end[axis]));
+            let nearest = far(ends[base]).min(far(ends[bone]));
+            assert!(nearest < 0.081, "{place:?} is {nearest} from the ends of bone {bone}");
+        }
+        assert!((1..=2).contains(&bones.len()), "{binding:?}");
+    }
+    assert_eq!(is_carrying, [false, true, true, true, true, true]);
+}
+
+/// 3 : 2 : 1 tips are borne by the stem, the first branch and each tip.
+#[test]
+fn areas_add_up() {
+    let skeleton = shrub();
+    let places = skeleton.places(skeleton.rest());
+    let radii = radii(&skeleton, &places);
+    let farthest = norm(std::array::from_fn(|axis| places[4][axis] - places[0][axis]));
+    for (radius, share) in radii.iter().zip([3.0, 3.0, 2.0, 1.0, 1.0, 1.0]) {
+        assert!((radius - THICKEST * farthest * (share / 3.0_f64).sqrt()).abs() < 1e-12, "{radii:?}");
+    }
+}
