@@ -1,12 +1,18 @@
 //! Work on threads of its own, while whoever asked for it is told how far it is.
 
+use std::ops::Range;
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use std::time::Duration;
+
+use rayon::prelude::*;
 
 use crate::MotionError;
 
 /// How often who waits is asked whether to go on, also where a step takes longer.
 const BEAT: Duration = Duration::from_millis(100);
+/// Rows that a thread takes at a time, and those between two calls for progress.
+const BLOCK: usize = 32;
+const BATCH: usize = 256;
 
 /// Does work on so many threads; 0: on those of the current rayon pool.
 ///
@@ -45,4 +51,25 @@ pub(crate) fn within<T: Send>(
         }
     });
     result
+}
+
+/// Does something with blocks of n rows, and returns what came of each row, in order. `keep_going` is told the share of the
+/// work that is done; `false` stops.
+pub(crate) fn blocks<R: Send>(
+    n: usize,
+    work: &(impl Fn(Range<usize>) -> Vec<R> + Sync),
+    keep_going: &mut dyn FnMut(f64) -> bool,
+) -> Result<Vec<R>, MotionError> {
+    let mut results = Vec::with_capacity(n);
+    for first in (0..n).step_by(BATCH) {
+        let batch = first..(first + BATCH).min(n);
+        let firsts: Vec<usize> = batch.clone().step_by(BLOCK).collect();
+        let done: Vec<Vec<R>> =
+            firsts.par_iter().map(|&first| work(first..(first + BLOCK).min(batch.end))).collect();
+        results.extend(done.into_iter().flatten());
+        if !keep_going(results.len() as f64 / n as f64) {
+            return Err(MotionError::Stopped);
+        }
+    }
+    Ok(results)
 }

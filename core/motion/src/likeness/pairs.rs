@@ -5,11 +5,10 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use crate::MotionError;
+use crate::pool::blocks;
 
 /// Tracks that one is compared with at a time: their sums stay in the nearest cache.
 const PART: usize = 512;
-/// Tracks that are compared with the others at a time: these are read once for all of them.
-const BLOCK: usize = 16;
 /// Rows of the matrix between two calls for progress.
 const BATCH: usize = 256;
 /// Marks a pair without a distance until the largest one is known.
@@ -251,24 +250,6 @@ impl<'a> Pairs<'a> {
         }
         out
     }
-}
-
-/// Does something with blocks of tracks, and returns what came of each track, in order.
-fn blocks<R: Send>(
-    n: usize,
-    work: &(impl Fn(Range<usize>) -> Vec<R> + Sync),
-    keep_going: &mut dyn FnMut(f64) -> bool,
-) -> Result<Vec<R>, MotionError> {
-    let firsts: Vec<usize> = (0..n).step_by(BLOCK).collect();
-    let mut results = Vec::with_capacity(n);
-    for batch in firsts.chunks(BATCH / BLOCK) {
-        let done: Vec<Vec<R>> = batch.par_iter().map(|&first| work(first..(first + BLOCK).min(n))).collect();
-        results.extend(done.into_iter().flatten());
-        if !keep_going(results.len() as f64 / n as f64) {
-            return Err(MotionError::Stopped);
-        }
-    }
-    Ok(results)
 }
 
 /// Does something with every row of the condensed matrix, and returns what came of each, in order.

@@ -1,7 +1,7 @@
 //! Tracks smoothed by their neighbours: what noise does to one it does not do to those around it.
 //!
 //! A branch has more tips than one, and what they share is what it does. So every track's loadings are replaced by the mean
-//! of its own and of those of its k nearest, by the distance of R1 (loadings and places), with the weights exp(-(d / d_k)^2),
+//! of its own and of those of its k nearest, by the distance of loadings and places, with the weights exp(-(d / d_k)^2),
 //! twice: the second time the nearest are those of smoothed tracks. Tracks at rest and those never seen stay as they are, and
 //! are nobody's neighbours.
 

@@ -5,10 +5,8 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use crate::MotionError;
+use crate::pool::blocks;
 
-/// Nodes whose weights a thread works out at a time, and how often that is done between two calls for progress.
-const BLOCK: usize = 32;
-const BATCH: usize = 8;
 /// Rows that a thread takes at least: fewer are not worth the way.
 const ROWS: usize = 512;
 
@@ -47,20 +45,11 @@ impl Graph {
         if Vec::<u8>::new().try_reserve_exact(bytes).is_err() {
             return Err(MotionError::Memory { n_tracks: n, bytes });
         }
-        let blocks: Vec<usize> = (0..n).step_by(BLOCK).collect();
-        let mut rows: Vec<Vec<(u32, f64)>> = Vec::with_capacity(n);
-        for batch in blocks.chunks(BATCH) {
-            let of = |&first: &usize| -> Vec<Vec<(u32, f64)>> {
-                let nodes = first..(first + BLOCK).min(n);
-                let all = weights(nodes.clone());
-                nodes.zip(all.chunks(n)).map(|(node, row)| largest(row, node, n_kept)).collect()
-            };
-            let found: Vec<Vec<Vec<(u32, f64)>>> = batch.par_iter().map(of).collect();
-            rows.extend(found.into_iter().flatten());
-            if !keep_going(rows.len() as f64 / n as f64) {
-                return Err(MotionError::Stopped);
-            }
-        }
+        let of = |nodes: Range<usize>| -> Vec<Vec<(u32, f64)>> {
+            let all = weights(nodes.clone());
+            nodes.zip(all.chunks(n)).map(|(node, row)| largest(row, node, n_kept)).collect()
+        };
+        let mut rows = blocks(n, &of, keep_going)?;
         mirror(&mut rows);
         Ok(Self::of_rows(rows.into_iter()))
     }
