@@ -47,7 +47,13 @@ fn a_skeleton_moves_as_the_plant_does_and_its_bones_keep_their_length() {
     assert_eq!((&deep["groups"], &deep["root"]), (&4.into(), &serde_json::json!([80.0, 115.0])));
     let frames = deep["frames"].as_array().unwrap();
     assert!(frames[1].as_u64().unwrap() - frames[0].as_u64().unwrap() >= 20, "{deep}");
-    assert!(bench.text("grow p.honami").contains("in depth, with a mirror image behind"));
+    assert!(bench.text("grow p.honami").contains("in depth, copies: 2"));
+    let made = &answer["provenance"];
+    assert_eq!(
+        (&made["plugin_id"], &made["params"]["flat"]),
+        (&"org.honami.diener".into(), &true.into()),
+        "{made}"
+    );
 }
 
 #[test]
@@ -89,8 +95,8 @@ fn paint(bench: &Bench, name: &str, white: std::ops::Range<usize>) {
 #[test]
 fn copies_stand_round_the_trunk_and_fill_an_envelope() {
     let bench = grouped();
-    let flat = bench.json("grow p.honami f.csv --method zeng --groups 9 --flat --truth clip.truth.csv");
-    let deep = bench.json("grow p.honami d.csv --method zeng --groups 9 --copies 4 --truth clip.truth.csv");
+    let flat = bench.json("grow p.honami f.csv --with zeng --groups 9 --flat --truth clip.truth.csv");
+    let deep = bench.json("grow p.honami d.csv --with zeng --groups 9 --copies 4 --truth clip.truth.csv");
     let number = |answer: &serde_json::Value, name: &str| answer[name].as_u64().unwrap() as usize;
     let n_trunk = (4 * number(&flat, "joints") - number(&deep, "joints")) / 3;
     assert_eq!(number(&deep, "joints"), n_trunk + 4 * (number(&flat, "joints") - n_trunk), "{deep}");
@@ -107,14 +113,14 @@ fn copies_stand_round_the_trunk_and_fill_an_envelope() {
     paint(&bench, "all.y4m", 0..160);
     paint(&bench, "some.y4m", 60..100);
     paint(&bench, "none.y4m", 0..0);
-    let line = "grow p.honami --method zeng --groups 9 --envelope";
+    let line = "grow p.honami --with zeng --groups 9 --envelope";
     let all = bench.json(&format!("{line} all.y4m"));
-    assert!(number(&all, "cut") == 0 && all["notes"].to_string().contains("none was cut"), "{all}");
+    assert!(number(&all, "left_out") == 0 && all["notes"].to_string().contains("none was cut"), "{all}");
     let some = bench.json(&format!("{line} some.y4m"));
-    assert!(number(&some, "cut") > 0 && number(&some, "joints") < number(&all, "joints"), "{some}");
+    assert!(number(&some, "left_out") > 0 && number(&some, "joints") < number(&all, "joints"), "{some}");
     let none = bench.line(&format!("{line} none.y4m"));
     assert!(none.code == Some(1) && none.stderr.contains("paint white where branches may be"), "{none:?}");
-    bench.json("grow p.honami s.bvh --method zeng --groups 9 --siblings 2");
+    bench.json("grow p.honami s.bvh --with zeng --groups 9 --siblings 2");
     assert!(bench.path("s-2.bvh").exists(), "siblings of either method");
 }
 
@@ -152,9 +158,15 @@ fn what_cannot_grow_says_why() {
         ("grow p.honami --groups 0", 1, "groups, not 0"),
         ("grow p.honami --groups 100000", 1, "groups, not 100000"),
         ("grow p.honami --truth p.honami", 1, "p.honami"),
-        ("grow p.honami --copies 2", 2, "--copies goes with --method zeng"),
-        ("grow p.honami --method zeng --shift 1", 2, "--shift takes 0 to less than 1, not 1"),
-        ("grow p.honami --method zeng --envelope none.png", 1, "none.png"),
+        (
+            "grow p.honami --copies 2",
+            2,
+            "--copies is of plugins with a parameter of that name, and diener has none",
+        ),
+        ("grow p.honami --with zeng --shift 1", 2, "shift: wanted a number, 0 to 0.999"),
+        ("grow p.honami --with nobody", 2, "there is no structure \"nobody\"; there are: diener, zeng"),
+        ("grow p.honami --envelope clip.y4m", 1, "it knows no envelope"),
+        ("grow p.honami --with zeng --envelope none.png", 1, "none.png"),
         ("grow p.honami out.bvh --siblings 0", 2, "0 is not in 1..=9999"),
         ("grow p.honami --siblings 2", 2, "name its file, as out.bvh"),
         ("grow p.honami out.bvh --seed 2", 2, "--siblings <N>"),

@@ -40,7 +40,7 @@ fn a_rig_is_as_the_standard_wants_it() {
     for (line, file) in [
         ("grow p.honami rig.glb --flat", "rig.glb"),
         ("grow p.honami rig.glb --groups 9 --siblings 1 --level 1", "rig-1.glb"),
-        ("grow p.honami rig.glb --method zeng --loop", "rig.glb"),
+        ("grow p.honami rig.glb --with zeng --loop", "rig.glb"),
     ] {
         bench.text(line);
         let output = node(&["tests/peers/glb_validator.cjs", bench.path(file).to_str().unwrap()]).unwrap();

@@ -3,7 +3,7 @@
 use std::fs;
 use std::process::{Command, Output};
 
-use honami_tests::{Bench, Row, has_compiler, skipped};
+use honami_tests::{Bench, Row, has_compiler, rows, skipped};
 use serde_json::Value;
 
 use crate::schema::assert_satisfied;
@@ -111,6 +111,29 @@ fn a_plugin_with_the_short_name_of_another_is_begun_under_its_full_id() {
     assert!(said.contains("--with org.me.klt --plugin klt/klt.py"), "{said}");
     let said = bench.text("plugin new mine --lang c");
     assert!(!said.contains("also") && said.contains("after each change"), "{said}");
+}
+
+#[test]
+fn a_structure_builder_that_was_just_begun_grows_alike_in_every_language() {
+    let bench = Bench::tracked();
+    bench.json("cluster p.honami --groups 5");
+    let mut tables = Vec::new();
+    for (name, lang, needed) in &TRACKERS[..2] {
+        let Some(plugin) = begun(&bench, &format!("{name} --kind structure --lang {lang}"), needed) else {
+            continue;
+        };
+        assert_checked(&bench, &plugin);
+        let said = bench.json(&format!("grow p.honami j.csv --root 80,118 --with {name} --plugin {plugin}"));
+        assert_eq!((&said["joints"], &said["groups"]), (&6.into(), &5.into()), "{said}");
+        let rows = rows(&bench.path("j.csv")).into_iter();
+        let place =
+            |row: Row| ["joint", "frame", "x_px", "y_px"].map(|name| row[name].parse::<f64>().unwrap());
+        tables.push(rows.map(place).collect::<Vec<_>>());
+    }
+    let is_near = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-5;
+    let alike =
+        |pair: &[Vec<[f64; 4]>]| pair[0].as_flattened().iter().zip(pair[1].as_flattened()).all(is_near);
+    assert!(tables.windows(2).all(|pair| pair[0].len() == pair[1].len() && alike(pair)), "{tables:?}");
 }
 
 #[test]

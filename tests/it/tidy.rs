@@ -30,6 +30,8 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("honami-tracker-*", &["honami-plugin", "honami-vision", "honami-follow"]),
     ("honami-grouping", &["honami-plugin", "honami-model", "honami-motion"]),
     ("honami-clusterer-*", &["honami-plugin", "honami-motion", "honami-grouping"]),
+    ("honami-growing", &["honami-plugin", "honami-model", "honami-structure"]),
+    ("honami-structure-*", &["honami-plugin", "honami-structure", "honami-growing"]),
     ("honami-simulator-*", &["honami-plugin", "honami-mechanics", "honami-model"]),
     (
         "honami-workbench",

@@ -187,7 +187,7 @@ fn run(command: Command, common: &Common) -> anyhow::Result<Outcome> {
         Command::Track(args) if args.watch => return watch::watch(&args, common).map(Outcome::Exit),
         Command::Track(args) => track::track(&args, common)?,
         Command::Cluster(args) => groups::cluster(&args, common)?,
-        Command::Grow(args) => grow::grow(&args)?,
+        Command::Grow(args) => grow::grow(&args, common)?,
         Command::Edit(args) => {
             return edit::edit(&args.project, common).map(|()| Outcome::Exit(ExitCode::SUCCESS));
         }

@@ -55,7 +55,8 @@ fn read(reply: &Reply, filmed: &Filmed<'_>, times: FrameTimes) -> Result<Grown, 
     let bears = read_bears(said(&reply::BEARS)?, joints.len(), filmed.groups)?;
     bear(&mut joints, &bears, filmed);
     let n_frames = times.len() as usize;
-    let skeleton = Skeleton::new(root, joints, pose, times).map_err(|error| format!("committed {error}"))?;
+    let skeleton =
+        Skeleton::again(root, joints, pose, times).map_err(|error| format!("committed {error}"))?;
     let leaves = match (reply.table(&reply::LEAVES), reply.table(&reply::OFFSETS)) {
         (None, None) => Vec::new(),
         (Some(leaves), Some(offsets)) => read_leaves(leaves, offsets, filmed.tracks, n_frames)?,

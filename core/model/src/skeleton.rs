@@ -11,10 +11,10 @@ use crate::clip::FrameTimes;
 use crate::track::TrackId;
 use crate::turn::{Turn, norm};
 
-/// A direction may be so far from unit length; it is made unit.
+/// A direction may be so far from unit length; it is made unit exactly.
 const UNIT: f64 = 1e-6;
-/// One that is so near to it is unit as it is: a skeleton that is taken apart and put together again is the same.
-const EXACT: f64 = 4e-15;
+/// One that was made unit is so near to it.
+const MADE_UNIT: f64 = 4e-15;
 
 /// The end of a bone; the root has none.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -136,8 +136,33 @@ impl Skeleton {
     pub fn new(
         root: [f64; 3],
         joints: Vec<Joint>,
+        directions: Vec<[f64; 3]>,
+        times: FrameTimes,
+    ) -> Result<Self, SkeletonError> {
+        Self::made(root, joints, directions, times, 0.0)
+    }
+
+    /// The same of parts that may have been a skeleton's: directions that were made unit before stay to the last bit, so that
+    /// one that is taken apart and put together again is what it was.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn again(
+        root: [f64; 3],
+        joints: Vec<Joint>,
+        directions: Vec<[f64; 3]>,
+        times: FrameTimes,
+    ) -> Result<Self, SkeletonError> {
+        Self::made(root, joints, directions, times, MADE_UNIT)
+    }
+
+    /// Directions that are nearer to unit length than `kept` are not touched.
+    fn made(
+        root: [f64; 3],
+        joints: Vec<Joint>,
         mut directions: Vec<[f64; 3]>,
         times: FrameTimes,
+        kept: f64,
     ) -> Result<Self, SkeletonError> {
         let n = joints.len();
         check_tree(&joints)?;
@@ -159,7 +184,7 @@ impl Skeleton {
             if !is_unit {
                 return Err(SkeletonError::Direction { joint, frame, direction: *direction });
             }
-            if (length - 1.0).abs() > EXACT {
+            if (length - 1.0).abs() > kept {
                 *direction = direction.map(|v| v / length);
             }
         }

@@ -44,9 +44,9 @@ pub fn grow(
     if at.iter().flatten().any(|place| place[1].abs() > 0.0) {
         leaves.extend(mirrored(&leaves, bones.mirror()));
     }
-    let n_collapsed = bones.n_collapsed;
+    let (n_collapsed, joint_of) = (bones.n_collapsed, bones.joint_of.iter().copied().map(Some).collect());
     let skeleton = filmed.skeleton(bones, leaves)?;
-    Ok(Grown { skeleton, places: filmed.places(), alphas, n_collapsed, n_cut: 0 })
+    Ok(Grown { skeleton, places: filmed.places(), joint_of, alphas, n_collapsed, n_cut: 0 })
 }
 
 /// Where every group is in every frame: terminal ones where their features are and, unless flat, on the front of the

@@ -28,6 +28,8 @@ pub struct Grown {
     pub skeleton: Skeleton,
     /// From the centre of its group to where each path usually is, pixels (right, down); `None` for those in no group.
     pub places: Vec<Option<[f64; 2]>>,
+    /// The joint that each group has become, that of the copy in the picture; `None` of those that were cut off.
+    pub joint_of: Vec<Option<u32>>,
     /// How far each fork stayed from what bears it, 0 to 1 of the way to the mean of what it bears.
     pub alphas: Vec<f64>,
     /// Forks that were one with what bears them, so that more than two bones begin there.

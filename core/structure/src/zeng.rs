@@ -68,6 +68,7 @@ pub fn grow(
     let at = shifted(&filmed, settings.shift);
     let bones = filmed.bones(&at)?;
     let (n_collapsed, leaves) = (bones.n_collapsed, filmed.leaves(&at, &bones));
+    let flat_joint_of = bones.joint_of.clone();
     let flat = filmed.skeleton(bones, leaves)?;
     let n_joints = flat.joints().len();
     let places = flat.places(flat.rest());
@@ -97,6 +98,7 @@ pub fn grow(
     Ok(Grown {
         skeleton: copies.skeleton()?,
         places: filmed.places(),
+        joint_of: flat_joint_of.iter().map(|&joint| row_of(joint, &kept)).collect(),
         alphas: vec![1.0 - settings.shift; n_forks],
         n_collapsed,
         n_cut: kept.iter().filter(|kept| !**kept).count(),
@@ -153,4 +155,10 @@ fn within(skeleton: &Skeleton, trunk: &[bool], places: &[[f64; 3]], envelope: &E
         kept.push(trunk[row] || (is_borne && envelope.holds(places[row])));
     }
     kept
+}
+
+/// The row of a joint where only those that are kept are left, as in the copy in the picture, which comes first.
+fn row_of(joint: u32, kept: &[bool]) -> Option<u32> {
+    let row = joint as usize;
+    kept[row].then(|| kept[..row].iter().filter(|kept| **kept).count() as u32)
 }

@@ -30,7 +30,7 @@ use honami_model::plant::RadiusRule;
 use honami_store::{Access, Project};
 
 use crate::error::WorkbenchError;
-use crate::grow::{self, GrowRequest};
+use crate::grow;
 use crate::progress::{Flow, Progress};
 
 /// Drag coefficients, and kilograms of a cubic metre of what blows: water has a thousand.
@@ -204,7 +204,7 @@ pub fn words(rule: RadiusRule) -> &'static str {
 /// The skeleton of a project, as [`grow`] makes it unless told otherwise, at rest; a pixel is so many metres.
 fn skeleton(path: &Path, unit: Option<f64>) -> Result<Measured, WorkbenchError> {
     let unit = unit.ok_or(WorkbenchError::Pixels)?;
-    let grown = grow::grow(&Project::open(path, Access::Read)?, &GrowRequest::default())?;
+    let grown = grow::usual(&Project::open(path, Access::Read)?)?;
     let mut measured = swc::parse(&at_rest(&grown.skeleton), unit)?;
     let whose = format!(
         "the skeleton that `honami grow` makes of {} groups, a pixel taken as {} m",

@@ -519,6 +519,7 @@ pub(super) enum Lang {
 pub(super) enum Kind {
     Tracker,
     Clusterer,
+    Structure,
 }
 
 /// A frame rate.

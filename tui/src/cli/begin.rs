@@ -29,6 +29,7 @@ pub(super) fn plugin(
     let of = match kind {
         Kind::Tracker => honami_workbench::plugins::Kind::Tracker,
         Kind::Clusterer => honami_workbench::plugins::Kind::Clusterer,
+        Kind::Structure => honami_workbench::plugins::Kind::Structure,
     };
     let begun = match language {
         Some(language) => {
@@ -51,6 +52,10 @@ pub(super) fn plugin(
         Kind::Clusterer => format!(
             "honami new calm.honami calm.y4m && honami track calm.honami && \
              honami cluster calm.honami --with {called} --plugin {plugin}"
+        ),
+        Kind::Structure => format!(
+            "honami new calm.honami calm.y4m && honami track calm.honami && honami cluster calm.honami && \
+             honami grow calm.honami calm.bvh --truth calm.truth.csv --with {called} --plugin {plugin}"
         ),
     };
     // Each of its points has a process of its own.

@@ -7,24 +7,32 @@ use std::path::PathBuf;
 use honami_model::brief::Brief;
 use honami_workbench::grow::siblings::Settings;
 use honami_workbench::grow::{self, GrowRequest, Growth, Judged, Out, SkeletonFormat};
+use honami_workbench::plugins::{Kind, PluginInfo, Value, Values};
 use serde_json::json;
 
-use super::args::grow::{Grow, Method};
-use super::{Answer, look, want};
+use super::args::Common;
+use super::args::grow::Grow;
+use super::{Answer, look, report, told_options, want};
+
+/// The structure builder that is used unless one is named.
+const DEFAULT: &str = "diener";
 
 /// Grows a skeleton, and writes it.
-pub(super) fn grow(args: &Grow) -> anyhow::Result<Answer> {
+pub(super) fn grow(args: &Grow, common: &Common) -> anyhow::Result<Answer> {
     let files = files(args)?;
-    let method = method(args)?;
+    let options = told_options(common);
+    let registry = options.registry();
+    let plugin = registry.find(Kind::Structure, args.plugin.with.as_deref().unwrap_or(DEFAULT))?;
+    let params = values(args, plugin)?;
     let project = look(&args.project)?;
     let request = GrowRequest {
-        method,
+        params,
+        envelope: args.envelope.clone(),
         root: args.root.map(|place| place.0),
         groups: args.groups,
-        is_flat: args.flat,
         is_loop: args.is_loop,
     };
-    let growth = grow::grow(&project, &request)?;
+    let growth = grow::grow(&project, &options.host, plugin, &request, &report::Bar::with(common))?;
     let judged = args.truth.as_ref().map(|truth| grow::judge(&growth, &project, truth)).transpose()?;
     let settings = Settings { level: args.level, threshold: args.threshold };
     let siblings = args.siblings.map(|n| grow::siblings(&growth, settings).map(|of| (n, of))).transpose()?;
@@ -64,28 +72,25 @@ pub(super) fn grow(args: &Grow) -> anyhow::Result<Answer> {
     Ok(answer)
 }
 
-/// The method, with what is asked of it.
-fn method(args: &Grow) -> anyhow::Result<grow::Method> {
-    let asked = [
-        ("--shift", args.shift.is_some()),
-        ("--copies", args.copies.is_some()),
-        ("--envelope", args.envelope.is_some()),
+/// Values of the plugin's parameters: options that were typed are those of their names.
+fn values(args: &Grow, plugin: &PluginInfo) -> anyhow::Result<Values> {
+    let typed = [
+        ("flat", args.flat.then_some(Value::Bool(true))),
+        ("shift", args.shift.map(Value::Float)),
+        ("copies", args.copies.map(Value::Int)),
     ];
-    match args.method {
-        Method::Diener => {
-            let typed = asked.iter().find(|(_, is_typed)| *is_typed);
-            want(typed.is_none(), || {
-                format!("{} goes with --method zeng", typed.map_or("", |typed| typed.0))
-            })?;
-            Ok(grow::Method::Diener)
-        }
-        Method::Zeng => {
-            let shift = args.shift.unwrap_or(grow::SHIFT);
-            want((0.0..1.0).contains(&shift), || format!("--shift takes 0 to less than 1, not {shift}"))?;
-            let copies = args.copies.unwrap_or(grow::COPIES);
-            Ok(grow::Method::Zeng { shift, copies, envelope: args.envelope.clone() })
-        }
+    let mut values = Values::defaults(&plugin.params);
+    for (id, value) in typed {
+        let Some(value) = value else { continue };
+        want(plugin.params.iter().any(|param| param.id == id), || {
+            format!("--{id} is of plugins with a parameter of that name, and {} has none", plugin.short_name)
+        })?;
+        values.set(&plugin.params, id, value)?;
     }
+    for assignment in &args.plugin.set {
+        values.set_text(&plugin.params, assignment)?;
+    }
+    Ok(values)
 }
 
 /// What is to be written, and as what.
@@ -116,27 +121,25 @@ fn files(args: &Grow) -> anyhow::Result<Vec<(Out, &PathBuf)>> {
 fn describe(args: &Grow, growth: &Growth) -> Answer {
     let skeleton = &growth.skeleton;
     let n_joints = skeleton.joints().len();
-    let n_tracks = growth.places.len();
+    let (n_groups, n_tracks) = (growth.groups.len(), growth.groups.iter().map(Vec::len).sum::<usize>());
     let [x, y] = honami_model::skeleton::seen(skeleton.root());
     let is_deep = skeleton.rest().iter().any(|direction| direction[1].abs() > 0.0);
-    let depth = match (is_deep, args.method) {
-        (false, _) => "in the plane of the picture".to_owned(),
-        (true, Method::Diener) => "in depth, with a mirror image behind".to_owned(),
-        (true, Method::Zeng) => format!("in depth, copies: {}", args.copies.unwrap_or(grow::COPIES)),
+    let depth = match is_deep {
+        false => "in the plane of the picture".to_owned(),
+        true => format!("in depth, copies: {}", growth.n_copies),
     };
     let mut text = format!(
-        "{}: {} groups of {n_tracks} tracks, {n_joints} joints {depth}, root at {x:.1},{y:.1}",
+        "{}: {n_groups} groups of {n_tracks} tracks, {n_joints} joints {depth}, root at {x:.1},{y:.1}",
         args.project.display(),
-        growth.n_groups
     );
     if growth.n_collapsed > 0 {
         text += &format!("\nforks that are one with another: {}", growth.n_collapsed);
     }
-    if growth.n_cut > 0 {
-        text += &format!("\njoints outside the envelope, cut with what they bear: {}", growth.n_cut);
+    if growth.n_left_out > 0 {
+        text += &format!("\ngroups outside the envelope, left out: {}", growth.n_left_out);
     }
-    let frames = &growth.frames;
-    text += &format!("\nframes {}..{}, {:.3} s", frames.start, frames.end, growth.seconds);
+    let (frames, by) = (&growth.frames, &growth.provenance.plugin_id);
+    text += &format!("\nframes {}..{}, by {by}, {:.3} s", frames.start, frames.end, growth.seconds);
     let is_uneven = skeleton.times().is_variable()
         && args.out.iter().any(|out| Out::of(out) == Some(Out::Skeleton(SkeletonFormat::Bvh)));
     let uneven =
@@ -145,15 +148,16 @@ fn describe(args: &Grow, growth: &Growth) -> Answer {
         growth.notes.iter().map(String::as_str).chain(is_uneven.then_some(uneven)).collect();
     notes.iter().for_each(|note| text += &format!("\nnote: {note}"));
     let json = json!({
-        "groups": growth.n_groups,
+        "groups": n_groups,
         "tracks": n_tracks,
         "joints": n_joints,
         "collapsed": growth.n_collapsed,
-        "cut": growth.n_cut,
-        "alphas": growth.alphas,
+        "left_out": growth.n_left_out,
+        "copies": growth.n_copies,
         "root": [x, y],
         "frames": [frames.start, frames.end],
         "seconds": growth.seconds,
+        "provenance": growth.provenance,
         "files": args.out,
         "leaves": args.leaves,
         "notes": notes,

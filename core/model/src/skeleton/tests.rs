@@ -106,6 +106,6 @@ fn a_skeleton_taken_apart_and_put_together_is_the_same() {
     });
     let joints = vec![joint(None, 0.0), joint(Some(0), 2.0)];
     let once = Skeleton::new([0.0; 3], joints.clone(), directions.collect(), times(200)).unwrap();
-    let again = Skeleton::new([0.0; 3], joints, once.directions.clone(), times(200)).unwrap();
+    let again = Skeleton::again([0.0; 3], joints, once.directions.clone(), times(200)).unwrap();
     assert_eq!(once, again);
 }

@@ -7,8 +7,10 @@ use honami_model::skeleton::seen;
 use honami_model::track::TrackId;
 use honami_motion::accuracy::median;
 use honami_store::Project;
+use honami_structure::follow::follow;
 
 use super::Growth;
+use super::gather::path;
 use crate::compare::{Truth, check_truth, read_truth};
 use crate::error::WorkbenchError;
 
@@ -44,9 +46,11 @@ pub fn judge(growth: &Growth, project: &Project, truth: &Path) -> Result<Judged,
     let truth = read_truth(truth, clip.n_frames())?;
     check_truth(&truth, clip, &growth.frames)?;
     let mut told = BTreeMap::new();
-    for &(track, place) in &growth.places {
-        if let Some(of_track) = told_of(project, &truth, track, place)? {
-            told.insert(track, of_track);
+    for tracks in &growth.groups {
+        for (track, place) in places(project, tracks)? {
+            if let Some(of_track) = told_of(project, &truth, track, place)? {
+                told.insert(track, of_track);
+            }
         }
     }
     let frames = (0..).zip(growth.frames.clone());
@@ -78,6 +82,18 @@ pub fn judge(growth: &Growth, project: &Project, truth: &Path) -> Result<Judged,
     let median = |values| median(values).ok_or(WorkbenchError::NoTruth);
     let (median_px, still_px, motion_px) = (median(moving)?, median(still)?, median(motion)?);
     Ok(Judged { n_groups, n_tracks: told.len(), median_px, still_px, motion_px })
+}
+
+/// From the centre of a group to where each of its tracks usually is, pixels (right, down).
+fn places(project: &Project, tracks: &[TrackId]) -> Result<Vec<(TrackId, [f64; 2])>, WorkbenchError> {
+    let n_frames = project.clip().clip.times.len();
+    let mut paths = Vec::with_capacity(tracks.len());
+    for &track in tracks {
+        paths.push(path(track, project.shown(track)?.as_deref(), n_frames));
+    }
+    let followed = follow(&paths.iter().collect::<Vec<_>>());
+    let places = followed.into_iter().flat_map(|followed| followed.places);
+    Ok(tracks.iter().copied().zip(places).collect())
 }
 
 /// What the truth says of the centre of a track's group; `None` where no true point is near when the track begins.

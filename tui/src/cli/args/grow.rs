@@ -2,12 +2,15 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
+
+use super::WithPlugin;
 
 /// The branches behind the tracks: a skeleton that moves as filmed, from the groups of the shown clustering.
 ///
 /// Groups are ellipses, forks the means of what they bear, shifted towards the root until bones change their length least
-/// (Diener 2009; --method zeng has Zeng's way of 2015); then bones of constant length are moved so that tips are where their groups are. Lengths are pixels.
+/// (Diener 2009; --with zeng has Zeng's way of 2015); then bones of constant length are moved so that tips are where their
+/// groups are. Lengths are pixels.
 /// docs/skeletons.md says how it is done, how good it is, and what files hold.
 #[derive(Args, Debug)]
 pub(in crate::cli) struct Grow {
@@ -16,18 +19,17 @@ pub(in crate::cli) struct Grow {
     /// Files to write: .bvh (motion capture), .csv (joints and angles in every frame), .swc (the shape at rest), .glb (a rig:
     /// tubes on bones that move, for modellers and engines).
     pub(in crate::cli) out: Vec<PathBuf>,
-    /// How joints are found.
-    #[arg(long, value_enum, default_value_t = Method::Diener)]
-    pub(in crate::cli) method: Method,
+    #[command(flatten)]
+    pub(in crate::cli) plugin: WithPlugin,
     /// How far joints are shifted from the centroids of their clusters towards what bears them, 0 to less than 1 of the way
-    /// (zeng; default 0.5).
-    #[arg(long, value_name = "A")]
+    /// (of zeng, as --set shift=A; default 0.5).
+    #[arg(long, value_name = "A", allow_negative_numbers = true)]
     pub(in crate::cli) shift: Option<f64>,
-    /// Copies that stand round the trunk (zeng; default 3).
-    #[arg(long, value_name = "C", value_parser = clap::value_parser!(u32).range(1..=64))]
-    pub(in crate::cli) copies: Option<u32>,
+    /// Copies that stand round the trunk (of zeng, as --set copies=C; default 3).
+    #[arg(long, value_name = "C", allow_negative_numbers = true)]
+    pub(in crate::cli) copies: Option<i64>,
     /// An image as large as the clip, white where branches may be: others are cut, and these are pushed to fill it
-    /// (zeng; default: the convex hull of the tracks).
+    /// (zeng's; default: the convex hull of the tracks).
     #[arg(long, value_name = "IMAGE")]
     pub(in crate::cli) envelope: Option<PathBuf>,
     /// Where the plant leaves the ground, pixels of the picture (default: under the mean of all features, as low as the
@@ -68,15 +70,6 @@ pub(in crate::cli) struct Grow {
     /// True positions of a generated clip, a table `track,frame,x,y,visible,branch`: say how far joints are from them.
     #[arg(long, value_name = "FILE")]
     pub(in crate::cli) truth: Option<PathBuf>,
-}
-
-/// Published ways.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(in crate::cli) enum Method {
-    /// Forks where bones change their length least; in depth an ellipsoid and its mirror image.
-    Diener,
-    /// Centroids of clusters, shifted; in depth copies round the trunk, pushed until they fill an envelope.
-    Zeng,
 }
 
 /// `X,Y` in pixels.
