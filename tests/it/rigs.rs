@@ -56,7 +56,7 @@ fn what_is_no_rig_says_why() {
         ("grow p.honami rig.glb --unit 0", 2, "--unit takes metres of a pixel, more than 0"),
         ("grow p.honami rig.glb --unit=-1", 2, "--unit takes metres of a pixel, more than 0"),
         ("grow p.honami rig.glb --unit nan", 2, "--unit takes metres of a pixel, more than 0"),
-        ("grow p.honami rig.bvh --unit 0.01", 2, "--unit goes with a .glb, as out.glb"),
+        ("grow p.honami rig.bvh --unit 0.01", 2, "--unit goes with a .glb, as out.glb, or with frames"),
         ("grow p.honami rig.glb --unit 1e-12", 1, "is it the unit?"),
         ("grow p.honami rig.glb --unit 1e12", 1, "is it the unit?"),
     ] {
@@ -65,4 +65,178 @@ fn what_is_no_rig_says_why() {
         assert!(!bench.path("rig.glb").exists(), "{line}");
     }
     assert!(bench.text("grow p.honami rig.glb").contains("y up, a pixel taken as 0.001 m"));
+}
+
+/// A stem and two branches of square section, y up, its foot beside the origin; `Wavefront`'s text.
+fn shrub() -> String {
+    let mut text = "# by hand\n".to_owned();
+    let stem = (0..=8).map(|k| [3.0, f64::from(k) * 0.25, 1.0]);
+    let branch =
+        |side: f64| (0..=4).map(move |k| [3.0 + side * f64::from(k) * 0.2, 1.0 + f64::from(k) * 0.2, 1.0]);
+    let mut first = 1;
+    for axis in [stem.collect::<Vec<_>>(), branch(1.0).collect(), branch(-1.0).collect()] {
+        for (k, [x, y, z]) in axis.iter().enumerate() {
+            for [a, b] in [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]] {
+                text += &format!("v {} {y} {}\n", x + 0.05 * a, z + 0.05 * b);
+            }
+            let ring = first + 4 * k;
+            for side in 0..if k > 0 { 4 } else { 0 } {
+                let next = (side + 1) % 4;
+                text +=
+                    &format!("f {} {} {} {}\n", ring - 4 + side, ring - 4 + next, ring + next, ring + side);
+            }
+        }
+        first += 4 * axis.len();
+    }
+    text
+}
+
+/// Vertices of a `.ply` of ours, and how many triangles.
+fn ply(path: &std::path::Path) -> (Vec<[f32; 3]>, usize) {
+    let bytes = std::fs::read(path).unwrap();
+    let end = bytes.windows(11).position(|bytes| bytes == b"end_header\n").unwrap() + 11;
+    let header = String::from_utf8(bytes[..end].to_vec()).unwrap();
+    let count = |name: &str| -> usize {
+        header.split(name).nth(1).unwrap().split_whitespace().next().unwrap().parse().unwrap()
+    };
+    let (n, n_faces) = (count("element vertex"), count("element face"));
+    let row = if header.contains("red") { 15 } else { 12 };
+    assert_eq!(bytes.len(), end + row * n + 13 * n_faces);
+    let number = |at: usize| f32::from_le_bytes(bytes[at..at + 4].try_into().unwrap());
+    ((0..n).map(|k| [0, 4, 8].map(|by| number(end + row * k + by))).collect(), n_faces)
+}
+
+#[test]
+fn another_plant_moves_as_the_filmed_one() {
+    let bench = grouped();
+    std::fs::write(bench.path("shrub.obj"), shrub()).unwrap();
+    let line = "grow p.honami rig.glb moved/%04d.ply at.pc2 j.csv --onto shrub.obj --groups 9";
+    let answer = bench.json(line);
+    assert_eq!((&answer["onto"]["vertices"], &answer["onto"]["triangles"]), (&76.into(), &128.into()));
+    let frames: Vec<_> = (0..40).map(|frame| ply(&bench.path(&format!("moved/{frame:04}.ply")))).collect();
+    assert!(!bench.path("moved/0040.ply").exists());
+    let cache = std::fs::read(bench.path("at.pc2")).unwrap();
+    let cached: Vec<f32> =
+        cache[32..].as_chunks::<4>().0.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect();
+    assert_eq!(
+        cached,
+        frames.iter().flat_map(|(places, _)| places.as_flattened().to_vec()).collect::<Vec<_>>()
+    );
+    let rest: Vec<[f32; 3]> = shrub()
+        .lines()
+        .filter_map(|line| line.strip_prefix("v "))
+        .map(|line| {
+            line.split(' ').map(|word| word.parse().unwrap()).collect::<Vec<f32>>().try_into().unwrap()
+        })
+        .collect();
+    // What is low hardly moves, what is high moves as the skeleton does, and not far from the mean of its frames.
+    let apart = |a: [f32; 3], b: [f32; 3]| (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f32>().sqrt();
+    let farthest = |vertices: std::ops::Range<usize>| {
+        let far = |(places, n): &(Vec<[f32; 3]>, usize)| {
+            assert_eq!((places.len(), *n), (76, 128));
+            vertices.clone().map(|k| apart(places[k], rest[k])).fold(0.0, f32::max)
+        };
+        frames.iter().map(far).fold(0.0, f32::max)
+    };
+    let (low, high) = (farthest(0..4), farthest(32..36));
+    assert!(low < 0.3 * high && (0.005..0.5).contains(&high), "{low} {high}");
+    // Siblings are the plant in other shapes: at rest already, of which the first frame tells enough.
+    bench.json("grow p.honami moved/%04d.ply --onto shrub.obj --groups 9 --siblings 1 --level 1");
+    let sibling = ply(&bench.path("moved/0000-1.ply")).0;
+    let shift = (0..76).map(|k| apart(sibling[k], frames[0].0[k])).fold(0.0, f32::max);
+    assert!(shift > 2.0 * high, "{shift} {high}");
+    // Blended otherwise it is near, and not the same.
+    bench.json("grow p.honami dual/%d.obj --onto shrub.obj --groups 9 --blend dual --weights");
+    let dual = std::fs::read_to_string(bench.path("dual/39.obj")).unwrap();
+    let vertices = dual.lines().filter_map(|line| line.strip_prefix("v "));
+    let vertices: Vec<Vec<f32>> =
+        vertices.map(|line| line.split(' ').map(|word| word.parse().unwrap()).collect()).collect();
+    let off = (0..76).map(|k| apart([vertices[k][0], vertices[k][1], vertices[k][2]], frames[39].0[k]));
+    let off = off.fold(0.0, f32::max);
+    assert!(off > 0.0 && off < 0.1 * high, "{off} {high}");
+    assert!(
+        vertices
+            .iter()
+            .all(|vertex| vertex[3..].iter().all(|v| (0.1..=1.0).contains(v)) && vertex.len() == 6)
+    );
+}
+
+/// Plants in every format that is read, with their motion, are glTF without an error, where the validator is installed.
+#[test]
+fn plants_of_every_format_are_carried() {
+    let node = |args: &[&str]| Command::new("node").args(args).current_dir(root()).output();
+    let is_there = node(&["-e", "require('gltf-validator')"]).is_ok_and(|output| output.status.success());
+    let bench = grouped();
+    std::fs::write(bench.path("shrub.obj"), shrub()).unwrap();
+    bench.json("grow p.honami shrub/%d.ply --onto shrub.obj --up y");
+    bench.json("grow p.honami rest.swc");
+    // A grove: one mesh in three places, with morph targets and an animation of its own.
+    bench.json("simulate synth::tree:30,1 --forest 3 --wind wind --seconds 1 --glb grove.glb");
+    for (plant, more) in [
+        ("shrub.obj", "--weights"),
+        ("shrub/0.ply", "--up y --turn 90"),
+        ("grove.glb", "--groups 9"),
+        ("grove.glb", "--weights --unit 0.01"),
+        ("rest.swc", "--loop"),
+    ] {
+        let answer = bench.json(&format!("grow p.honami out.glb --onto {plant} {more}"));
+        assert!(answer["onto"]["triangles"].as_u64().unwrap() > 20, "{plant}: {answer}");
+        if !is_there {
+            continue;
+        }
+        let output =
+            node(&["tests/peers/glb_validator.cjs", bench.path("out.glb").to_str().unwrap()]).unwrap();
+        let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert!(found["errors"] == 0 && found["warnings"] == 0, "{plant} {more}: {found}");
+    }
+    if !is_there {
+        missing("gltf-validator for node (cargo xtask peers)");
+    }
+}
+
+#[test]
+fn what_cannot_be_carried_says_why() {
+    let bench = grouped();
+    for (name, text) in [
+        ("points.obj", "v 0 0 0\nv 0 1 0\n"),
+        ("lost.obj", "v 0 0 0\nv 0 nan 0\nf 1 2 2\n"),
+        ("far.obj", "v 0 0 0\nv 0 1e30 0\nf 1 2 2\n"),
+        ("flat.obj", "v 0 0 0\nv 1 0 0\nv 1 0 1\nf 1 2 3\n"),
+        ("good.obj", "v 0 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\n"),
+        ("one.swc", "1 1 0 0 0 .07 -1\n"),
+        ("no.glb", "glTF"),
+        ("leaf.txt", "leaf"),
+    ] {
+        std::fs::write(bench.path(name), text).unwrap();
+    }
+    bench.json("grow p.honami rig.glb");
+    for (line, code, wanted) in [
+        ("out.glb --onto points.obj", 1, "points.obj: a plant to carry has a triangle at least"),
+        ("out.glb --onto lost.obj", 1, "lost.obj: line 2: a vertex is three finite numbers"),
+        ("out.glb --onto far.obj", 1, "far.obj: vertex 1 lies at"),
+        ("out.glb --onto flat.obj", 1, "--unit says how much of the plant's length a pixel is"),
+        ("out.glb --onto one.swc", 1, "two nodes at least, this one has 1"),
+        ("out.glb --onto no.glb", 1, "no.glb: a .glb begins with `glTF`"),
+        ("out.glb --onto rig.glb", 1, "rig.glb: it is bound to bones already"),
+        ("out.glb --onto leaf.txt", 1, "not as leaf.txt"),
+        ("out.glb --onto none.obj", 1, "none.obj: "),
+        ("out.glb --onto good.obj --unit 1e-320", 1, "a pixel is 1e-9 to 1e9 of the plant's length"),
+        ("out.glb --onto rig.glb --up z", 2, "--up"),
+        ("out.pc2 --onto one.swc", 1, "two nodes"),
+        ("out.pc2", 2, "a .pc2 has the vertices of an .obj or .ply"),
+        ("out.ply --onto good.obj", 2, "as frames, out/%04d.ply or .obj, not as out.ply"),
+        ("a%db%d.ply --onto good.obj", 2, "not as a%db%d.ply"),
+        ("out.bvh --onto good.obj", 2, "--onto goes with a .glb, as out.glb, or with frames"),
+        ("out.bvh --weights", 2, "--weights goes with a .glb"),
+        ("out.glb --blend dual", 2, "who reads a .glb blends linearly"),
+        ("out.glb --turn 9", 2, "--onto"),
+        ("out.glb --onto good.obj --turn nan", 2, "--turn takes degrees"),
+        ("rig.glb --onto rig.glb", 2, "another name than the plant that is read"),
+        ("no/such/%d.ply --onto good.obj", 1, "no/such"),
+    ] {
+        let ran = bench.line(&format!("grow p.honami {line}"));
+        assert!(ran.code == Some(code) && ran.stderr.contains(wanted), "{line}: {ran:?}");
+        assert!(!bench.path("out.glb").exists() && !bench.path("out.pc2").exists(), "{line}");
+    }
+    bench.json("grow p.honami out.glb --onto flat.obj --unit 0.01");
 }

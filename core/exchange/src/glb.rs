@@ -2,6 +2,13 @@
 //!
 //! Up is y there and z here: x right, y up, z towards the camera, so that what is at (x, y, z) here is at (x, z, -y) there.
 
+mod scene;
+#[cfg(test)]
+pub(crate) mod tests;
+
+pub use scene::Piece;
+pub(crate) use scene::{Matrix, product};
+
 use std::io::Write as _;
 use std::path::Path;
 
@@ -14,6 +21,7 @@ use crate::table::TableError;
 /// Readers take such a file into memory whole, and many count its bytes in 31 bits.
 const MOST_BYTES: u64 = i32::MAX as u64;
 /// Names of the standard: what a number is, and what it is for.
+pub(crate) const U8: u32 = 5121;
 pub(crate) const U16: u32 = 5123;
 const U32: u32 = 5125;
 pub(crate) const F32: u32 = 5126;
@@ -52,12 +60,14 @@ pub enum DocumentError {
 }
 
 impl Document {
-    /// A mesh of wood, without a place in the scene.
-    pub(crate) fn of(mesh: &Mesh) -> Self {
+    /// A scene with a mesh of wood.
+    #[must_use]
+    pub fn of(mesh: &Mesh) -> Self {
         let mut made = Self {
             words: json!({
                 "scene": 0,
-                "scenes": [{ "nodes": [] }],
+                "scenes": [{ "nodes": [0] }],
+                "nodes": [{ "name": "plant", "mesh": 0 }],
                 "materials": [{
                     "name": "wood",
                     "pbrMetallicRoughness": {
@@ -93,6 +103,12 @@ impl Document {
         })
     }
 
+    /// The list of nodes that stand in the scene by themselves.
+    pub(crate) fn scene(&mut self) -> &mut Value {
+        let scene = self.words["scene"].as_u64().unwrap_or(0) as usize;
+        &mut self.words["scenes"][scene]["nodes"]
+    }
+
     /// Appends numbers that are for something; the number of their accessor.
     pub(crate) fn add(&mut self, target: u32, bytes: &[u8], mut accessor: Value) -> usize {
         // Numbers begin where their size divides the place.
@@ -126,8 +142,9 @@ impl Document {
     /// # Errors
     /// [`DocumentError`].
     pub fn write(mut self, path: &Path) -> Result<u64, DocumentError> {
-        self.words["asset"] =
-            json!({ "version": "2.0", "generator": concat!("honami ", env!("CARGO_PKG_VERSION")) });
+        // Whose the plant is stays.
+        self.words["asset"]["version"] = "2.0".into();
+        self.words["asset"]["generator"] = concat!("honami ", env!("CARGO_PKG_VERSION")).into();
         self.numbers.resize(self.numbers.len().next_multiple_of(4), 0);
         self.words["buffers"] = json!([{ "byteLength": self.numbers.len() }]);
         let mut words = self.words.to_string().into_bytes();
@@ -151,4 +168,9 @@ impl Document {
 /// From z up to y up.
 pub(crate) fn upright([x, y, z]: [f64; 3]) -> [f64; 3] {
     [x, z, -y]
+}
+
+/// From y up to z up.
+pub(crate) fn laid([x, y, z]: [f64; 3]) -> [f64; 3] {
+    [x, -z, y]
 }

@@ -22,6 +22,7 @@ mod atomic;
 pub mod flo;
 pub mod foreign;
 pub mod glb;
+pub mod mesh;
 pub mod origin;
 mod parquet;
 pub mod plant;

@@ -2,6 +2,8 @@
 //!
 //! Lengths are pixels of the clip; the axes are those of [`honami_model::skeleton`]. The same input gives the same bits.
 
+pub mod bind;
+pub mod blend;
 mod bones;
 pub mod diener;
 pub mod ellipse;
@@ -123,6 +125,36 @@ pub enum StructureError {
         /// What is dense enough in all levels, cut off after three digits.
         least: f64,
     },
+    /// Nothing to carry.
+    #[error(
+        "a plant to carry has a triangle at least, this one has none: export its surface, not points alone"
+    )]
+    NoMesh,
+    /// A vertex that is nowhere.
+    #[error("vertex {vertex} lies at {place:?}: three numbers from -1e9 to 1e9 were wanted")]
+    Vertex {
+        /// Row.
+        vertex: usize,
+        /// As it came.
+        place: [f64; 3],
+    },
+    /// What stands on the foot does not rise above it.
+    #[error(
+        "heights do not tell how large a pixel is: the plant rises by {of_mesh} above its foot, the skeleton by \
+         {of_skeleton} px above its root; --unit says how much of the plant's length a pixel is"
+    )]
+    NoHeight {
+        /// Lengths of the mesh.
+        of_mesh: f64,
+        /// Pixels.
+        of_skeleton: f64,
+    },
+    /// A pixel that is nothing, or all.
+    #[error("a pixel is 1e-9 to 1e9 of the plant's length, not {0:e}")]
+    Unit(f64),
+    /// More bones than bindings count.
+    #[error("a plant is bound to 65535 joints at most, not {0}: fewer groups or copies are wanted")]
+    TooManyBones(usize),
     /// Frames of a loop that are none.
     #[error(transparent)]
     Times(#[from] TimesError),

@@ -544,6 +544,23 @@ pub enum WorkbenchError {
     /// Bones that no tube goes along.
     #[error(transparent)]
     Wood(#[from] honami_model::plant::PlantError),
+    /// A plant cannot be put onto a skeleton.
+    #[error("{}: {source}", path.display())]
+    Onto {
+        /// The plant.
+        path: PathBuf,
+        /// Why not.
+        source: honami_structure::StructureError,
+    },
+    /// No plant that a skeleton could carry.
+    #[error("plants to carry are read as .glb, .obj, .ply, .mtg, .swc, .csv or .mat, not as {}", path.display())]
+    NoCarried {
+        /// What was named.
+        path: PathBuf,
+    },
+    /// A point cache of what has no vertices of its own.
+    #[error("a .pc2 moves the vertices of one mesh: --onto takes an .obj or a .ply then")]
+    NoVertices,
     /// There is no rig.
     #[error(transparent)]
     Rig(#[from] honami_exchange::skeleton::RigError),

@@ -1,6 +1,7 @@
 //! Growing: the branches behind the shown tracks, from the groups that the shown clustering is cut into.
 
 mod body;
+mod bound;
 mod gather;
 mod judge;
 mod outs;
@@ -8,6 +9,7 @@ mod outs;
 use std::ops::Range;
 use std::path::{Path as File, PathBuf};
 
+pub use honami_exchange::mesh::{MeshFormat, Up};
 pub use honami_exchange::skeleton::SkeletonFormat;
 use honami_host::{CallContext, Filmed, Grown, Host, HostError, PluginInfo, Values};
 use honami_model::clip::Clip;
@@ -16,14 +18,16 @@ use honami_model::provenance::Provenance;
 use honami_model::skeleton::Skeleton;
 use honami_model::track::TrackId;
 use honami_store::Project;
+pub use honami_structure::blend::Blend;
 use honami_structure::diener;
 use honami_structure::repeat::repeat;
 pub use honami_structure::siblings::{self, Siblings};
 use honami_structure::tree::Group;
 
+pub use self::bound::{Bound, Onto, UNIT};
 use self::gather::{Gathered, gather};
 pub use self::judge::{Judged, judge};
-pub use self::outs::{Out, UNIT, write};
+pub use self::outs::{Carried, Out, write};
 use crate::ear::Ear;
 use crate::error::WorkbenchError;
 use crate::progress::Progress;

@@ -1,5 +1,6 @@
 //! `grow`: the branches behind the tracks.
 
+mod carried;
 mod siblings;
 
 use std::path::PathBuf;
@@ -16,6 +17,9 @@ use super::{Answer, look, report, told_options, want};
 
 /// The structure builder that is used unless one is named.
 const DEFAULT: &str = "diener";
+
+/// What is to be written, and as what.
+type Files<'a> = Vec<(Out, &'a PathBuf)>;
 
 /// Grows a skeleton, and writes it.
 pub(super) fn grow(args: &Grow, common: &Common) -> anyhow::Result<Answer> {
@@ -36,12 +40,13 @@ pub(super) fn grow(args: &Grow, common: &Common) -> anyhow::Result<Answer> {
     let judged = args.truth.as_ref().map(|truth| grow::judge(&growth, &project, truth)).transpose()?;
     let settings = Settings { level: args.level, threshold: args.threshold };
     let siblings = args.siblings.map(|n| grow::siblings(&growth, settings).map(|of| (n, of))).transpose()?;
-    let unit = args.unit.unwrap_or(grow::UNIT);
+    let carried = carried::carried(args, &growth)?;
     for (kind, out) in &files {
-        grow::write(&growth.skeleton, *kind, unit, out)?;
+        grow::write(&growth.skeleton, *kind, &carried, out)?;
     }
     let n_rows = args.leaves.as_ref().map(|out| grow::write_leaves(&growth.skeleton, out)).transpose()?;
     let mut answer = describe(args, &growth);
+    carried::describe(args, &carried, &mut answer);
     if let Some(judged) = judged {
         answer.text += &format!("\n{}", told(&judged));
         answer.json["truth"] = json!({
@@ -59,7 +64,10 @@ pub(super) fn grow(args: &Grow, common: &Common) -> anyhow::Result<Answer> {
                 "joints and angles, radians, a row a joint and frame".to_owned()
             }
             Out::Skeleton(SkeletonFormat::Swc) => "the shape at rest, z up".to_owned(),
-            Out::Rig => format!("a rig that moves, y up, a pixel taken as {} m", Brief(unit)),
+            Out::Rig if args.onto.is_some() => "the plant as a rig that moves, y up".to_owned(),
+            Out::Rig => format!("a rig that moves, y up, a pixel taken as {} m", Brief(carried.unit)),
+            Out::Frames(_) => format!("{} frames of what it carries", growth.skeleton.times().len()),
+            Out::Cache => "where the vertices of the plant are in every frame".to_owned(),
         };
         answer.text += &format!("\n{}: {what}", out.display());
     }
@@ -67,7 +75,7 @@ pub(super) fn grow(args: &Grow, common: &Common) -> anyhow::Result<Answer> {
         answer.text += &format!("\n{}: leaves, {n_rows} rows", out.display());
     }
     if let Some((n, siblings)) = &siblings {
-        siblings::draw(*n, siblings, args, &files, &mut answer)?;
+        siblings::draw(*n, siblings, args, &files, &carried, &mut answer)?;
     }
     Ok(answer)
 }
@@ -94,20 +102,17 @@ fn values(args: &Grow, plugin: &PluginInfo) -> anyhow::Result<Values> {
 }
 
 /// What is to be written, and as what.
-fn files(args: &Grow) -> anyhow::Result<Vec<(Out, &PathBuf)>> {
+fn files(args: &Grow) -> anyhow::Result<Files<'_>> {
     let mut files = Vec::new();
     for out in &args.out {
         let kind = Out::of(out);
         want(kind.is_some(), || {
-            format!("skeletons are written as .bvh, .csv, .swc or .glb, not as {}", out.display())
+            let frames = "as frames, out/%04d.ply or .obj";
+            format!("skeletons are written as .bvh, .csv, .swc, .glb or {frames}, not as {}", out.display())
         })?;
         files.extend(kind.map(|kind| (kind, out)));
     }
-    want(args.unit.is_none_or(|unit| unit.is_finite() && unit > 0.0), || {
-        "--unit takes metres of a pixel, more than 0".to_owned()
-    })?;
-    let has_rig = files.iter().any(|(kind, _)| *kind == Out::Rig);
-    want(args.unit.is_none() || has_rig, || "--unit goes with a .glb, as out.glb".to_owned())?;
+    carried::check(args, &files)?;
     let is_csv = |file: &PathBuf| file.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
     if let Some(leaves) = args.leaves.as_ref().filter(|file| !is_csv(file)) {
         want(false, || format!("leaves are written as .csv, not as {}", leaves.display()))?;

@@ -6,11 +6,13 @@
 #[cfg(test)]
 mod tests;
 
-use honami_model::mesh::{Binding, Mesh};
+use std::collections::{BTreeMap, BTreeSet};
+
+use honami_model::mesh::Binding;
 use honami_model::skeleton::{Skeleton, turns};
 use serde_json::{Value, json};
 
-use crate::glb::{ARRAY, Document, F32, OTHER, U16, upright};
+use crate::glb::{ARRAY, Document, F32, Matrix, OTHER, Piece, U8, U16, product, upright};
 
 /// Numbers of joints have 16 bits.
 const MOST_JOINTS: usize = u16::MAX as usize;
@@ -37,32 +39,90 @@ pub enum RigError {
     },
 }
 
-/// A mesh bound to the bones of `rest`, where these are at rest, which turn as those of `motion` do; both are of the same
-/// bones. Lengths are metres.
+/// The pieces of a scene, bound to the bones of `rest`, where these are at rest, which turn as those of `motion` do; both are
+/// of the same bones. Bindings, and colours if there are any, are vertex by vertex, piece after piece. Lengths are those of
+/// the scene. What the scene's own animations were is left out.
 ///
 /// # Errors
 /// [`RigError`].
 pub fn rigged(
-    mesh: &Mesh,
+    mut document: Document,
+    pieces: &[Piece],
     bindings: &[Binding],
+    colours: &[[u8; 3]],
     rest: &Skeleton,
     motion: &Skeleton,
 ) -> Result<Document, RigError> {
     let is_bound = |binding: &&Binding| binding.shares().all(|(bone, _)| bone < rest.joints().len());
-    let (came, wanted) = (bindings.iter().filter(is_bound).count(), mesh.positions.len());
-    if came != wanted || bindings.len() != wanted {
+    let wanted = pieces.iter().flat_map(|piece| &piece.counts).sum();
+    let came = bindings.iter().filter(is_bound).count();
+    if came != wanted || bindings.len() != wanted || !(colours.is_empty() || colours.len() == wanted) {
         return Err(RigError::Bindings { came: came.min(wanted), wanted });
     }
-    let mut document = Document::of(mesh);
     let joints = Joints::add(&mut document, rest)?;
     joints.turn(&mut document, rest, motion)?;
-    let mut attributes = document.words["meshes"][0]["primitives"][0]["attributes"].take();
-    bind(&mut document, &mut attributes, bindings);
-    document.words["meshes"][0]["primitives"][0]["attributes"] = attributes;
-    let skin = joints.skin(&mut document);
-    let node = document.put("nodes", json!({ "name": "plant", "mesh": 0, "skin": skin }));
-    document.words["scenes"][0]["nodes"] = json!([node, joints.nodes[0]]);
+    let coloured = (!colours.is_empty()).then(|| {
+        let look = json!({ "metallicFactor": 0.0, "roughnessFactor": 1.0 });
+        document
+            .put("materials", json!({ "name": "weights", "pbrMetallicRoughness": look, "doubleSided": true }))
+    });
+    let (mut used, mut skins, mut first) = (BTreeSet::new(), BTreeMap::new(), 0);
+    for piece in pieces {
+        let mut mesh = document.words["meshes"][piece.mesh].clone();
+        for (k, &n) in piece.counts.iter().enumerate() {
+            let (primitive, own) = (&mut mesh["primitives"][k], first..first + n);
+            bind(&mut document, &mut primitive["attributes"], &bindings[own.clone()]);
+            if let Some(material) = coloured {
+                primitive["material"] = material.into();
+                colour(&mut document, &mut primitive["attributes"], &colours[own]);
+            }
+            first += n;
+        }
+        // A mesh that stands in several places is bound differently in each.
+        let mesh = if used.insert(piece.mesh) {
+            document.words["meshes"][piece.mesh] = mesh;
+            piece.mesh
+        } else {
+            document.put("meshes", mesh)
+        };
+        let place = piece.matrix.map(f64::to_bits);
+        let skin = *skins.entry(place).or_insert_with(|| joints.skin(&mut document, &piece.matrix));
+        stand(&mut document, piece.node, mesh, skin);
+    }
+    list(document.scene()).push(joints.nodes[0].into());
     Ok(document)
+}
+
+/// Puts a mesh that bones carry into the scene, in place of the node that bore it: where that lies is in the skin.
+fn stand(document: &mut Document, node: usize, mesh: usize, skin: usize) {
+    let old = &mut document.words["nodes"][node];
+    let mut made = json!({ "mesh": mesh, "skin": skin });
+    for name in ["name", "weights", "extras"] {
+        if !old[name].is_null() {
+            made[name] = old[name].take();
+        }
+    }
+    old.as_object_mut()
+        .into_iter()
+        .for_each(|old| old.retain(|name, value| name != "mesh" && !value.is_null()));
+    let is_alone = old["children"].is_null() && list(document.scene()).contains(&node.into());
+    if is_alone {
+        document.words["nodes"][node] = made;
+    } else {
+        let node = document.put("nodes", made);
+        list(document.scene()).push(node.into());
+    }
+}
+
+/// A list of words; made where there is none.
+fn list(words: &mut Value) -> &mut Vec<Value> {
+    if !words.is_array() {
+        *words = json!([]);
+    }
+    match words {
+        Value::Array(list) => list,
+        _ => unreachable!("it was made one"),
+    }
 }
 
 /// Joints of a skeleton as nodes of a document: the root, bones in the order of their rows, ends of tips.
@@ -139,12 +199,12 @@ impl Joints {
         Ok(())
     }
 
-    /// The skin of a mesh that lies where these joints are.
-    fn skin(&self, document: &mut Document) -> usize {
+    /// The skin of a mesh that lies so in the scene of these joints.
+    fn skin(&self, document: &mut Document, matrix: &Matrix) -> usize {
         let mut bytes = Vec::with_capacity(64 * self.places.len());
         for [x, y, z] in &self.places {
             let back = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, -x, -y, -z, 1.0];
-            bytes.extend(back.iter().flat_map(|v| (*v as f32).to_le_bytes()));
+            bytes.extend(product(&back, matrix).iter().flat_map(|v| (*v as f32).to_le_bytes()));
         }
         let what = json!({ "componentType": F32, "type": "MAT4", "count": self.places.len() });
         let matrices = document.add(OTHER, &bytes, what);
@@ -179,4 +239,12 @@ fn bind(document: &mut Document, attributes: &mut Value, bindings: &[Binding]) {
     let weights: Vec<u8> = bindings.iter().flat_map(Binding::weights).flat_map(f32::to_le_bytes).collect();
     let what = json!({ "componentType": F32, "type": "VEC4", "count": count });
     attributes["WEIGHTS_0"] = document.add(ARRAY, &weights, what).into();
+}
+
+/// Says of every vertex what it looks like.
+fn colour(document: &mut Document, attributes: &mut Value, colours: &[[u8; 3]]) {
+    let bytes: Vec<u8> =
+        colours.iter().flat_map(|[red, green, blue]| [*red, *green, *blue, u8::MAX]).collect();
+    let what = json!({ "componentType": U8, "type": "VEC4", "normalized": true, "count": colours.len() });
+    attributes["COLOR_0"] = document.add(ARRAY, &bytes, what).into();
 }

@@ -10,7 +10,7 @@ use honami_model::skeleton::Skeleton;
 use honami_model::turn::norm;
 
 use crate::error::WorkbenchError;
-use crate::plant::tubes::Tubes;
+use crate::plant::tubes::{SIDES, Tubes};
 
 /// The thickest bone has such a radius, of how far the farthest joint is from the root.
 const THICKEST: f64 = 0.02;
@@ -25,18 +25,26 @@ pub(super) fn body(skeleton: &Skeleton) -> Result<(Mesh, Vec<Binding>), Workbenc
     // Rows beyond 16 bits are refused where a rig is made.
     let row = |row: usize| u16::try_from(row).unwrap_or(u16::MAX);
     beams.of_plant().iter().enumerate().for_each(|(joint, node)| bones[*node as usize] = row(joint));
-    let tubes = Tubes::new(&beams);
-    let (mut mesh, mut bindings) = (Mesh { triangles: tubes.triangles(), ..Mesh::default() }, Vec::new());
-    for ring in tubes.rings() {
+    let rings = Tubes::new(&beams);
+    let bound = rings.rings().iter().flat_map(|ring| {
         let [before, after] = ring.tips().map(|tip| (bones[tip as usize], 0.5));
+        [Binding::new([before, after, (0, 0.0), (0, 0.0)]); SIDES]
+    });
+    Ok((tubes(&beams), bound.collect()))
+}
+
+/// Tubes along the branches of a plant.
+pub(super) fn tubes(beams: &Beams) -> Mesh {
+    let tubes = Tubes::new(beams);
+    let mut mesh = Mesh { triangles: tubes.triangles(), ..Mesh::default() };
+    for ring in tubes.rings() {
         let centre = beams.position(ring.node as usize);
         for outward in ring.outward() {
             mesh.positions.push((centre + outward * ring.radius).into());
             mesh.normals.push(outward.into());
-            bindings.push(Binding::new([before, after, (0, 0.0), (0, 0.0)]));
         }
     }
-    Ok((mesh, bindings))
+    mesh
 }
 
 /// Every bone has the area of all that it bears (Shinozaki and others, 1964), ends of branches all the same.

@@ -1,46 +1,134 @@
-//! What skeletons are written as.
+//! What skeletons, and what they carry, are written as.
 
-use std::path::Path;
+use std::fs;
+use std::path::{Path, PathBuf};
 
+use honami_exchange::mesh::{Frame, MeshFormat, Up, write_frame};
+use honami_exchange::plant::PointCache;
 use honami_exchange::skeleton::{SkeletonFormat, rigged};
 use honami_model::skeleton::Skeleton;
+use honami_structure::blend::{Blend, blended, carries};
 
-use super::body::body;
+use super::bound::Bound;
 use crate::error::WorkbenchError;
-
-/// Metres of a pixel in a rig, unless told otherwise.
-pub const UNIT: f64 = 0.001;
 
 /// Kinds of files that a skeleton can be written as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Out {
     /// Itself, in pixels.
     Skeleton(SkeletonFormat),
-    /// What it carries, on bones that move (`.glb`): glTF 2.0, metres, y up.
+    /// What it carries, on bones that move (`.glb`): glTF 2.0, y up.
     Rig,
+    /// What it carries, a file a frame (`%04d.obj`, `%04d.ply`).
+    Frames(MeshFormat),
+    /// Where the vertices that it carries are in every frame (`.pc2`).
+    Cache,
+}
+
+/// What is carried, and how it is shown.
+#[derive(Clone, Debug)]
+pub struct Carried {
+    /// What it is; `None`: tubes along the skeleton's own bones.
+    pub bound: Option<Bound>,
+    /// Metres of a pixel, of tubes.
+    pub unit: f64,
+    /// How vertices follow several bones, in frames and caches; a rig leaves that to whoever reads it.
+    pub blend: Blend,
+    /// Whether vertices are coloured by the bones that carry them.
+    pub are_weights_shown: bool,
 }
 
 impl Out {
-    /// The kind whose files end so.
+    /// The kind whose files end so; frames have a number in their name.
     #[must_use]
     pub fn of(path: &Path) -> Option<Self> {
-        let is_rig = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("glb"));
-        if is_rig { Some(Self::Rig) } else { SkeletonFormat::of(path).map(Self::Skeleton) }
+        let ending = path.extension()?.to_str()?.to_ascii_lowercase();
+        match ending.as_str() {
+            "glb" => Some(Self::Rig),
+            "pc2" => Some(Self::Cache),
+            _ => {
+                let frames =
+                    || MeshFormat::of(path).filter(|_| numbered(path, 0).is_some()).map(Self::Frames);
+                SkeletonFormat::of(path).map(Self::Skeleton).or_else(frames)
+            }
+        }
     }
 }
 
-/// Writes a skeleton; in a rig a pixel is `unit` metres, the root in the origin, and tubes are what it carries.
+/// `walk/%04d.ply` as `walk/0007.ply`; `None` where there is not one such place in the name.
+fn numbered(path: &Path, frame: u32) -> Option<PathBuf> {
+    let name = path.file_name()?.to_str()?;
+    let (before, rest) = name.split_once('%')?;
+    let (digits, after) = rest.split_once('d')?;
+    let width = match digits.strip_prefix('0') {
+        Some(width) => width.parse().ok().filter(|width| (1..=9).contains(width))?,
+        None if digits.is_empty() => 1,
+        None => return None,
+    };
+    (!after.contains('%')).then(|| path.with_file_name(format!("{before}{frame:0width$}{after}")))
+}
+
+/// Writes a skeleton, or what it carries, which may be bound to another of the same bones.
 ///
 /// # Errors
-/// What the disk met; [`WorkbenchError::Rig`].
-pub fn write(skeleton: &Skeleton, out: Out, unit: f64, path: &Path) -> Result<(), WorkbenchError> {
+/// What the disk met; [`WorkbenchError::Rig`]; [`WorkbenchError::NoVertices`].
+pub fn write(skeleton: &Skeleton, out: Out, carried: &Carried, path: &Path) -> Result<(), WorkbenchError> {
+    if let Out::Skeleton(format) = out {
+        return Ok(honami_exchange::skeleton::write(path, format, skeleton)?);
+    }
+    let own;
+    let bound = match &carried.bound {
+        Some(bound) => bound,
+        None => {
+            own = Bound::own(skeleton, carried.unit)?;
+            &own
+        }
+    };
+    let motion = bound.standing(skeleton)?;
+    let colours = if carried.are_weights_shown { bound.colours() } else { Vec::new() };
     match out {
-        Out::Skeleton(format) => honami_exchange::skeleton::write(path, format, skeleton)?,
+        Out::Skeleton(_) => {}
         Out::Rig => {
-            let skeleton = skeleton.standing([0.0; 3], unit, 0.0)?;
-            let (mesh, bindings) = body(&skeleton)?;
-            rigged(&mesh, &bindings, &skeleton, &skeleton)?.write(path)?;
+            let Bound { document, pieces, bindings, rest, .. } = bound;
+            rigged(document.clone(), pieces, bindings, &colours, rest, &motion)?.write(path)?;
+        }
+        Out::Frames(format) => {
+            let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.exists());
+            if let Some(folder) = folder {
+                let failed = |source| WorkbenchError::Io {
+                    what: "making the folder of frames",
+                    source,
+                    path: folder.into(),
+                };
+                fs::create_dir(folder).map_err(failed)?;
+            }
+            for frame in 0..motion.times().len() {
+                let Some(path) = numbered(path, frame) else { continue };
+                let positions = moved(bound, &motion, frame, carried.blend, bound.up.unwrap_or(format.up()));
+                let triangles = &bound.mesh.triangles;
+                write_frame(&path, format, &Frame { positions: &positions, triangles, colours: &colours })?;
+            }
+        }
+        Out::Cache => {
+            if !bound.is_one {
+                return Err(WorkbenchError::NoVertices);
+            }
+            let n_frames = motion.times().len();
+            let mut cache = PointCache::create(path, bound.mesh.positions.len(), n_frames)?;
+            for frame in 0..n_frames {
+                for place in moved(bound, &motion, frame, carried.blend, bound.up.unwrap_or(Up::Z)) {
+                    cache.push(place.map(|v| v as f32))?;
+                }
+            }
+            cache.finish()?;
         }
     }
     Ok(())
+}
+
+/// Where vertices are in a frame, in the axes of a file.
+fn moved(bound: &Bound, motion: &Skeleton, frame: u32, blend: Blend, up: Up) -> Vec<[f64; 3]> {
+    let carries = carries(&bound.rest, motion, frame);
+    let places = blended(&bound.mesh.positions, &bound.bindings, &carries, blend);
+    places.into_iter().map(|place| up.written(place)).collect()
 }

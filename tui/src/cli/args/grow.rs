@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 
 use super::WithPlugin;
 
@@ -17,7 +17,7 @@ pub(in crate::cli) struct Grow {
     /// Project file (.honami).
     pub(in crate::cli) project: PathBuf,
     /// Files to write: .bvh (motion capture), .csv (joints and angles in every frame), .swc (the shape at rest), .glb (a rig:
-    /// tubes on bones that move, for modellers and engines).
+    /// tubes, or the plant of --onto, on bones that move, for modellers and engines).
     pub(in crate::cli) out: Vec<PathBuf>,
     #[command(flatten)]
     pub(in crate::cli) plugin: WithPlugin,
@@ -46,7 +46,23 @@ pub(in crate::cli) struct Grow {
     /// Only the frames after which the motion is most as it began, so that it repeats without a jump.
     #[arg(long = "loop")]
     pub(in crate::cli) is_loop: bool,
-    /// Metres of a pixel in a .glb (default: 0.001).
+    /// Another plant, which the skeleton carries instead of tubes: .glb, .obj, .ply, or .mtg, .swc, .csv, .mat, whose branches
+    /// become tubes. It is written as a .glb, as frames (walk/%04d.ply, walk/%04d.obj) or as a point cache (.pc2).
+    #[arg(long, value_name = "PLANT")]
+    pub(in crate::cli) onto: Option<PathBuf>,
+    /// Which axis of an .obj or .ply points up (default: y of .obj, z of .ply).
+    #[arg(long, value_enum, requires = "onto")]
+    pub(in crate::cli) up: Option<Up>,
+    /// Turn the skeleton in PLANT, counterclockwise from above, degrees.
+    #[arg(long, value_name = "DEG", requires = "onto", allow_hyphen_values = true)]
+    pub(in crate::cli) turn: Option<f64>,
+    /// How vertices follow several bones, in frames and caches (default: linear, as who reads a .glb does).
+    #[arg(long, value_enum)]
+    pub(in crate::cli) blend: Option<Blend>,
+    /// Colour vertices by the bones that carry them.
+    #[arg(long)]
+    pub(in crate::cli) weights: bool,
+    /// Metres of a pixel in what is carried (default: 0.001; with --onto, of PLANT's lengths: as makes both as high).
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub(in crate::cli) unit: Option<f64>,
     /// Write where every track is as a leaf of the skeleton: track,joint,frame,time_s,x_px,y_px,depth_px.
@@ -70,6 +86,40 @@ pub(in crate::cli) struct Grow {
     /// True positions of a generated clip, a table `track,frame,x,y,visible,branch`: say how far joints are from them.
     #[arg(long, value_name = "FILE")]
     pub(in crate::cli) truth: Option<PathBuf>,
+}
+
+/// Axes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(in crate::cli) enum Up {
+    Y,
+    Z,
+}
+
+impl From<Up> for honami_workbench::grow::Up {
+    fn from(up: Up) -> Self {
+        match up {
+            Up::Y => Self::Y,
+            Up::Z => Self::Z,
+        }
+    }
+}
+
+/// Ways to follow several bones.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(in crate::cli) enum Blend {
+    /// The mean of where each bone would have a vertex.
+    Linear,
+    /// Dual quaternions: what is twisted keeps its thickness.
+    Dual,
+}
+
+impl From<Blend> for honami_workbench::grow::Blend {
+    fn from(blend: Blend) -> Self {
+        match blend {
+            Blend::Linear => Self::Linear,
+            Blend::Dual => Self::Dual,
+        }
+    }
 }
 
 /// `X,Y` in pixels.

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use honami_workbench::grow::{self, Out, Siblings};
+use honami_workbench::grow::{self, Carried, Out, Siblings};
 use serde_json::json;
 
 use super::super::Answer;
@@ -15,6 +15,7 @@ pub(super) fn draw(
     siblings: &Siblings,
     args: &Grow,
     files: &[(Out, &PathBuf)],
+    carried: &Carried,
     answer: &mut Answer,
 ) -> anyhow::Result<()> {
     let (mut written, mut drawing) = (Vec::new(), Duration::ZERO);
@@ -24,7 +25,7 @@ pub(super) fn draw(
         drawing += begun.elapsed();
         for (kind, out) in files {
             let out = numbered(out, number);
-            grow::write(&sibling, *kind, args.unit.unwrap_or(grow::UNIT), &out)?;
+            grow::write(&sibling, *kind, carried, &out)?;
             written.push(out);
         }
         if let Some(leaves) = &args.leaves {

@@ -2,11 +2,13 @@
 
 use gltf::animation::util::ReadOutputs;
 use honami_model::clip::FrameTimes;
+use honami_model::mesh::Mesh;
 use honami_model::skeleton::Joint;
 use proptest::prelude::*;
 
 use super::super::tests::skeleton;
 use super::*;
+use crate::glb::tests::scene;
 
 type Matrix = [[f64; 4]; 4];
 
@@ -44,10 +46,21 @@ struct Rig {
     times: Vec<f32>,
     vertices: Vec<[f64; 3]>,
     bindings: Vec<([u16; 4], [f32; 4])>,
+    colours: Vec<[u8; 4]>,
 }
+
+const UNMOVED: [[f32; 4]; 4] =
+    [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
 
 impl Rig {
     fn read(document: Document) -> Self {
+        let mut rigs = Self::all(document);
+        assert_eq!(rigs.len(), 1);
+        rigs.remove(0)
+    }
+
+    /// One a mesh that stands in the scene.
+    fn all(document: Document) -> Vec<Self> {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("rig.glb");
         let n_bytes = document.write(&path).unwrap();
@@ -88,23 +101,26 @@ impl Rig {
             };
             joints.iter().map(chain).collect()
         };
-        let primitive = document.meshes().next().unwrap().primitives().next().unwrap();
-        let reader = primitive.reader(data);
-        let bones = reader.read_joints(0).unwrap().into_u16();
-        Self {
-            names: joints.iter().map(|joint| joint.name().unwrap().to_owned()).collect(),
-            turns: joints.iter().map(|joint| turns[joint.index()].clone()).collect(),
-            poses: (0..n_frames).map(pose).collect(),
-            inverse: skin
-                .reader(data)
-                .read_inverse_bind_matrices()
-                .unwrap()
-                .map(|m| m.map(|column| column.map(f64::from)))
-                .collect(),
-            times,
-            vertices: reader.read_positions().unwrap().map(|v| v.map(f64::from)).collect(),
-            bindings: bones.zip(reader.read_weights(0).unwrap().into_f32()).collect(),
-        }
+        let rig = |node: gltf::Node<'_>| {
+            let skin = node.skin()?;
+            assert!(parents[node.index()].is_none() && node.transform().matrix() == UNMOVED);
+            let primitive = node.mesh().unwrap().primitives().next().unwrap();
+            let reader = primitive.reader(data);
+            let inverse = skin.reader(data).read_inverse_bind_matrices().unwrap();
+            let bones = reader.read_joints(0).unwrap().into_u16();
+            let colours = reader.read_colors(0).into_iter().flat_map(|colours| colours.into_rgba_u8());
+            Some(Self {
+                names: joints.iter().map(|joint| joint.name().unwrap().to_owned()).collect(),
+                turns: joints.iter().map(|joint| turns[joint.index()].clone()).collect(),
+                poses: (0..n_frames).map(pose).collect(),
+                inverse: inverse.map(|m| m.map(|column| column.map(f64::from))).collect(),
+                times: times.clone(),
+                vertices: reader.read_positions().unwrap().map(|v| v.map(f64::from)).collect(),
+                bindings: bones.zip(reader.read_weights(0).unwrap().into_f32()).collect(),
+                colours: colours.collect(),
+            })
+        };
+        document.scenes().next().unwrap().nodes().filter_map(rig).collect()
     }
 
     /// Where a vertex is in a frame, blended linearly, as every program that reads the file does.
@@ -118,6 +134,13 @@ impl Rig {
         }
         sum
     }
+}
+
+/// A mesh as a rig of its own.
+fn own(mesh: &Mesh, bindings: &[Binding], rest: &Skeleton, motion: &Skeleton) -> Result<Document, RigError> {
+    let document = Document::of(mesh);
+    let (_, pieces) = document.pieces().unwrap();
+    rigged(document, &pieces, bindings, &[], rest, motion)
 }
 
 /// A mesh with a vertex in the end of every bone, bound to it, and one half-way along, bound half to the bone before.
@@ -138,7 +161,7 @@ fn marks(skeleton: &Skeleton) -> (Mesh, Vec<Binding>) {
 #[track_caller]
 fn assert_is_it(skeleton: &Skeleton) {
     let (mesh, bindings) = marks(skeleton);
-    let rig = Rig::read(rigged(&mesh, &bindings, skeleton, skeleton).unwrap());
+    let rig = Rig::read(own(&mesh, &bindings, skeleton, skeleton).unwrap());
     let n = skeleton.joints().len();
     let rest = skeleton.places(skeleton.rest());
     let size = rest.iter().map(|place| apart(*place, rest[0])).fold(1.0, f64::max) + apart(rest[0], [0.0; 3]);
@@ -193,7 +216,7 @@ fn joints_and_what_they_carry_are_where_the_skeleton_has_them() {
 fn weights_blend() {
     let bent = skeleton(&[(0, 10.0), (1, 10.0)], &[(0.0, 0.0), (0.3, 0.0), (-0.4, 0.2), (0.1, 0.1)], 6);
     let (mesh, bindings) = marks(&bent);
-    let rig = Rig::read(rigged(&mesh, &bindings, &bent, &bent).unwrap());
+    let rig = Rig::read(own(&mesh, &bindings, &bent, &bent).unwrap());
     let rest = bent.places(bent.rest());
     for frame in 0..6 {
         let directions = bent.directions(frame);
@@ -211,6 +234,37 @@ fn weights_blend() {
     }
 }
 
+/// A mesh that stands in a scene twice, turned, larger and moved by its nodes, and one bone to each of the places: vertices
+/// are where they stood, and go where the bones take them.
+#[test]
+fn meshes_of_others_are_carried_from_where_they_stand() {
+    let bent = skeleton(&[(0, 3.0), (1, 4.0)], &[(0.0, 0.0), (0.3, 0.0), (-0.4, 0.2), (0.1, 0.1)], 6);
+    let document = Document::read(&scene(|_| {})).unwrap();
+    let (mesh, pieces) = document.pieces().unwrap();
+    let binding = |bone: u16| Binding::new([(bone, 1.0), (0, 0.0), (0, 0.0), (0, 0.0)]);
+    let bindings = [0, 1, 2, 2, 1, 0].map(binding);
+    let colours: Vec<[u8; 3]> = (0..6).map(|k| [k, 2 * k, 255]).collect();
+    let bound = rigged(document, &pieces, &bindings, &colours, &bent, &bent).unwrap();
+    assert_eq!(bound.words["asset"]["copyright"], "somebody");
+    // The first hung on a node of the scene, and stands by itself now, behind the second.
+    let rigs: Vec<Rig> = Rig::all(bound).into_iter().rev().collect();
+    assert_eq!(rigs.len(), 2);
+    let rest = bent.places(bent.rest());
+    for frame in 0..6 {
+        let directions = bent.directions(frame);
+        let (places, turns) = (bent.places(directions), turns(bent.rest(), directions));
+        for (k, (place, bone)) in mesh.positions.iter().zip([0, 1, 2, 2, 1, 0]).enumerate() {
+            let base = bent.joints()[bone].parent.unwrap_or(0) as usize;
+            let from = std::array::from_fn(|axis| place[axis] - rest[base][axis]);
+            let by = if bone == 0 { from } else { turns[bone].apply(from) };
+            let wanted = upright(std::array::from_fn(|axis| places[base][axis] + by[axis]));
+            let found = rigs[k / 3].vertex(k % 3, frame as usize);
+            assert!(apart(found, wanted) < 1e-3, "frame {frame}, vertex {k}: {found:?} {wanted:?}");
+            assert_eq!(rigs[k / 3].colours[k % 3], [k as u8, 2 * k as u8, 255, 255]);
+        }
+    }
+}
+
 #[test]
 fn frames_have_the_times_of_the_clip_from_the_first_on() {
     let times = |times_s: &[f64]| {
@@ -219,7 +273,7 @@ fn frames_have_the_times_of_the_clip_from_the_first_on() {
         let times = FrameTimes::new(times_s.to_vec()).unwrap();
         let skeleton = Skeleton::new([0.0; 3], joints, directions, times).unwrap();
         let (mesh, bindings) = marks(&skeleton);
-        rigged(&mesh, &bindings, &skeleton, &skeleton).map(|document| Rig::read(document).times)
+        own(&mesh, &bindings, &skeleton, &skeleton).map(|document| Rig::read(document).times)
     };
     assert_eq!(times(&[4.0, 4.5, 6.0]).unwrap(), [0.0, 0.5, 2.0]);
     assert_eq!(times(&[0.0, 1000.0, 1000.0 + 1e-6]).unwrap_err(), RigError::Times(1));
@@ -230,12 +284,12 @@ fn what_is_no_rig_is_named() {
     let small = skeleton(&[(0, 10.0)], &[(0.2, 0.1)], 1);
     let (mesh, mut bindings) = marks(&small);
     bindings[1] = Binding::new([(2, 1.0), (0, 0.0), (0, 0.0), (0, 0.0)]);
-    let error = rigged(&mesh, &bindings, &small, &small).unwrap_err();
+    let error = own(&mesh, &bindings, &small, &small).unwrap_err();
     assert_eq!(error, RigError::Bindings { came: 3, wanted: 4 });
-    let error = rigged(&mesh, &bindings[..1], &small, &small).unwrap_err();
+    let error = own(&mesh, &bindings[..1], &small, &small).unwrap_err();
     assert_eq!(error, RigError::Bindings { came: 1, wanted: 4 });
     let broom = skeleton(&vec![(0, 1.0); 33_000], &[(0.0, 0.0)], 1);
-    let error = rigged(&Mesh::default(), &[], &broom, &broom).unwrap_err();
+    let error = own(&Mesh::default(), &[], &broom, &broom).unwrap_err();
     assert!(matches!(error, RigError::TooMany(n) if n > 65_535), "{error}");
 }
 

@@ -1,0 +1,230 @@
+//! What stands in the scene of a file of others: its meshes, where they stand.
+
+use honami_model::mesh::Mesh;
+use serde_json::Value;
+
+use super::{Document, F32, U8, U16, U32, laid};
+use crate::plant::PlantFileError;
+
+/// Columns of a matrix, one after another.
+pub(crate) type Matrix = [f64; 16];
+
+const NONE: Matrix = [1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.];
+/// What may be required of a reader and changes no vertex.
+const HARMLESS: [&str; 5] = ["KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "KHR_xmp"];
+/// Points of a list are triangles.
+const TRIANGLES: u64 = 4;
+
+/// A mesh at its place in the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Piece {
+    pub(crate) node: usize,
+    pub(crate) mesh: usize,
+    /// From the mesh to the scene, y up.
+    pub(crate) matrix: Matrix,
+    /// Vertices of each of its primitives.
+    pub(crate) counts: Vec<usize>,
+}
+
+impl Document {
+    /// Takes a file apart.
+    ///
+    /// # Errors
+    /// [`PlantFileError::Lacks`] for what is no `.glb` of glTF 2.0, keeps its numbers elsewhere, or wants what is not read.
+    pub fn read(bytes: &[u8]) -> Result<Self, PlantFileError> {
+        let word = |at: usize| {
+            let four = bytes.get(at..at + 4)?.try_into().ok()?;
+            Some(u32::from_le_bytes(four) as usize)
+        };
+        if bytes.get(..4) != Some(b"glTF") || word(4) != Some(2) {
+            return Err(lacks("a .glb begins with `glTF` and the number 2, this does not"));
+        }
+        let (mut at, mut words, mut numbers) = (12, None, Vec::new());
+        while let (Some(size), Some(kind)) = (word(at), bytes.get(at + 4..at + 8)) {
+            let chunk = at.checked_add(8 + size).and_then(|end| bytes.get(at + 8..end));
+            let chunk = chunk.ok_or_else(|| lacks("the file ends before it should: was it copied whole?"))?;
+            match kind {
+                b"JSON" if words.is_none() => words = Some(chunk),
+                b"BIN\0" if numbers.is_empty() => numbers = chunk.to_vec(),
+                _ => {}
+            }
+            at += 8 + size.next_multiple_of(4);
+        }
+        let words = words.ok_or_else(|| lacks("a .glb has words in JSON, this has none"))?;
+        let words: Value = serde_json::from_slice(words)
+            .map_err(|error| lacks(&format!("the words of the .glb are no JSON: {error}")))?;
+        let required = words["extensionsRequired"].as_array().into_iter().flatten();
+        let names = required.filter_map(Value::as_str);
+        if let Some(name) = names.into_iter().find(|name| !HARMLESS.iter().any(|it| name.starts_with(it))) {
+            return Err(lacks(&format!("it wants readers that know {name}: export it without")));
+        }
+        let buffers = words["buffers"].as_array().map_or(&[][..], Vec::as_slice);
+        if buffers.len() != 1 || !buffers[0]["uri"].is_null() {
+            return Err(lacks("its numbers are in other files: export it as one .glb"));
+        }
+        if words["skins"].as_array().is_some_and(|skins| !skins.is_empty()) {
+            return Err(lacks("it is bound to bones already: export the mesh without its bones"));
+        }
+        Ok(Self { words, numbers })
+    }
+
+    /// What is lost of it, a sentence each.
+    #[must_use]
+    pub fn notes(&self) -> Vec<String> {
+        let list = |name: &str| self.words[name].as_array().map_or(&[][..], Vec::as_slice);
+        let mut notes = Vec::new();
+        if !list("animations").is_empty() {
+            notes.push("its own animations are left out".to_owned());
+        }
+        let is_elsewhere =
+            |image: &&Value| image["uri"].as_str().is_some_and(|uri| !uri.starts_with("data:"));
+        let n = list("images").iter().filter(is_elsewhere).count();
+        if n > 0 {
+            notes.push(format!(
+                "{n} of its pictures are in files of their own: keep these beside what is written"
+            ));
+        }
+        notes
+    }
+
+    /// All meshes of the scene as one, z up, vertices primitive by primitive; and the pieces that these are of.
+    ///
+    /// # Errors
+    /// [`PlantFileError::Lacks`] for words that do not fit one another, and for meshes that are packed.
+    pub fn pieces(&self) -> Result<(Mesh, Vec<Piece>), PlantFileError> {
+        let scene = whole(&self.words["scene"]).unwrap_or(0);
+        let roots = indices(&self.words["scenes"][scene]["nodes"]);
+        let n_nodes = self.words["nodes"].as_array().map_or(0, Vec::len);
+        let mut open: Vec<(usize, Matrix)> = roots.into_iter().rev().map(|node| (node, NONE)).collect();
+        let (mut all, mut pieces, mut n_seen) = (Mesh::default(), Vec::new(), 0);
+        while let Some((node, before)) = open.pop() {
+            n_seen += 1;
+            if node >= n_nodes || n_seen > n_nodes {
+                return Err(lacks("its nodes are no trees"));
+            }
+            let words = &self.words["nodes"][node];
+            let matrix = product(&before, &own(words)?);
+            open.extend(indices(&words["children"]).into_iter().rev().map(|child| (child, matrix)));
+            if let Some(mesh) = whole(&words["mesh"]) {
+                let counts = self.take(mesh, &matrix, &mut all)?;
+                pieces.push(Piece { node, mesh, matrix, counts });
+            }
+        }
+        Ok((all, pieces))
+    }
+
+    /// Adds the primitives of a mesh; how many vertices each has.
+    fn take(&self, mesh: usize, matrix: &Matrix, all: &mut Mesh) -> Result<Vec<usize>, PlantFileError> {
+        let primitives = self.words["meshes"][mesh]["primitives"].as_array();
+        let primitives = primitives.ok_or_else(|| lacks(&format!("mesh {mesh} has no primitives")))?;
+        let mut counts = Vec::new();
+        for primitive in primitives {
+            let (first, missing) = (all.positions.len(), || lacks(&format!("mesh {mesh} has no positions")));
+            let positions = whole(&primitive["attributes"]["POSITION"]).ok_or_else(missing)?;
+            let floats = self.numbers(positions, "VEC3", &[F32])?;
+            let places = floats.as_chunks::<3>().0.iter();
+            all.positions.extend(places.map(|place| laid(placed(matrix, *place))));
+            let n = all.positions.len() - first;
+            counts.push(n);
+            if whole(&primitive["mode"]).is_some_and(|mode| mode as u64 != TRIANGLES) {
+                continue;
+            }
+            let listed = match whole(&primitive["indices"]) {
+                Some(accessor) => self.numbers(accessor, "SCALAR", &[U8, U16, U32])?,
+                None => (0..n).map(|k| k as f64).collect(),
+            };
+            if listed.iter().any(|index| *index >= n as f64) {
+                return Err(lacks(&format!("a triangle of mesh {mesh} has a corner that is none")));
+            }
+            let corner = |index: f64| first as u32 + index as u32;
+            all.triangles.extend(listed.as_chunks::<3>().0.iter().map(|corners| corners.map(corner)));
+        }
+        Ok(counts)
+    }
+
+    /// All numbers of an accessor.
+    fn numbers(&self, accessor: usize, kind: &str, wanted: &[u32]) -> Result<Vec<f64>, PlantFileError> {
+        let words = &self.words["accessors"][accessor];
+        let size = whole(&words["componentType"]).unwrap_or(0) as u32;
+        let is_plain = words["type"] == kind && wanted.contains(&size) && words["sparse"].is_null();
+        let view = whole(&words["bufferView"]).map(|view| &self.words["bufferViews"][view]);
+        let view = view.filter(|view| view.is_object());
+        let (true, Some(view)) = (is_plain, view) else {
+            let what = format!("the numbers of accessor {accessor} are packed: export the mesh unpacked");
+            return Err(lacks(&what));
+        };
+        let columns = if kind == "VEC3" { 3 } else { 1 };
+        let bytes = match size {
+            U8 => 1,
+            U16 => 2,
+            _ => 4,
+        };
+        let of = |value: &Value| whole(value).unwrap_or(0);
+        let stride = whole(&view["byteStride"]).unwrap_or(columns * bytes);
+        let first = of(&view["byteOffset"]).saturating_add(of(&words["byteOffset"]));
+        let mut found = Vec::new();
+        for row in 0..of(&words["count"]) {
+            for column in 0..columns {
+                let at = row.saturating_mul(stride).saturating_add(first).saturating_add(column * bytes);
+                let number = self.numbers.get(at..at.saturating_add(bytes));
+                let number = number.ok_or_else(|| lacks("numbers lie beyond the end of the file"))?;
+                found.push(match *number {
+                    [byte] => f64::from(byte),
+                    [a, b] => f64::from(u16::from_le_bytes([a, b])),
+                    [a, b, c, d] if size == U32 => f64::from(u32::from_le_bytes([a, b, c, d])),
+                    [a, b, c, d] => f64::from(f32::from_le_bytes([a, b, c, d])),
+                    _ => f64::NAN,
+                });
+            }
+        }
+        Ok(found)
+    }
+}
+
+fn lacks(what: &str) -> PlantFileError {
+    PlantFileError::Lacks(what.to_owned())
+}
+
+fn whole(value: &Value) -> Option<usize> {
+    usize::try_from(value.as_u64()?).ok()
+}
+
+fn indices(list: &Value) -> Vec<usize> {
+    list.as_array().into_iter().flatten().filter_map(whole).collect()
+}
+
+/// A list of as many numbers as were wanted; `None` where there is none.
+fn listed<const N: usize>(list: &Value) -> Result<Option<[f64; N]>, PlantFileError> {
+    let Some(values) = list.as_array() else { return Ok(None) };
+    let values: Vec<f64> = values.iter().filter_map(Value::as_f64).collect();
+    let found = values.try_into().map_err(|_other| lacks(&format!("{N} numbers of a node were wanted")));
+    found.map(Some)
+}
+
+/// How a node lies on the one before it.
+fn own(node: &Value) -> Result<Matrix, PlantFileError> {
+    if let Some(matrix) = listed::<16>(&node["matrix"])? {
+        return Ok(matrix);
+    }
+    let by = listed::<3>(&node["translation"])?.unwrap_or_default();
+    let [x, y, z, w] = listed::<4>(&node["rotation"])?.unwrap_or([0.0, 0.0, 0.0, 1.0]);
+    let [a, b, c] = listed::<3>(&node["scale"])?.unwrap_or([1.0; 3]);
+    let column = |column: [f64; 3], size: f64| column.map(|v| v * size);
+    let across = column([1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + z * w), 2.0 * (x * z - y * w)], a);
+    let up = column([2.0 * (x * y - z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + x * w)], b);
+    let near = column([2.0 * (x * z + y * w), 2.0 * (y * z - x * w), 1.0 - 2.0 * (x * x + y * y)], c);
+    let mut made = NONE;
+    for (k, column) in [across, up, near, by].into_iter().enumerate() {
+        made[4 * k..4 * k + 3].copy_from_slice(&column);
+    }
+    Ok(made)
+}
+
+/// One after another.
+pub(crate) fn product(a: &Matrix, b: &Matrix) -> Matrix {
+    std::array::from_fn(|at| (0..4).map(|k| a[4 * k + at % 4] * b[4 * (at / 4) + k]).sum())
+}
+
+fn placed(m: &Matrix, [x, y, z]: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|row| m[row] * x + m[4 + row] * y + m[8 + row] * z + m[12 + row])
+}

@@ -1,0 +1,123 @@
+//! Scenes of others: where meshes stand in them, and what cannot be read.
+
+use super::*;
+
+/// A triangle with indices of 8 bits, vertices 16 bytes apart, and nodes that turn, scale and move it.
+pub(crate) fn scene(change: impl Fn(&mut Value)) -> Vec<u8> {
+    let mut numbers: Vec<u8> = vec![0, 1, 2, 0];
+    for place in [[1.0_f32, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
+        numbers.extend(place.iter().chain(&[f32::NAN]).flat_map(|v| v.to_le_bytes()));
+    }
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    let mut words = json!({
+        "asset": { "version": "2.0", "copyright": "somebody" },
+        "scene": 0,
+        "scenes": [{ "nodes": [0, 2] }],
+        "nodes": [
+            { "translation": [10.0, 0.0, 0.0], "scale": [2.0, 2.0, 2.0], "children": [1] },
+            { "rotation": [0.0, half, 0.0, half], "mesh": 0 },
+            { "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 5, 0, 1], "mesh": 0, "name": "leaf" },
+        ],
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 1 }, "indices": 0 }] }],
+        "accessors": [
+            { "componentType": 5121, "type": "SCALAR", "count": 3, "bufferView": 0 },
+            { "componentType": 5126, "type": "VEC3", "count": 3, "bufferView": 1, "min": [0, 0, 0], "max": [1, 1, 1] },
+        ],
+        "bufferViews": [
+            { "buffer": 0, "byteLength": 3 },
+            { "buffer": 0, "byteOffset": 4, "byteLength": 48, "byteStride": 16 },
+        ],
+        "buffers": [{ "byteLength": numbers.len() }],
+    });
+    change(&mut words);
+    file(words.to_string().into_bytes(), &numbers)
+}
+
+fn file(mut words: Vec<u8>, numbers: &[u8]) -> Vec<u8> {
+    words.resize(words.len().next_multiple_of(4), b' ');
+    let whole = 28 + words.len() + numbers.len();
+    let mut bytes = b"glTF".to_vec();
+    bytes.extend([2, whole, words.len()].iter().flat_map(|n| (*n as u32).to_le_bytes()));
+    bytes.extend([b"JSON", &words[..]].concat());
+    bytes.extend((numbers.len() as u32).to_le_bytes());
+    bytes.extend([b"BIN\0", numbers].concat());
+    bytes
+}
+
+#[test]
+fn meshes_are_where_their_nodes_put_them() {
+    let document = Document::read(&scene(|_| {})).unwrap();
+    let (mesh, pieces) = document.pieces().unwrap();
+    // A quarter turn about y leads x to -z and z to x; then twice as large, then 10 to the right. y is up.
+    let wanted = [
+        [10.0, 2.0, 0.0],
+        [10.0, 0.0, 2.0],
+        [12.0, 0.0, 0.0],
+        [1.0, 0.0, 5.0],
+        [0.0, 0.0, 6.0],
+        [0.0, -1.0, 5.0],
+    ];
+    for (found, wanted) in mesh.positions.iter().zip(wanted) {
+        assert!(found.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-12), "{found:?} {wanted:?}");
+    }
+    assert_eq!((mesh.positions.len(), mesh.triangles), (6, vec![[0, 1, 2], [3, 4, 5]]));
+    assert_eq!(pieces.iter().map(|piece| (piece.node, piece.mesh)).collect::<Vec<_>>(), [(1, 0), (2, 0)]);
+    assert!(document.notes().is_empty());
+    let noted = Document::read(&scene(|words| {
+        words["animations"] = json!([{}]);
+        words["images"] = json!([{ "uri": "bark.png" }, { "uri": "data:image/png;base64,AA==" }]);
+    }));
+    let notes = noted.unwrap().notes().join(". ");
+    assert!(notes.contains("animations are left out") && notes.contains("1 of its pictures"), "{notes}");
+}
+
+#[test]
+fn lists_of_points_and_lines_have_no_triangles() {
+    for (mode, n) in [(0, 0), (1, 0), (4, 2), (5, 0)] {
+        let bytes = scene(|words| words["meshes"][0]["primitives"][0]["mode"] = mode.into());
+        let (mesh, pieces) = Document::read(&bytes).unwrap().pieces().unwrap();
+        assert_eq!((mesh.triangles.len(), mesh.positions.len(), pieces.len()), (n, 6, 2));
+    }
+    let bytes = scene(|words| words["meshes"][0]["primitives"][0]["indices"] = Value::Null);
+    assert_eq!(Document::read(&bytes).unwrap().pieces().unwrap().0.triangles, [[0, 1, 2], [3, 4, 5]]);
+}
+
+#[test]
+fn what_is_not_read_is_named() {
+    type Change = fn(&mut Value);
+    let cases: [(Change, &str); 14] = [
+        (|words| words["buffers"][0]["uri"] = "far.bin".into(), "export it as one .glb"),
+        (|words| words["buffers"] = json!([]), "export it as one .glb"),
+        (|words| words["skins"] = json!([{}]), "bound to bones already"),
+        (
+            |words| {
+                words["extensionsRequired"] = json!(["KHR_texture_transform", "KHR_draco_mesh_compression"])
+            },
+            "readers that know KHR_draco_mesh_compression",
+        ),
+        (|words| words["accessors"][1]["sparse"] = json!({}), "accessor 1 are packed"),
+        (|words| words["accessors"][1]["componentType"] = 5122.into(), "accessor 1 are packed"),
+        (|words| words["accessors"][1]["count"] = 4_000_000_000_u64.into(), "beyond the end"),
+        (|words| words["bufferViews"][1]["byteOffset"] = u64::MAX.into(), "beyond the end"),
+        (|words| words["accessors"][0]["bufferView"] = 7.into(), "accessor 0 are packed"),
+        (|words| words["accessors"][1]["count"] = 2.into(), "a corner that is none"),
+        (|words| words["nodes"][1]["children"] = json!([0]), "no trees"),
+        (|words| words["scenes"][0]["nodes"] = json!([9]), "no trees"),
+        (|words| words["nodes"][0]["scale"] = json!([1.0, "2"]), "3 numbers of a node"),
+        (|words| words["meshes"] = json!([{}]), "mesh 0 has no primitives"),
+    ];
+    for (change, wanted) in cases {
+        let error =
+            Document::read(&scene(change)).and_then(|document| document.pieces()).unwrap_err().to_string();
+        assert!(error.contains(wanted), "{wanted}: {error}");
+    }
+    let whole = scene(|_| {});
+    for end in 0..whole.len() {
+        let read = Document::read(&whole[..end]).and_then(|document| document.pieces());
+        assert!(read.is_err(), "cut at {end}");
+    }
+    assert!(Document::read(&file(b"no".to_vec(), &[])).unwrap_err().to_string().contains("no JSON"));
+    // Words that are no object have no scene.
+    let document = Document::read(&file(b"[1]".to_vec(), &[]));
+    assert!(document.is_err());
+}

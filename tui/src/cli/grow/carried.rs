@@ -1,0 +1,83 @@
+//! `grow --onto`: what the skeleton carries.
+
+use honami_model::brief::Brief;
+use honami_workbench::grow::{self, Blend, Bound, Carried, Growth, Onto, Out};
+use serde_json::json;
+
+use super::super::args::grow::{self as typed, Grow};
+use super::super::{Answer, want};
+use super::Files;
+
+/// Whether what is asked of it can be.
+pub(super) fn check(args: &Grow, files: &Files<'_>) -> anyhow::Result<()> {
+    let is_number = |unit: f64| unit.is_finite() && unit > 0.0;
+    want(args.unit.is_none_or(is_number), || "--unit takes metres of a pixel, more than 0".to_owned())?;
+    want(args.turn.is_none_or(f64::is_finite), || "--turn takes degrees".to_owned())?;
+    let has_carried = files.iter().any(|(kind, _)| !matches!(kind, Out::Skeleton(_)));
+    let asked = [
+        ("--unit", args.unit.is_some()),
+        ("--onto", args.onto.is_some()),
+        ("--weights", args.weights),
+        ("--blend", args.blend.is_some()),
+    ];
+    let alone = asked.iter().find(|(_, is_typed)| *is_typed && !has_carried);
+    want(alone.is_none(), || {
+        format!(
+            "{} goes with a .glb, as out.glb, or with frames, as out/%04d.ply",
+            alone.map_or("", |it| it.0)
+        )
+    })?;
+    let is_dual = args.blend == Some(typed::Blend::Dual);
+    let has_rig = files.iter().any(|(kind, _)| *kind == Out::Rig);
+    want(!(is_dual && has_rig), || {
+        "who reads a .glb blends linearly: --blend dual goes with frames, as out/%04d.ply, or with a .pc2"
+            .to_owned()
+    })?;
+    let has_cache = files.iter().any(|(kind, _)| *kind == Out::Cache);
+    want(!(has_cache && (args.onto.is_none() || args.weights)), || {
+        "a .pc2 has the vertices of an .obj or .ply, and no colours: name that by --onto, and no --weights"
+            .to_owned()
+    })?;
+    let read = args.onto.as_ref().and_then(|plant| plant.canonicalize().ok());
+    let over = files.iter().find(|(_, out)| read.is_some() && out.canonicalize().ok() == read);
+    want(over.is_none(), || "what is written takes another name than the plant that is read".to_owned())?;
+    Ok(())
+}
+
+/// What is carried, bound to the skeleton.
+pub(super) fn carried(args: &Grow, growth: &Growth) -> anyhow::Result<Carried> {
+    let onto = args.onto.as_ref().map(|plant| Onto {
+        plant: plant.clone(),
+        up: args.up.map(Into::into),
+        unit: args.unit,
+        turn_rad: args.turn.unwrap_or(0.0).to_radians(),
+    });
+    let bound = onto.map(|onto| Bound::onto(&growth.skeleton, &onto)).transpose()?;
+    let blend = args.blend.map_or(Blend::Linear, Into::into);
+    Ok(Carried { bound, unit: args.unit.unwrap_or(grow::UNIT), blend, are_weights_shown: args.weights })
+}
+
+/// Tells of a plant of others.
+pub(super) fn describe(args: &Grow, carried: &Carried, answer: &mut Answer) {
+    let (Some(bound), Some(plant)) = (&carried.bound, &args.onto) else { return };
+    let [n_vertices, n_triangles] = bound.sizes();
+    let unit = bound.unit();
+    answer.text += &format!(
+        "\n{}: {n_vertices} vertices, {n_triangles} triangles, a pixel being {} of its lengths",
+        plant.display(),
+        Brief(rounded(unit))
+    );
+    bound.notes.iter().for_each(|note| answer.text += &format!("\nnote: {}: {note}", plant.display()));
+    answer.json["onto"] = json!({
+        "plant": plant,
+        "vertices": n_vertices,
+        "triangles": n_triangles,
+        "unit": unit,
+        "notes": bound.notes,
+    });
+}
+
+/// To four digits.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
+}
