@@ -4,13 +4,13 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::work::{open, plugins, said};
+use super::work::{open, said};
 use super::{Terminal, folder};
 
 /// A clip of moving leaves with tracks, in the terminal.
-fn tracked(folder: &Path, plugins: &Path) -> Terminal {
+fn tracked(folder: &Path) -> Terminal {
     said(folder, "synth leaves.y4m --size 160x120 --frames 30");
-    let mut terminal = open("leaves.y4m", folder, plugins);
+    let mut terminal = open("leaves.y4m", folder);
     terminal.wait_for_text("no tracks yet");
     terminal.press("tr");
     terminal.wait_for_text("found anew");
@@ -37,8 +37,8 @@ fn sample(folder: &Path, track: u32, frame: u32) -> String {
 
 #[test]
 fn a_track_is_tracked_again_both_ways_between_two_key_frames() {
-    let (folder, plugins) = (folder(), plugins());
-    let mut terminal = tracked(folder.path(), &plugins);
+    let folder = folder();
+    let mut terminal = tracked(folder.path());
     // Two key-frames, a pixel off where the tracker was.
     for (go, frame) in [("5gf", "5/29"), ("15gf", "15/29")] {
         terminal.press(go);
@@ -71,8 +71,8 @@ fn a_track_is_tracked_again_both_ways_between_two_key_frames() {
 
 #[test]
 fn ranges_and_whole_tracks_are_corrected_in_the_project_file() {
-    let (folder, plugins) = (folder(), plugins());
-    let mut terminal = tracked(folder.path(), &plugins);
+    let folder = folder();
+    let mut terminal = tracked(folder.path());
     let steps = [
         ("8gfr12gfo", "8-12 occluded"),
         ("20gfx", "20-29 lost"),

@@ -7,7 +7,7 @@ use portable_pty::CommandBuilder;
 use rustix::process::Signal;
 use serde_json::Value;
 
-use super::work::{open, plugins, said};
+use super::work::{open, said};
 use super::{PATIENCE, Terminal, folder};
 
 /// Ways to end that nobody chose, with the exit status as shells count it.
@@ -80,11 +80,10 @@ fn after_an_end_that_nobody_chose_everything_is_where_it_was() {
 
 #[test]
 fn an_end_in_the_middle_of_a_run_leaves_a_project_that_goes_on() {
-    let plugins = plugins();
     for how in ENDS {
         let folder = folder();
         said(folder.path(), "synth leaves.y4m --size 160x120 --frames 40");
-        let mut terminal = open("leaves.y4m", folder.path(), &plugins);
+        let mut terminal = open("leaves.y4m", folder.path());
         terminal.wait_for_text("no tracks yet");
         terminal.press("tr");
         terminal.wait_for_text("found anew");
@@ -93,7 +92,7 @@ fn an_end_in_the_middle_of_a_run_leaves_a_project_that_goes_on() {
         terminal.wait_for("the run", |s| !s.contents().contains("found anew"));
         end(terminal, how);
         let runs = said(folder.path(), "log leaves.honami");
-        let mut terminal = open("leaves.honami", folder.path(), &plugins);
+        let mut terminal = open("leaves.honami", folder.path());
         terminal.wait_for(how.0, |s| s.contents().contains("/39") && s.contents().contains('▀'));
         terminal.press("3.a\r");
         terminal.wait_for_text("placed at frame 3");

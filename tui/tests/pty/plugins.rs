@@ -6,11 +6,11 @@ use std::process::Command;
 
 use portable_pty::CommandBuilder;
 
-use super::work::said;
+use super::work::{plugins, said};
 use super::{Terminal, folder, write_clip};
 
-/// A tracker that leaves its points where they are, with one fault, and the program that plugins run in; `None` without
-/// a C compiler.
+/// A tracker that leaves its points where they are, with one fault, and the program that plugins run in; `None`
+/// without a C compiler.
 fn bad(folder: &Path, fault: &str) -> Option<PathBuf> {
     if !Command::new("cc").arg("--version").output().is_ok_and(|output| output.status.success()) {
         let never = std::env::var_os("HONAMI_SKIP").is_some_and(|value| value == "never");
@@ -23,9 +23,7 @@ fn bad(folder: &Path, fault: &str) -> Option<PathBuf> {
     cc.args(["-O1", "-shared", "-fPIC", "-fvisibility=hidden", "-I"]).arg(core.join("abi/include"));
     cc.args([format!("-DFAULT={fault}").as_str(), "-o"]).arg(&library).arg(core.join("host/tests/bad/bad.c"));
     assert!(cc.status().unwrap().success());
-    let built =
-        Command::new(env!("CARGO")).args(["build", "--quiet", "-p", "honami-plughost"]).status().unwrap();
-    assert!(built.success(), "the program that plugins run in does not build");
+    plugins();
     Some(library)
 }
 

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::sync::OnceLock;
 
 use portable_pty::CommandBuilder;
 use rustix::process::Signal;
@@ -9,25 +10,29 @@ use serde_json::Value;
 
 use super::Terminal;
 
-/// Folder of the shipped plugins, as cargo built them: the tests of this package do not build them.
-pub(super) fn plugins() -> PathBuf {
-    let profile = if cfg!(debug_assertions) { "dev" } else { "release" };
-    let output = Command::new(env!("CARGO"))
-        .args(["build", "--quiet", "--message-format=json", "--profile", profile])
-        .args(["-p", "honami-tracker-anchored", "-p", "honami-clusterer-bod"])
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .stderr(Stdio::inherit())
-        .output()
-        .unwrap();
-    assert!(output.status.success(), "the plugins do not build");
-    let library = |line: &str| {
-        let message: Value = serde_json::from_str(line).ok()?;
-        let is_it = message["target"]["name"] == "honami_tracker_anchored";
-        message["filenames"][0].as_str().filter(|_| is_it).map(PathBuf::from)
-    };
-    let messages = String::from_utf8(output.stdout).unwrap();
-    let library = messages.lines().find_map(library).expect("the tracker is a library");
-    library.parent().unwrap().to_owned()
+/// Folder of the shipped plugins and of the program that plugins run in, as cargo builds them: the tests of this package
+/// do not. They are built once, before any test uses them, for what is built anew is not there for a moment.
+pub(super) fn plugins() -> &'static Path {
+    static BUILT: OnceLock<PathBuf> = OnceLock::new();
+    BUILT.get_or_init(|| {
+        let profile = if cfg!(debug_assertions) { "dev" } else { "release" };
+        let output = Command::new(env!("CARGO"))
+            .args(["build", "--quiet", "--message-format=json", "--profile", profile])
+            .args(["-p", "honami-plughost", "-p", "honami-tracker-anchored", "-p", "honami-clusterer-bod"])
+            .current_dir(env!("CARGO_MANIFEST_DIR"))
+            .stderr(Stdio::inherit())
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "the plugins do not build");
+        let library = |line: &str| {
+            let message: Value = serde_json::from_str(line).ok()?;
+            let is_it = message["target"]["name"] == "honami_tracker_anchored";
+            message["filenames"][0].as_str().filter(|_| is_it).map(PathBuf::from)
+        };
+        let messages = String::from_utf8(output.stdout).unwrap();
+        let library = messages.lines().find_map(library).expect("the tracker is a library");
+        library.parent().unwrap().to_owned()
+    })
 }
 
 /// What the program says on a command line.
@@ -42,18 +47,18 @@ pub(super) fn said(folder: &Path, line: &str) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// A clip or a project in the terminal, with plugins.
-pub(super) fn open(what: &str, folder: &Path, plugins: &Path) -> Terminal {
+/// A clip or a project in the terminal, with the shipped plugins.
+pub(super) fn open(what: &str, folder: &Path) -> Terminal {
     let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_honami"));
     command.arg(what);
-    command.env("HONAMI_PLUGIN_PATH", plugins);
+    command.env("HONAMI_PLUGIN_PATH", plugins());
     Terminal::start(command, folder, (80, 24), true)
 }
 
 #[test]
 fn a_clip_is_tracked_grouped_and_corrected_and_survives_a_kill() {
-    let (folder, plugins) = (super::folder(), plugins());
-    let open = |what| open(what, folder.path(), &plugins);
+    let folder = super::folder();
+    let open = |what| open(what, folder.path());
     said(folder.path(), "synth leaves.y4m --size 160x120 --frames 30");
     let mut terminal = open("leaves.y4m");
     terminal.wait_for_text("no tracks yet");
@@ -101,14 +106,14 @@ fn a_clip_is_tracked_grouped_and_corrected_and_survives_a_kill() {
 
 #[test]
 fn a_logged_session_is_done_again_on_a_copy() {
-    let (folder, plugins) = (super::folder(), plugins());
+    let folder = super::folder();
     let path = |name: &str| folder.path().join(name);
     said(folder.path(), "synth leaves.y4m --size 160x120 --frames 20");
     said(folder.path(), "new p.honami leaves.y4m");
     std::fs::copy(path("p.honami"), path("copy.honami")).unwrap();
     let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_honami"));
     command.args(["p.honami", "--log", "s.log.jsonl"]);
-    command.env("HONAMI_PLUGIN_PATH", &plugins);
+    command.env("HONAMI_PLUGIN_PATH", plugins());
     let mut terminal = Terminal::start(command, folder.path(), (80, 24), true);
     terminal.wait_for_text("no tracks yet");
     terminal.press("tr");
@@ -133,7 +138,7 @@ fn a_logged_session_is_done_again_on_a_copy() {
     assert!(log.lines().last().unwrap().contains("is saved as"), "{log}");
     let saved = std::fs::read_to_string(path("p.log.jsonl")).unwrap();
     assert!(log.starts_with(&saved) && saved.lines().last().unwrap().contains("save-log"), "{saved}");
-    let told = said(folder.path(), &format!("replay copy.honami s.log.jsonl --plugin {}", plugins.display()));
+    let told = said(folder.path(), &format!("replay copy.honami s.log.jsonl --plugin {}", plugins().display()));
     assert!(told.contains("undone: track") && told.contains("lines done as in the log"), "{told}");
     let tables = ["p", "copy"].map(|name| {
         said(folder.path(), &format!("export {name}.honami tracks {name}.csv"));
@@ -151,7 +156,7 @@ fn a_run_that_finds_nothing_has_nothing_to_undo() {
         clip.extend([90; 64 * 48]);
     }
     std::fs::write(folder.path().join("fog.y4m"), clip).unwrap();
-    let mut terminal = open("fog.y4m", folder.path(), &plugins());
+    let mut terminal = open("fog.y4m", folder.path());
     terminal.wait_for_text("no tracks yet");
     terminal.press("tr");
     terminal.wait_for_text("found anew");
@@ -166,9 +171,9 @@ fn a_run_that_finds_nothing_has_nothing_to_undo() {
 
 #[test]
 fn the_tutorial_begins_anew_each_time_and_is_never_a_project_opened_lately() {
-    let (folder, plugins) = (super::folder(), plugins());
+    let folder = super::folder();
     for _ in 0..2 {
-        let mut terminal = open("tutorial", folder.path(), &plugins);
+        let mut terminal = open("tutorial", folder.path());
         terminal.wait_for_text("1/16");
         terminal.press(" ");
         terminal.wait_for_text("2/16");
