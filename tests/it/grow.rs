@@ -154,7 +154,7 @@ fn what_cannot_grow_says_why() {
         (
             "grow p.honami out.obj",
             2,
-            "skeletons are written as .bvh, .csv, .swc, .glb or as frames, out/%04d.ply or .obj, not as out.obj",
+            "skeletons are written as .bvh, .csv, .swc, .glb, .usda or as frames, out/%04d.ply or .obj, not as out.obj",
         ),
         ("grow p.honami --leaves out.obj", 2, "leaves are written as .csv, not as out.obj"),
         ("grow p.honami --root 3", 2, "wanted a place as X,Y in pixels, got 3"),

@@ -161,6 +161,27 @@ fn another_plant_moves_as_the_filmed_one() {
     );
 }
 
+/// Pixar's own reader has the vertices of a rig where frames have them, to 1e-4 of the plant's size, where it is installed.
+#[test]
+fn a_rig_in_words_moves_alike() {
+    let Some(python) = python_with("pxr") else { return };
+    let bench = grouped();
+    std::fs::write(bench.path("shrub.obj"), shrub()).unwrap();
+    let script = root().join("tests/peers/usd_skel.py");
+    for more in ["--groups 9 --weights", "--flat --turn 30", "--siblings 1 --level 1"] {
+        bench.text(&format!("grow p.honami rig.usda moved/%d.ply --onto shrub.obj {more}"));
+        let name = if more.contains("siblings") {
+            ["rig-1.usda", "moved/%d-1.ply"]
+        } else {
+            ["rig.usda", "moved/%d.ply"]
+        };
+        let output =
+            Command::new(&python).arg(&script).args(name.map(|name| bench.path(name))).output().unwrap();
+        assert!(output.status.success(), "{more}: {output:?}");
+    }
+    bench.text("grow p.honami own.usda --unit 0.01");
+}
+
 /// Plants in every format that is read, with their motion, are glTF without an error, where the validator is installed.
 #[test]
 fn plants_of_every_format_are_carried() {
@@ -228,7 +249,8 @@ fn what_cannot_be_carried_says_why() {
         ("a%db%d.ply --onto good.obj", 2, "not as a%db%d.ply"),
         ("out.bvh --onto good.obj", 2, "--onto goes with a .glb, as out.glb, or with frames"),
         ("out.bvh --weights", 2, "--weights goes with a .glb"),
-        ("out.glb --blend dual", 2, "who reads a .glb blends linearly"),
+        ("out.glb --blend dual", 2, "who reads a .glb or .usda blends linearly"),
+        ("out.usda --blend dual", 2, "who reads a .glb or .usda blends linearly"),
         ("out.glb --turn 9", 2, "--onto"),
         ("out.glb --onto good.obj --turn nan", 2, "--turn takes degrees"),
         ("rig.glb --onto rig.glb", 2, "another name than the plant that is read"),

@@ -1,4 +1,4 @@
-//! Other programs that tests hold honami against, in the target folder: OpenSees, bvhio, pygltflib and trimesh for Python,
+//! Other programs that tests hold honami against, in the target folder: OpenSees, bvhio, pygltflib, trimesh and USD for Python,
 //! glTF's validator for node.
 
 use std::ffi::OsString;
@@ -11,8 +11,8 @@ use crate::shell::{Step, target_dir};
 use crate::system;
 
 /// What Python is to have, and what it imports.
-const PACKAGES: [&str; 5] = ["openseespy", "bvhio", "numpy", "pygltflib", "trimesh"];
-const IMPORTS: &str = "import openseespy.opensees, bvhio, numpy, pygltflib, trimesh";
+const PACKAGES: [&str; 6] = ["openseespy", "bvhio", "numpy", "pygltflib", "trimesh", "usd-core"];
+const IMPORTS: &str = "import openseespy.opensees, bvhio, numpy, pygltflib, trimesh, pxr";
 const VALIDATOR: &str = "gltf-validator";
 
 /// What tests must be told to find them.

@@ -3,15 +3,18 @@
 
 mod angles;
 mod bvh;
+mod joints;
 mod leaf_table;
 mod rig;
 mod swc;
 #[cfg(test)]
 mod tests;
+mod usda;
 
 pub use angles::AngleRow;
 pub use leaf_table::LeafRow;
 pub use rig::{RigError, rigged};
+pub use usda::{usda, write_usda};
 
 use std::io::Write;
 use std::path::Path;

@@ -64,8 +64,10 @@ pub(super) fn grow(args: &Grow, common: &Common) -> anyhow::Result<Answer> {
                 "joints and angles, radians, a row a joint and frame".to_owned()
             }
             Out::Skeleton(SkeletonFormat::Swc) => "the shape at rest, z up".to_owned(),
-            Out::Rig if args.onto.is_some() => "the plant as a rig that moves, y up".to_owned(),
-            Out::Rig => format!("a rig that moves, y up, a pixel taken as {} m", Brief(carried.unit)),
+            Out::Rig | Out::Usd if args.onto.is_some() => "the plant as a rig that moves, y up".to_owned(),
+            Out::Rig | Out::Usd => {
+                format!("a rig that moves, y up, a pixel taken as {} m", Brief(carried.unit))
+            }
             Out::Frames(_) => format!("{} frames of what it carries", growth.skeleton.times().len()),
             Out::Cache => "where the vertices of the plant are in every frame".to_owned(),
         };
@@ -108,7 +110,10 @@ fn files(args: &Grow) -> anyhow::Result<Files<'_>> {
         let kind = Out::of(out);
         want(kind.is_some(), || {
             let frames = "as frames, out/%04d.ply or .obj";
-            format!("skeletons are written as .bvh, .csv, .swc, .glb or {frames}, not as {}", out.display())
+            format!(
+                "skeletons are written as .bvh, .csv, .swc, .glb, .usda or {frames}, not as {}",
+                out.display()
+            )
         })?;
         files.extend(kind.map(|kind| (kind, out)));
     }

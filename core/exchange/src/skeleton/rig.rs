@@ -1,7 +1,4 @@
 //! Rigs: a mesh, bones that carry it, and how these turn, as glTF has them (skins and animations).
-//!
-//! As in BVH every bone has a joint of its own at its base, those of one fork in one place; the ends of tips are joints
-//! that carry nothing, so that programs know how long the last bones are. At rest no joint is turned.
 
 #[cfg(test)]
 mod tests;
@@ -9,13 +6,11 @@ mod tests;
 use std::collections::{BTreeMap, BTreeSet};
 
 use honami_model::mesh::Binding;
-use honami_model::skeleton::{Skeleton, turns};
+use honami_model::skeleton::Skeleton;
 use serde_json::{Value, json};
 
-use crate::glb::{ARRAY, Document, F32, Matrix, OTHER, Piece, U8, U16, product, upright};
-
-/// Numbers of joints have 16 bits.
-const MOST_JOINTS: usize = u16::MAX as usize;
+use super::joints::{Joints, MOST_JOINTS, rotations};
+use crate::glb::{ARRAY, Document, F32, Matrix, OTHER, Piece, U8, U16, product};
 
 /// Why there is no rig.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -53,13 +48,8 @@ pub fn rigged(
     rest: &Skeleton,
     motion: &Skeleton,
 ) -> Result<Document, RigError> {
-    let is_bound = |binding: &&Binding| binding.shares().all(|(bone, _)| bone < rest.joints().len());
-    let wanted = pieces.iter().flat_map(|piece| &piece.counts).sum();
-    let came = bindings.iter().filter(is_bound).count();
-    if came != wanted || bindings.len() != wanted || !(colours.is_empty() || colours.len() == wanted) {
-        return Err(RigError::Bindings { came: came.min(wanted), wanted });
-    }
-    let joints = Joints::add(&mut document, rest)?;
+    check(bindings, colours, rest, pieces.iter().flat_map(|piece| &piece.counts).sum())?;
+    let joints = Nodes::add(&mut document, rest)?;
     joints.turn(&mut document, rest, motion)?;
     let coloured = (!colours.is_empty()).then(|| {
         let look = json!({ "metallicFactor": 0.0, "roughnessFactor": 1.0 });
@@ -91,6 +81,21 @@ pub fn rigged(
     }
     list(document.scene()).push(joints.nodes[0].into());
     Ok(document)
+}
+
+/// Whether so many vertices are bound to bones that there are.
+pub(super) fn check(
+    bindings: &[Binding],
+    colours: &[[u8; 3]],
+    rest: &Skeleton,
+    wanted: usize,
+) -> Result<(), RigError> {
+    let is_bound = |binding: &&Binding| binding.shares().all(|(bone, _)| bone < rest.joints().len());
+    let came = bindings.iter().filter(is_bound).count();
+    if came != wanted || bindings.len() != wanted || !(colours.is_empty() || colours.len() == wanted) {
+        return Err(RigError::Bindings { came: came.min(wanted), wanted });
+    }
+    Ok(())
 }
 
 /// Puts a mesh that bones carry into the scene, in place of the node that bore it: where that lies is in the skin.
@@ -125,45 +130,30 @@ fn list(words: &mut Value) -> &mut Vec<Value> {
     }
 }
 
-/// Joints of a skeleton as nodes of a document: the root, bones in the order of their rows, ends of tips.
-struct Joints {
+/// Joints as nodes of a document, in their order.
+struct Nodes {
     nodes: Vec<usize>,
-    /// Where each is at rest, y up.
-    places: Vec<[f64; 3]>,
+    joints: Joints,
 }
 
-impl Joints {
+impl Nodes {
     fn add(document: &mut Document, rest: &Skeleton) -> Result<Self, RigError> {
-        let n = rest.joints().len();
-        let are_tips = rest.are_tips();
-        let tips: Vec<usize> = (1..n).filter(|row| are_tips[*row]).collect();
-        if n + tips.len() > MOST_JOINTS {
-            return Err(RigError::TooMany(n + tips.len()));
-        }
+        let joints = Joints::of(rest)?;
+        let n = joints.names.len();
         let first = document.words["nodes"].as_array().map_or(0, Vec::len);
-        let ends: Vec<[f64; 3]> = rest.places(rest.rest()).into_iter().map(upright).collect();
-        let base = |row: usize| rest.joints()[row].parent.map_or(0, |parent| parent as usize);
-        let bases = (0..n).map(|row| ends[base(row)]);
-        let places: Vec<[f64; 3]> = bases.chain(tips.iter().map(|tip| ends[*tip])).collect();
-        // What a bone hangs on is the bone that it begins at, and the root where it begins there.
-        let borne_by = |k: usize| if k < n { base(k) } else { tips[k - n] };
-        let mut children = vec![Vec::new(); places.len()];
-        (1..places.len()).for_each(|k| children[borne_by(k)].push(first + k));
-        for (k, place) in places.iter().enumerate() {
-            let from = if k == 0 { [0.0; 3] } else { places[borne_by(k)] };
-            let by: [f64; 3] = std::array::from_fn(|axis| place[axis] - from[axis]);
-            let name = match k {
-                0 => "root".to_owned(),
-                _ if k < n => format!("bone_{k}"),
-                _ => format!("tip_{}", tips[k - n]),
-            };
-            let mut node = json!({ "name": name, "translation": by.map(|v| v as f32) });
-            if !children[k].is_empty() {
-                node["children"] = children[k].clone().into();
+        let mut children = vec![Vec::new(); n];
+        for (joint, parent) in joints.parents.iter().enumerate() {
+            parent.iter().for_each(|&parent| children[parent].push(first + joint));
+        }
+        for (joint, children) in children.into_iter().enumerate() {
+            let by = joints.offset(joint).map(|v| v as f32);
+            let mut node = json!({ "name": joints.names[joint], "translation": by });
+            if !children.is_empty() {
+                node["children"] = children.into();
             }
             document.put("nodes", node);
         }
-        Ok(Self { nodes: (first..first + places.len()).collect(), places })
+        Ok(Self { nodes: (first..first + n).collect(), joints })
     }
 
     /// Lets them turn as bones do: every joint off the one before, by a quaternion a frame.
@@ -171,19 +161,9 @@ impl Joints {
         let input = times(document, motion)?;
         let (n, n_frames) = (rest.joints().len(), motion.times().len());
         let mut tracks: Vec<Vec<u8>> = vec![Vec::with_capacity(16 * n_frames as usize); n];
-        let mut before = vec![[0.0; 4]; n];
-        for frame in 0..n_frames {
-            let turns = turns(rest.rest(), motion.directions(frame));
-            for row in 1..n {
-                let own = rest.joints()[row].parent.filter(|parent| *parent > 0);
-                let off = own.map_or(turns[row], |parent| turns[parent as usize].back().after(&turns[row]));
-                let ([x, y, z, w], last) = (off.quaternion(), &mut before[row]);
-                let [x, y, z] = upright([x, y, z]);
-                let now = [x, y, z, w];
-                // A turn is two quaternions: that which is nearer to the frame before does not go the long way round.
-                let along: f64 = now.iter().zip(*last).map(|(now, last)| now * last).sum();
-                *last = if along < 0.0 { now.map(|v| -v) } else { now };
-                tracks[row].extend(last.iter().flat_map(|v| (*v as f32).to_le_bytes()));
+        for turns in rotations(rest, motion) {
+            for (track, turn) in tracks.iter_mut().zip(turns) {
+                track.extend(turn.iter().flat_map(|v| (*v as f32).to_le_bytes()));
             }
         }
         let (mut samplers, mut channels) = (Vec::new(), Vec::new());
@@ -201,12 +181,13 @@ impl Joints {
 
     /// The skin of a mesh that lies so in the scene of these joints.
     fn skin(&self, document: &mut Document, matrix: &Matrix) -> usize {
-        let mut bytes = Vec::with_capacity(64 * self.places.len());
-        for [x, y, z] in &self.places {
+        let places = &self.joints.places;
+        let mut bytes = Vec::with_capacity(64 * places.len());
+        for [x, y, z] in places {
             let back = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, -x, -y, -z, 1.0];
             bytes.extend(product(&back, matrix).iter().flat_map(|v| (*v as f32).to_le_bytes()));
         }
-        let what = json!({ "componentType": F32, "type": "MAT4", "count": self.places.len() });
+        let what = json!({ "componentType": F32, "type": "MAT4", "count": places.len() });
         let matrices = document.add(OTHER, &bytes, what);
         document.put(
             "skins",

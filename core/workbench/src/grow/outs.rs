@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use honami_exchange::mesh::{Frame, MeshFormat, Up, write_frame};
 use honami_exchange::plant::PointCache;
-use honami_exchange::skeleton::{SkeletonFormat, rigged};
+use honami_exchange::skeleton::{SkeletonFormat, rigged, usda, write_usda};
 use honami_model::skeleton::Skeleton;
 use honami_structure::blend::{Blend, blended, carries};
 
@@ -19,6 +19,8 @@ pub enum Out {
     Skeleton(SkeletonFormat),
     /// What it carries, on bones that move (`.glb`): glTF 2.0, y up.
     Rig,
+    /// The same as text of Universal Scene Description (`.usda`), without materials.
+    Usd,
     /// What it carries, a file a frame (`%04d.obj`, `%04d.ply`).
     Frames(MeshFormat),
     /// Where the vertices that it carries are in every frame (`.pc2`).
@@ -45,6 +47,7 @@ impl Out {
         let ending = path.extension()?.to_str()?.to_ascii_lowercase();
         match ending.as_str() {
             "glb" => Some(Self::Rig),
+            "usda" => Some(Self::Usd),
             "pc2" => Some(Self::Cache),
             _ => {
                 let frames =
@@ -91,6 +94,10 @@ pub fn write(skeleton: &Skeleton, out: Out, carried: &Carried, path: &Path) -> R
         Out::Rig => {
             let Bound { document, pieces, bindings, rest, .. } = bound;
             rigged(document.clone(), pieces, bindings, &colours, rest, &motion)?.write(path)?;
+        }
+        Out::Usd => {
+            let Bound { mesh, bindings, rest, .. } = bound;
+            write_usda(path, &usda(mesh, bindings, &colours, rest, &motion)?)?;
         }
         Out::Frames(format) => {
             let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.exists());

@@ -17,7 +17,7 @@ pub(in crate::cli) struct Grow {
     /// Project file (.honami).
     pub(in crate::cli) project: PathBuf,
     /// Files to write: .bvh (motion capture), .csv (joints and angles in every frame), .swc (the shape at rest), .glb (a rig:
-    /// tubes, or the plant of --onto, on bones that move, for modellers and engines).
+    /// tubes, or the plant of --onto, on bones that move, for modellers and engines), .usda (the same, without materials).
     pub(in crate::cli) out: Vec<PathBuf>,
     #[command(flatten)]
     pub(in crate::cli) plugin: WithPlugin,

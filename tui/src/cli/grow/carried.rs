@@ -28,9 +28,9 @@ pub(super) fn check(args: &Grow, files: &Files<'_>) -> anyhow::Result<()> {
         )
     })?;
     let is_dual = args.blend == Some(typed::Blend::Dual);
-    let has_rig = files.iter().any(|(kind, _)| *kind == Out::Rig);
+    let has_rig = files.iter().any(|(kind, _)| matches!(kind, Out::Rig | Out::Usd));
     want(!(is_dual && has_rig), || {
-        "who reads a .glb blends linearly: --blend dual goes with frames, as out/%04d.ply, or with a .pc2"
+        "who reads a .glb or .usda blends linearly: --blend dual goes with frames, as out/%04d.ply, or with a .pc2"
             .to_owned()
     })?;
     let has_cache = files.iter().any(|(kind, _)| *kind == Out::Cache);

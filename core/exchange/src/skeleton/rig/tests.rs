@@ -3,12 +3,13 @@
 use gltf::animation::util::ReadOutputs;
 use honami_model::clip::FrameTimes;
 use honami_model::mesh::Mesh;
-use honami_model::skeleton::Joint;
+use honami_model::skeleton::{Joint, turns};
 use proptest::prelude::*;
 
 use super::super::tests::skeleton;
 use super::*;
 use crate::glb::tests::scene;
+use crate::glb::upright;
 
 type Matrix = [[f64; 4]; 4];
 
