@@ -183,4 +183,10 @@ fn what_cannot_grow_says_why() {
         let ran = bench.line(line);
         assert!(ran.code == Some(code) && ran.stderr.contains(wanted), "{line}: {ran:?}");
     }
+    let tracks: std::collections::BTreeSet<String> =
+        bench.samples("p.honami").into_iter().map(|row| row["track"].clone()).collect();
+    let script: String = tracks.iter().map(|track| format!("delete {track}\n")).collect();
+    assert_eq!(bench.edit("p.honami", &script).code, Some(0));
+    let unseen = bench.line("grow p.honami out.bvh");
+    assert!(unseen.code == Some(1) && unseen.stderr.contains("no track of any group is seen"), "{unseen:?}");
 }

@@ -81,7 +81,7 @@ pub struct Growth {
 ///
 /// # Errors
 /// [`WorkbenchError::NoGroups`], [`WorkbenchError::Groups`], what the plugin says, [`WorkbenchError::Stopped`],
-/// [`WorkbenchError::Structure`] of what does not repeat, and what the project and the image of the envelope met.
+/// [`WorkbenchError::Structure`] where nothing is seen and of what does not repeat, and what the project and the image of the envelope met.
 pub fn grow(
     project: &Project,
     host: &Host,

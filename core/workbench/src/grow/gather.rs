@@ -3,6 +3,7 @@
 use honami_host::{GroupTree, Tracks};
 use honami_model::track::{Span, TrackId};
 use honami_store::Project;
+use honami_structure::StructureError;
 use honami_structure::follow::Path;
 use honami_structure::tree::{Group, tree_of};
 
@@ -23,6 +24,9 @@ pub(super) struct Gathered {
 }
 
 /// Gathers what the shown clustering is of, cut into so many groups, or as it is cut.
+///
+/// # Errors
+/// [`WorkbenchError::NoGroups`], [`WorkbenchError::Groups`], [`StructureError::NothingSeen`], and what the project met.
 pub(super) fn gather(project: &Project, groups: Option<u32>) -> Result<Gathered, WorkbenchError> {
     let shown = project.document().clustering().ok_or(WorkbenchError::NoGroups)?;
     let clustering = project.clustering(shown.id)?;
@@ -52,7 +56,11 @@ pub(super) fn gather(project: &Project, groups: Option<u32>) -> Result<Gathered,
         notes.push(format!("{n_lost} of {n_tracks} tracks are seen in no frame now and are left out"));
     }
     let shown = dendrogram.groups(k, project.document().held_groups(shown.id));
-    Ok(Gathered { tracks, paths, groups: tree_of(dendrogram, &shown, &is_seen), notes })
+    let groups = tree_of(dendrogram, &shown, &is_seen);
+    if groups.is_empty() {
+        return Err(StructureError::NothingSeen.into());
+    }
+    Ok(Gathered { tracks, paths, groups, notes })
 }
 
 impl Gathered {
