@@ -53,7 +53,10 @@ fn the_whole_job_on_every_kind_of_clip() {
         let items = review["queue"].as_array().unwrap();
         assert_eq!(review["open"], items.len());
         items.iter().for_each(|item| {
-            assert_keys(item, "track first_frame end_frame worst suspicion reasons later fb_px ncc nbr_px");
+            assert_keys(
+                item,
+                "track first_frame end_frame worst suspicion reasons later fb_px ncc nbr_px group_px",
+            );
         });
 
         let cluster = bench.json("cluster p.honami --groups 5");

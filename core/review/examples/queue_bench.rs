@@ -11,6 +11,8 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 const N_ITEMS: u32 = 100_000;
+/// The tracks are in so many groups.
+const N_GROUPS: u32 = 12;
 const N_TRACKS: u32 = 10_000;
 const N_FRAMES: u32 = 378;
 const REPEATS: u32 = 200;
@@ -71,6 +73,9 @@ fn main() {
     let begun = Instant::now();
     let mut evidence = Evidence::new(subjects, 2);
     let measure_s = begun.elapsed().as_secs_f64();
+    let begun = Instant::now();
+    evidence.group((0..N_TRACKS).map(|track| (TrackId(track), track % N_GROUPS)).collect());
+    let group_s = begun.elapsed().as_secs_f64();
     let (mut review, none) = (Review::default(), Default::default());
     let begun = Instant::now();
     let tracks: Vec<TrackId> = evidence.tracks().collect();
@@ -86,7 +91,7 @@ fn main() {
     }));
     let line = serde_json::json!({
         "items": N_ITEMS, "next_item_ms": next_ms, "re_rank_track_ms": rank_ms,
-        "tracks": N_TRACKS, "frames": N_FRAMES, "measure_all_s": measure_s, "segments_all_s": segment_s,
+        "tracks": N_TRACKS, "frames": N_FRAMES, "measure_all_s": measure_s, "group_all_s": group_s, "segments_all_s": segment_s,
         "edit_to_ranking_ms": edit_ms, "queue": review.queue.len(),
     });
     println!("{line}");

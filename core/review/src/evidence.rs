@@ -7,6 +7,7 @@ use std::sync::Arc;
 use honami_model::track::{Sample, Source, Span, TrackId};
 
 mod anchors;
+mod groups;
 mod neighbours;
 mod steps;
 mod subject;
@@ -38,6 +39,9 @@ pub struct Parts {
     pub own_ncc: Option<f32>,
     /// Distance from a stepwise run to what the nearest anchored one says, pixels.
     pub anchored_px: Option<f32>,
+    /// How far the displacement since the last key-frame is from where its group's leads, pixels; the geometric mean with
+    /// that from the next key-frame, where there is one.
+    pub group_px: Option<f32>,
 }
 
 impl Parts {
@@ -70,6 +74,7 @@ pub fn is_judged(sample: &Sample) -> bool {
 #[derive(Clone, Debug, Default)]
 pub struct Evidence {
     rows: BTreeMap<TrackId, Row>,
+    groups: BTreeMap<TrackId, u32>,
 }
 
 #[derive(Clone, Debug)]
@@ -77,6 +82,8 @@ struct Row {
     subject: Subject,
     anchors: Anchors,
     neighbours: Neighbourhood,
+    /// How far each sample strays from its group, pixels; empty without one.
+    strays_px: Vec<f32>,
     correlations: Correlations,
 }
 
@@ -100,7 +107,8 @@ impl Evidence {
             };
             workers.into_iter().flat_map(join).collect::<Vec<_>>()
         });
-        Self { rows: rows.into_iter().map(|row| (row.subject.track, row)).collect() }
+        let rows = rows.into_iter().map(|row| (row.subject.track, row)).collect();
+        Self { rows, groups: BTreeMap::new() }
     }
 
     /// The measured tracks, in order of their numbers.
@@ -113,8 +121,10 @@ impl Evidence {
         self.rows.values().map(|row| &row.subject)
     }
 
-    /// Takes over the correlations of an earlier measurement where samples and key-frames are still the same.
+    /// Takes over from an earlier measurement the groups, and the correlations where samples and key-frames are still the
+    /// same.
     pub fn inherit(&mut self, old: &Self) {
+        self.group(old.groups.clone());
         for (track, row) in &mut self.rows {
             if let Some(old) = old.rows.get(track) {
                 row.correlations = row.correlations_from(old);
@@ -147,7 +157,7 @@ impl Evidence {
     }
 
     /// Measures a track anew, or forgets it where it has no samples any more. Returns the tracks whose evidence
-    /// may have changed: it and those it is a neighbour of. The same as measuring everything anew.
+    /// may have changed: it, those it is a neighbour of and those of its group. The same as measuring everything anew.
     pub fn replace(&mut self, subject: Subject) -> BTreeSet<TrackId> {
         let track = subject.track;
         let old = self.rows.remove(&track);
@@ -179,6 +189,8 @@ impl Evidence {
                 row.neighbours = neighbours;
             }
         }
+        let group = self.groups.get(&track).copied();
+        touched.extend(group.into_iter().flat_map(|group| self.follow(group)));
         touched
     }
 
@@ -206,7 +218,7 @@ impl Row {
         let anchors = Anchors::of(&subject.span);
         let neighbours = Neighbourhood::new(subject.track, &subject.span, &anchors, crowd);
         let correlations = Correlations::pending(subject.span.samples.len());
-        Self { subject, anchors, neighbours, correlations }
+        Self { subject, anchors, neighbours, strays_px: Vec::new(), correlations }
     }
 
     /// Correlations that an edit has not changed.
@@ -244,11 +256,21 @@ impl Row {
             if self.anchors.around(frame).0.is_some_and(|(at, _)| at == frame) {
                 let (none, alike) = (Some(0.0), Some(1.0));
                 let own_ncc = alike.filter(|_| !is_stepwise);
-                return Parts { fb_px: none, ncc: alike, jump: none, nbr_px: none, own_ncc, ..told };
+                let group_px = none.filter(|_| !self.strays_px.is_empty());
+                return Parts {
+                    fb_px: none,
+                    ncc: alike,
+                    jump: none,
+                    nbr_px: none,
+                    own_ncc,
+                    group_px,
+                    ..told
+                };
             }
             let own_ncc = sample.quality.ncc.filter(|_| !is_stepwise);
             let (ncc, nbr_px) = (self.correlations.get(at), self.neighbours.deviation_px(at));
-            Parts { fb_px, ncc, jump, nbr_px, own_ncc, ..told }
+            let group_px = self.strays_px.get(at).copied().filter(|px| px.is_finite());
+            Parts { fb_px, ncc, jump, nbr_px, own_ncc, group_px, ..told }
         })
         .collect()
     }

@@ -23,7 +23,7 @@ pub const LOST: f32 = 0.85;
 pub const CONTRADICTED: f64 = 0.5;
 
 /// Number of parts.
-pub const N_PARTS: usize = 7;
+pub const N_PARTS: usize = 8;
 
 /// What a part is worth.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,7 +42,7 @@ pub struct Weights {
     /// Log-odds before any part is looked at.
     pub base: f64,
     /// In the order of [`transformed`]: FB, NCC, jump, neighbours, disagreement, the tracker's own NCC, disagreement
-    /// with anchored runs.
+    /// with anchored runs, group.
     pub parts: [Weight; N_PARTS],
     /// Offset and slope that turn the log-odds of a track's worst sample into those of the track.
     pub track: [f64; 2],
@@ -60,6 +60,7 @@ pub fn transformed(parts: &Parts) -> [Option<f64>; N_PARTS] {
         log(parts.dis_px, DISAGREED_PX),
         parts.own_ncc.map(|ncc| 1.0 - f64::from(ncc)),
         log(parts.anchored_px, DISAGREED_PX),
+        log(parts.group_px, 0.5),
     ]
 }
 

@@ -2,8 +2,9 @@
 //! `cargo xtask bench suspicion`.
 //!
 //! `[--seed N] [--tracks N] [--fit] [--json]`: tracks of every tracker, each with the others' runs beside some of them,
-//! without key-frames and with exact ones every 40 frames. With `--fit` the weights are fitted first, on the seeds of
-//! fitting, and printed as they belong in `core/review/src/suspicion/weights.rs`.
+//! without key-frames and with exact ones every 40 frames; before they were clustered, and after. With `--fit` the
+//! weights are fitted first, on the seeds of fitting, and printed as they belong in
+//! `core/review/src/suspicion/weights.rs`.
 #![allow(clippy::print_stdout, reason = "a benchmark speaks to a person")]
 
 use std::error::Error;
@@ -67,14 +68,20 @@ fn main() -> Result<(), Box<dyn Error>> {
             println!("{}", source(name, weights));
         }
     }
-    let tallies: Vec<(Level, &str, Tally)> = cases(&[asked.seed], &asked.place)?
-        .iter()
-        .map(|case| {
-            (case.level, case.tracker, Tally::of(case, &model[usize::from(case.kind() == Kind::Anchored)]))
-        })
-        .collect();
-    print(&asked, &tallies);
+    let mut cases = cases(&[asked.seed], &asked.place)?;
+    let grouped = tallies(&cases, &model);
+    let samples = cases.iter_mut().flat_map(|case| &mut case.tracks).flat_map(|track| &mut track.samples);
+    samples.flatten().for_each(|(parts, _)| parts.group_px = None);
+    for (what, tallies) in [("before they are grouped", tallies(&cases, &model)), ("grouped", grouped)] {
+        print(&asked, what, &tallies);
+    }
     Ok(())
+}
+
+/// The scores of every case, by the weights of stepwise and of anchored trackers.
+fn tallies(cases: &[Case], model: &[Weights; 2]) -> Vec<(Level, &'static str, Tally)> {
+    let of = |case: &Case| Tally::of(case, &model[usize::from(case.kind() == Kind::Anchored)]);
+    cases.iter().map(|case| (case.level, case.tracker, of(case))).collect()
 }
 
 fn cases(seeds: &[u64], place: &Place) -> Result<Vec<Case>, Box<dyn Error>> {
@@ -101,8 +108,9 @@ fn fitted(cases: &[Case], kind: Kind) -> Weights {
     Weights { track: fit::track(&worst), ..weights }
 }
 
-/// What a track with this index is allowed to know.
+/// What a track with this index is allowed to know; every other one is in no group, as before clustering.
 fn hide(mut parts: Parts, k: usize) -> Parts {
+    parts.group_px = parts.group_px.filter(|_| k.is_multiple_of(2));
     match k % 16 {
         3 => parts.fb_px = None,
         7 | 8 => parts.ncc = None,
@@ -130,7 +138,7 @@ fn source(name: &str, weights: &Weights) -> String {
 }
 
 /// A row for every tracker in every wind, for every wind, for every tracker, and for all.
-fn print(asked: &Asked, tallies: &[(Level, &str, Tally)]) {
+fn print(asked: &Asked, what: &str, tallies: &[(Level, &str, Tally)]) {
     let sum = |level: Option<Level>, tracker: Option<&str>| {
         let mut sum = Tally::default();
         let is_it = |of: &&(Level, &str, Tally)| {
@@ -154,11 +162,11 @@ fn print(asked: &Asked, tallies: &[(Level, &str, Tally)]) {
     if asked.json {
         println!(
             "{}",
-            json!({ "seed": asked.seed, "rows": rows, "opened_for_95_where_43": [opened, ideal] })
+            json!({ "seed": asked.seed, "tracks": what, "rows": rows, "opened_for_95_where_43": [opened, ideal] })
         );
         return;
     }
-    println!("seed {}; a track is bad when a visible sample is more than 8 px off", asked.seed);
+    println!("seed {}, tracks {what}; one is bad when a visible sample is more than 8 px off", asked.seed);
     println!(
         "tracker       wind   tracks   bad | AUC sample  track | calibration error | to see 95 % of the bad"
     );

@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use honami_media::Media;
-use honami_model::document::{RunId, Track};
+use honami_model::document::{RunId, ShownClustering, Track};
 use honami_model::judgement::Judgement;
 use honami_model::over::{Laid, Over};
 use honami_model::track::{Span, TrackId};
@@ -42,7 +42,11 @@ type Judgements = BTreeMap<u32, Judgement>;
 pub struct Known {
     tracks: BTreeMap<TrackId, (Arc<Span>, Judgements)>,
     runs: Vec<RunId>,
+    grouped: Grouped,
 }
+
+/// What decides which group a track is in: the shown clustering, its cut, and what is held by hand.
+type Grouped = Option<(ShownClustering, Vec<Vec<u32>>)>;
 
 /// What has changed in a project since a reviewer was told of it last.
 #[derive(Clone, Debug, Default)]
@@ -50,6 +54,8 @@ pub struct Changes {
     subjects: Vec<Subject>,
     judgements: Vec<(TrackId, Judgements)>,
     gone: Vec<TrackId>,
+    /// The group of every grouped track, where that has changed.
+    groups: Option<BTreeMap<TrackId, u32>>,
 }
 
 impl Changes {
@@ -61,7 +67,8 @@ impl Changes {
         let document = project.document();
         let runs: Vec<RunId> = document.runs().iter().map(|shown| shown.run).collect();
         let all_anew = runs != known.runs;
-        let mut new = Known { tracks: BTreeMap::new(), runs };
+        let held = |shown: ShownClustering| (shown, document.held_groups(shown.id).to_vec());
+        let mut new = Known { tracks: BTreeMap::new(), runs, grouped: document.clustering().map(held) };
         let (mut moved, mut changes) = (Vec::new(), Self::default());
         for (track, span) in project.shown_all()? {
             let judgements = document.track(track).map(|track| track.judgements.clone()).unwrap_or_default();
@@ -84,6 +91,9 @@ impl Changes {
             Subject { track, kind: crew.kind(document, track), span, rivals, unseen }
         };
         changes.subjects = moved.into_iter().map(subject).collect();
+        if new.grouped != known.grouped {
+            changes.groups = Some(project.grouping()?.map(|grouping| grouping.group_of).unwrap_or_default());
+        }
         // Last: what could not be read has not been told.
         *known = new;
         Ok(changes)
@@ -92,7 +102,8 @@ impl Changes {
     /// Whether nothing has changed.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.subjects.is_empty() && self.judgements.is_empty() && self.gone.is_empty()
+        let is_grouped = self.groups.is_none();
+        is_grouped && self.subjects.is_empty() && self.judgements.is_empty() && self.gone.is_empty()
     }
 }
 
@@ -128,7 +139,7 @@ impl Reviewer {
 
     /// Takes changes and measures what needs no pixels. Returns what has changed of the review.
     pub fn tell(&mut self, changes: Changes) -> Vec<Told> {
-        let Changes { subjects, judgements, gone } = changes;
+        let Changes { subjects, judgements, gone, groups } = changes;
         let mut touched: BTreeSet<TrackId> = judgements.iter().map(|(track, _)| *track).collect();
         self.judgements.extend(judgements);
         let moved: Vec<TrackId> = subjects.iter().map(|subject| subject.track).collect();
@@ -145,6 +156,7 @@ impl Reviewer {
                 touched.extend(self.evidence.replace(subject));
             }
         }
+        touched.extend(groups.into_iter().flat_map(|groups| self.evidence.group(groups)));
         gone.iter().for_each(|track| drop(self.judgements.remove(track)));
         let told: Vec<Told> = touched.into_iter().map(|track| (track, self.segments(track))).collect();
         self.plan(&moved, &gone, &told);
@@ -241,9 +253,10 @@ fn correlate(
 /// # Errors
 /// What the project met.
 pub fn n_doubtful(project: &Project) -> Result<usize, WorkbenchError> {
-    let Changes { subjects, judgements, .. } = Changes::since(&mut Known::default(), project)?;
+    let Changes { subjects, judgements, groups, .. } = Changes::since(&mut Known::default(), project)?;
     let judgements: BTreeMap<TrackId, Judgements> = judgements.into_iter().collect();
-    let evidence = Evidence::new(subjects, crate::track::threads() as usize);
+    let mut evidence = Evidence::new(subjects, crate::track::threads() as usize);
+    evidence.group(groups.unwrap_or_default());
     let none = Judgements::new();
     let is_doubtful = |track: &TrackId| {
         let segments = evidence.segments(*track, judgements.get(track).unwrap_or(&none));

@@ -16,7 +16,7 @@ const LISTED: usize = 40;
 
 /// What the codes of reasons mean.
 const LEGEND: &str = "FB: the way back misses, NCC: looks different, JMP: sudden step, NBR: moves unlike its neighbours, \
-                      DIS: trackers disagree, LOST: lost";
+                      DIS: trackers disagree, GRP: moves unlike its group, LOST: lost";
 
 /// Prints the queue, most doubtful first.
 pub(super) fn review(args: &Project, common: &Common) -> anyhow::Result<Answer> {
@@ -102,6 +102,7 @@ fn machine(session: &Session, review: &Review) -> Value {
             "reasons": item.reasons.codes().collect::<Vec<_>>(),
             "fb_px": parts.fb_px, "ncc": parts.ncc, "jump": parts.jump, "nbr_px": parts.nbr_px,
             "dis_px": parts.farthest_px(), "disagrees_with": item.opponent.as_deref(), "own_ncc": parts.own_ncc,
+            "group_px": parts.group_px,
         })
     };
     let taken = effort(session.project.document());

@@ -138,7 +138,8 @@ fn a_logged_session_is_done_again_on_a_copy() {
     assert!(log.lines().last().unwrap().contains("is saved as"), "{log}");
     let saved = std::fs::read_to_string(path("p.log.jsonl")).unwrap();
     assert!(log.starts_with(&saved) && saved.lines().last().unwrap().contains("save-log"), "{saved}");
-    let told = said(folder.path(), &format!("replay copy.honami s.log.jsonl --plugin {}", plugins().display()));
+    let told =
+        said(folder.path(), &format!("replay copy.honami s.log.jsonl --plugin {}", plugins().display()));
     assert!(told.contains("undone: track") && told.contains("lines done as in the log"), "{told}");
     let tables = ["p", "copy"].map(|name| {
         said(folder.path(), &format!("export {name}.honami tracks {name}.csv"));

@@ -112,10 +112,8 @@ impl Neighbourhood {
             let after = anchors.as_slice().partition_point(|(at, _)| *at <= frame);
             let around = [after.checked_sub(1), Some(after)].into_iter().flatten();
             let strays = |circle: &Circle<'_>| circle.stray_px(frame, seen(span, frame)?);
-            let said: Vec<f32> = around.filter_map(|k| circles.get(k)).filter_map(strays).collect();
-            let log_sum: f32 = said.iter().map(|px| (px + FLOOR_PX).ln()).sum();
-            self.deviation_px[(frame - span.first_frame) as usize] =
-                if said.is_empty() { f32::NAN } else { (log_sum / said.len() as f32).exp() - FLOOR_PX };
+            let said = around.filter_map(|k| circles.get(k)).filter_map(strays);
+            self.deviation_px[(frame - span.first_frame) as usize] = geometric_mean(said).unwrap_or(f32::NAN);
         }
     }
 }
@@ -174,7 +172,13 @@ impl<'a> Circle<'a> {
     }
 }
 
-fn seen(span: &Span, frame: u32) -> Option<[f32; 2]> {
+/// The geometric mean of what the anchors around a sample say, pixels.
+pub(super) fn geometric_mean(said: impl Iterator<Item = f32>) -> Option<f32> {
+    let (log_sum, n) = said.fold((0.0, 0.0), |(sum, n), px| (sum + (px + FLOOR_PX).ln(), n + 1.0_f32));
+    (n > 0.0).then(|| (log_sum / n).exp() - FLOOR_PX)
+}
+
+pub(super) fn seen(span: &Span, frame: u32) -> Option<[f32; 2]> {
     span.get(frame).filter(|sample| sample.status.is_seen()).map(|sample| [sample.x, sample.y])
 }
 

@@ -183,6 +183,46 @@ fn likeness_that_a_tracker_found_itself_counts_of_anchored_ones() {
     }
 }
 
+/// A member of a group that goes to and fro along x: moved `gain` times as far, turned by a quarter; in some frames
+/// off by 9 px downwards.
+fn member(track: u32, gain: f32, is_turned: bool, off: &[u32]) -> Subject {
+    let sample = |frame: u32| {
+        let sway = 10.0 * (frame as f32 * 0.7).sin() * gain;
+        let (dx, dy) = if is_turned { (0.0, sway) } else { (sway, 0.0) };
+        let off = if off.contains(&frame) { 9.0 } else { 0.0 };
+        found(100.0 * track as f32 + dx, 50.0 + dy + off, Some(0.1))
+    };
+    subject(track, Span { first_frame: 0, samples: (0..40).map(sample).collect() })
+}
+
+#[test]
+fn a_member_that_leaves_its_groups_way_is_seen_however_far_and_whither_it_moves() {
+    let off = [20, 21, 22];
+    let mut tracks: Vec<Subject> = (0..6).map(|track| member(track, 1.0, false, &[])).collect();
+    tracks.push(member(6, 3.0, true, &[]));
+    tracks.push(member(7, 0.5, false, &off));
+    let mut evidence = Evidence::new(tracks.clone(), 1);
+    let strays = |evidence: &Evidence, track: u32| -> Vec<Option<f32>> {
+        evidence.parts(TrackId(track)).unwrap().iter().map(|parts| parts.group_px).collect()
+    };
+    assert!(strays(&evidence, 7).iter().all(Option::is_none), "it is in no group");
+    let all: BTreeMap<TrackId, u32> = (0..8).map(|track| (TrackId(track), 5)).collect();
+    assert_eq!(evidence.group(all.clone()).len(), 8);
+    for track in 0..7 {
+        // The course is the median, so that what the seventh does moves it by nothing; a gain is damped by noise.
+        assert!(strays(&evidence, track).iter().all(|px| px.unwrap() < 0.1), "{track}");
+    }
+    for (frame, px) in (0..).zip(strays(&evidence, 7)) {
+        let want = if off.contains(&frame) { 9.0 } else { 0.0 };
+        assert!((px.unwrap() - want).abs() < 0.2, "{frame}: {px:?}");
+    }
+    // Four are too few to tell a course.
+    let few = all.iter().filter(|(track, _)| track.0 > 3).map(|(&track, &group)| (track, group)).collect();
+    evidence.group(few);
+    assert!((1..40).all(|frame| strays(&evidence, 7)[frame].is_none()));
+    assert!(strays(&evidence, 0).iter().all(Option::is_none), "it has left its group");
+}
+
 /// A picture with a bright square about `(x, 20)`.
 fn picture(x: u32) -> Vec<u8> {
     let inside = |k: u32| (k % 64).abs_diff(x) < 4 && (k / 64).abs_diff(20) < 3;
@@ -277,13 +317,18 @@ proptest! {
     fn one_track_anew_is_all_anew(before in walks(), edits in prop::collection::vec((0..20_u32, walks()), 1..4)) {
         let mut spans: BTreeMap<u32, Span> = (0..).zip(before.iter().cloned()).collect();
         let mut evidence = Evidence::new(subjects(&before), 1);
+        let groups = |n: u32| (0..20).map(|track| (TrackId(track), track % n)).collect::<BTreeMap<_, _>>();
+        let touched = evidence.group(groups(3));
+        prop_assert!(touched.iter().all(|track| evidence.subject(*track).is_some()));
         for (track, new) in edits {
             // The first span takes the track's place; an odd number of others deletes it.
             let span = if new.len() % 4 == 3 { Span::default() } else { new[0].clone() };
             let old = all_parts(&evidence);
             let touched = evidence.replace(subject(track, span.clone()));
             if span.samples.is_empty() { spans.remove(&track); } else { spans.insert(track, span); }
-            let anew = Evidence::new(spans.iter().map(|(&id, span)| subject(id, span.clone())).collect(), 2);
+            let mut anew = Evidence::new(spans.iter().map(|(&id, span)| subject(id, span.clone())).collect(), 2);
+            anew.group(groups(2));
+            anew.group(groups(3));
             prop_assert_eq!(all_parts(&evidence), all_parts(&anew));
             for (id, parts) in all_parts(&anew) {
                 let same = old.iter().any(|(known, before)| *known == id && *before == parts);

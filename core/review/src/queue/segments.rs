@@ -19,12 +19,12 @@ const NEAR: u32 = 8;
 pub struct Reasons(u8);
 
 impl Reasons {
-    /// The codes: forward-backward error, correlation, jump, neighbours, disagreement of trackers; and lost.
-    pub const CODES: [&str; 6] = ["FB", "NCC", "JMP", "NBR", "DIS", "LOST"];
+    /// The codes: forward-backward error, correlation, jump, neighbours, disagreement of trackers, group; and lost.
+    pub const CODES: [&str; 7] = ["FB", "NCC", "JMP", "NBR", "DIS", "GRP", "LOST"];
     /// The code of each of the evidence's parts.
-    const OF_PART: [usize; N_PARTS] = [0, 1, 2, 3, 4, 1, 4];
+    const OF_PART: [usize; N_PARTS] = [0, 1, 2, 3, 4, 1, 4, 5];
     /// The track is lost.
-    pub const LOST: Self = Self(1 << 5);
+    pub const LOST: Self = Self(1 << 6);
 
     /// The parts that speak against a sample: those that are worse than in four of five good samples, the strongest at
     /// least.

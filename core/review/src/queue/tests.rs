@@ -148,6 +148,7 @@ fn reasons_are_written_in_the_order_of_the_parts() {
         jump: Some(90.0),
         nbr_px: Some(90.0),
         dis_px: Some(900.0),
+        group_px: Some(900.0),
         ..Parts::default()
     };
     assert_eq!(Reasons::of(&all).and(Reasons::LOST).codes().collect::<Vec<_>>(), Reasons::CODES);

@@ -8,11 +8,14 @@ use super::*;
 #[test]
 fn log_odds_by_hand() {
     let weight = |slope| Weight { slope, missing: 0.25, ordinary: 0.0 };
-    let weights =
-        Weights { base: -1.0, parts: [1.0, 2.0, 3.0, 4.0, 5.0, -4.0, 6.0].map(weight), track: [0.5, 2.0] };
+    let weights = Weights {
+        base: -1.0,
+        parts: [1.0, 2.0, 3.0, 4.0, 5.0, -4.0, 6.0, 7.0].map(weight),
+        track: [0.5, 2.0],
+    };
     let (fb_px, ncc, nbr_px, own_ncc) = (Some(0.98), Some(0.5), Some(0.5), Some(0.9375));
-    let parts = Parts { fb_px, ncc, nbr_px, own_ncc, ..Parts::default() };
-    // -1 + ln 1 + 2·.5 + .25 + 4·ln 1 + .25 - 4/16 + .25
+    let parts = Parts { fb_px, ncc, nbr_px, own_ncc, group_px: nbr_px, ..Parts::default() };
+    // -1 + ln 1 + 2·.5 + .25 + 4·ln 1 + .25 - 4/16 + .25 + 7·ln 1
     assert!((weights.log_odds(&parts).0 - 0.5).abs() < 1e-6);
     assert!((weights.probability(&parts) - 0.622_459).abs() < 1e-6);
     // Odds 1 to 3 are -ln 3; twice that and a half more.
@@ -27,6 +30,7 @@ fn worse_evidence_is_never_less_suspicious() {
         ncc: Some(0.95),
         jump: Some(1.0),
         nbr_px: Some(0.5),
+        group_px: Some(0.5),
         dis_px: fair,
         ..Parts::of(Kind::Stepwise)
     };
@@ -38,6 +42,7 @@ fn worse_evidence_is_never_less_suspicious() {
             Parts { ncc: Some(0.2), ..good },
             Parts { jump: Some(9.0), ..good },
             Parts { nbr_px: Some(12.0), ..good },
+            Parts { group_px: Some(12.0), ..good },
             Parts { dis_px: Some(9.0), ..good },
         ];
         for parts in worse {
@@ -107,7 +112,7 @@ fn a_persons_word_is_not_doubted_and_a_loss_is() {
 fn fitting_finds_the_weights_that_made_the_samples() {
     let mut rng = rand_pcg::Pcg64Mcg::seed_from_u64(7);
     let weight = |slope: f64| Weight { slope, missing: 0.5, ordinary: 0.0 };
-    let slopes = [1.0, 3.0, 0.0, 0.8, 0.3, 2.0, 0.5];
+    let slopes = [1.0, 3.0, 0.0, 0.8, 0.3, 2.0, 0.5, 0.6];
     let weights = Weights { base: -3.0, parts: slopes.map(weight), track: [0.0, 1.0] };
     let samples: Vec<(Parts, bool)> = (0..60_000)
         .map(|_| {
@@ -120,6 +125,7 @@ fn fitting_finds_the_weights_that_made_the_samples() {
                 dis_px: some(9.0),
                 own_ncc: some(1.0),
                 anchored_px: some(9.0),
+                group_px: some(9.0),
                 ..Parts::default()
             };
             let is_bad = rng.random_range(0.0..1.0) < weights.probability(&parts);

@@ -13,6 +13,7 @@ use honami_model::track::{Span, TrackId};
 use honami_motion::accuracy::TruePath;
 use honami_review::evidence::{Evidence, Kind, Parts, Rival, Subject, is_judged};
 use honami_review::suspicion::BAD_PX;
+use honami_workbench::cluster::{self, ClusterRequest};
 use honami_workbench::compare::{Truth, points_of, read_truth};
 use honami_workbench::drive::Seed;
 use honami_workbench::generate::generate;
@@ -58,6 +59,7 @@ pub(super) struct Track {
 struct Follower {
     found: BTreeMap<TrackId, Arc<Span>>,
     shown: Vec<(TrackId, Arc<Span>)>,
+    groups: BTreeMap<TrackId, u32>,
 }
 
 /// The clip of a level and seed, followed by every tracker, without key-frames and with exact ones.
@@ -129,9 +131,18 @@ fn follow(
         }
         let found = session.project.run_tracks(run)?.into_iter();
         let found = found.map(|(track, span)| (track, Arc::new(span))).collect();
-        followers.push(Follower { found, shown: session.project.shown_all()? });
+        let groups = groups(session)?;
+        followers.push(Follower { found, shown: session.project.shown_all()?, groups });
     }
     Ok(followers)
+}
+
+/// The groups of the shown tracks as who clusters them has them.
+fn groups(session: &mut Session) -> Result<BTreeMap<TrackId, u32>, Box<dyn Error>> {
+    let request = ClusterRequest { plugin: "bod".to_owned(), params: Values::default(), groups: None };
+    let done = cluster::prepare(session, &request)?.run(&())?;
+    cluster::finish(session, done)?;
+    Ok(session.project.grouping()?.map(|grouping| grouping.group_of).unwrap_or_default())
 }
 
 /// How a tracker knows its feature.
@@ -163,6 +174,7 @@ fn judged(
         Subject { track: *track, kind, span, rivals, unseen: Vec::new() }
     };
     let mut evidence = Evidence::new(spans.iter().enumerate().map(subject).collect(), 2);
+    evidence.group(followers[shown].groups.clone());
     let mut correlator = evidence.correlator(&evidence.tracks().collect::<Vec<_>>());
     for frame in correlator.template_frames() {
         correlator.cut(frame, &session.media.frame(frame)?.planes().y);

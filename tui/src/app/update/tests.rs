@@ -154,7 +154,7 @@ fn moving_in_time() {
         (
             "",
             "w w",
-            "review | frame 40 track 1 | said track 1: frames 40-49, FB (0.23), item 2 of 2 of the track",
+            "review | frame 40 track 1 | said track 1: frames 40-49, FB (0.25), item 2 of 2 of the track",
         ),
         (
             "",
@@ -293,12 +293,12 @@ fn the_queue() {
         (
             "",
             "n n Enter",
-            "review | frame 40 track 1 | said track 1: frames 40-49, FB (0.23) | track 7 40-99 accepted with 1 keys",
+            "review | frame 40 track 1 | said track 1: frames 40-49, FB (0.25) | track 7 40-99 accepted with 1 keys",
         ),
         ("", "n R", &format!("{second} | track 1 0-99 rejected with 1 keys")),
         ("", "n E", &format!("{second} | track 1 70-79 later with 1 keys")),
         // Another track is selected: the item is no longer the one that Enter speaks of.
-        ("", "n j Enter", "review | frame 56 track 2 | said track 2: frames 40-59, FB (0.23)"),
+        ("", "n j Enter", "review | frame 56 track 2 | said track 2: frames 40-59, FB (0.24)"),
         (
             "",
             "n . . w",
@@ -308,7 +308,7 @@ fn the_queue() {
         (
             "frame=43",
             "w",
-            "review | frame 40 track 1 | said track 1: frames 40-49, FB (0.23), item 2 of 2 of the track",
+            "review | frame 40 track 1 | said track 1: frames 40-49, FB (0.25), item 2 of 2 of the track",
         ),
         (
             "frame=43",

@@ -238,6 +238,7 @@ fn measured(code: &str, item: &Item) -> String {
         "NCC" => parts.likeness().map(ncc_words),
         "NBR" => parts.nbr_px.map(|px| format!("NBR {px:.0} px")),
         "DIS" => item.disagreement(),
+        "GRP" => parts.group_px.map(|px| format!("GRP {px:.0} px")),
         _ => None,
     };
     words.unwrap_or_else(|| code.to_owned())
