@@ -2,6 +2,7 @@
 //!
 //! Up is y there and z here: x right, y up, z towards the camera, so that what is at (x, y, z) here is at (x, z, -y) there.
 
+mod accessor;
 mod scene;
 #[cfg(test)]
 pub(crate) mod tests;

@@ -1,8 +1,11 @@
 //! What stands in the scene of a file of others: its meshes, where they stand.
 
+use std::collections::BTreeMap;
+
 use honami_model::mesh::Mesh;
 use serde_json::Value;
 
+use super::accessor::Rows;
 use super::{Document, F32, U8, U16, U32, laid};
 use crate::plant::PlantFileError;
 
@@ -14,6 +17,8 @@ const NONE: Matrix = [1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 0.
 const HARMLESS: [&str; 5] = ["KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "KHR_xmp"];
 /// Points of a list are triangles.
 const TRIANGLES: u64 = 4;
+/// Vertices and corners of a scene that is read: gigabytes of memory, twenty million vertices of a usual mesh.
+const MOST_NUMBERS: usize = 1 << 27;
 
 /// A mesh at its place in the scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,6 +67,9 @@ impl Document {
         if buffers.len() != 1 || !buffers[0]["uri"].is_null() {
             return Err(lacks("its numbers are in other files: export it as one .glb"));
         }
+        if !words["asset"].is_object() {
+            return Err(lacks("a .glb says in `asset`, an object, of which glTF it is, this does not"));
+        }
         if words["skins"].as_array().is_some_and(|skins| !skins.is_empty()) {
             return Err(lacks("it is bound to bones already: export the mesh without its bones"));
         }
@@ -90,13 +98,27 @@ impl Document {
     /// All meshes of the scene as one, z up, vertices primitive by primitive; and the pieces that these are of.
     ///
     /// # Errors
-    /// [`PlantFileError::Lacks`] for words that do not fit one another, and for meshes that are packed.
+    /// [`PlantFileError::Lacks`] for words that do not fit one another, for meshes that are packed, and for more of them than
+    /// memory is for.
     pub fn pieces(&self) -> Result<(Mesh, Vec<Piece>), PlantFileError> {
+        let stands = self.stands()?;
+        self.check_size(&stands)?;
+        let mut all = Mesh::default();
+        let piece = |(node, mesh, matrix)| {
+            let counts = self.take(mesh, &matrix, &mut all)?;
+            Ok(Piece { node, mesh, matrix, counts })
+        };
+        let pieces: Result<Vec<Piece>, PlantFileError> = stands.into_iter().map(piece).collect();
+        Ok((all, pieces?))
+    }
+
+    /// Nodes of the scene that bear a mesh, which, and where they stand.
+    fn stands(&self) -> Result<Vec<(usize, usize, Matrix)>, PlantFileError> {
         let scene = whole(&self.words["scene"]).unwrap_or(0);
         let roots = indices(&self.words["scenes"][scene]["nodes"]);
         let n_nodes = self.words["nodes"].as_array().map_or(0, Vec::len);
         let mut open: Vec<(usize, Matrix)> = roots.into_iter().rev().map(|node| (node, NONE)).collect();
-        let (mut all, mut pieces, mut n_seen) = (Mesh::default(), Vec::new(), 0);
+        let (mut stands, mut n_seen) = (Vec::new(), 0);
         while let Some((node, before)) = open.pop() {
             n_seen += 1;
             if node >= n_nodes || n_seen > n_nodes {
@@ -105,87 +127,99 @@ impl Document {
             let words = &self.words["nodes"][node];
             let matrix = product(&before, &own(words)?);
             open.extend(indices(&words["children"]).into_iter().rev().map(|child| (child, matrix)));
-            if let Some(mesh) = whole(&words["mesh"]) {
-                let counts = self.take(mesh, &matrix, &mut all)?;
-                pieces.push(Piece { node, mesh, matrix, counts });
-            }
+            stands.extend(whole(&words["mesh"]).map(|mesh| (node, mesh, matrix)));
         }
-        Ok((all, pieces))
+        Ok(stands)
+    }
+
+    /// Whether there is memory for all: a mesh is there as often as nodes bear it, so that small files may be large scenes.
+    fn check_size(&self, stands: &[(usize, usize, Matrix)]) -> Result<(), PlantFileError> {
+        let mut sizes = BTreeMap::new();
+        let mut sum = 0_usize;
+        for &(_, mesh, _) in stands {
+            let size = match sizes.get(&mesh) {
+                Some(size) => *size,
+                None => self.primitives(mesh)?.iter().map(Primitive::size).sum(),
+            };
+            sizes.insert(mesh, size);
+            sum = sum.saturating_add(size);
+        }
+        if sum > MOST_NUMBERS {
+            let what = format!(
+                "its meshes, each as often as it stands in the scene, have {sum} vertices and corners, and {MOST_NUMBERS} are \
+                 read at most: a smaller scene is wanted"
+            );
+            return Err(lacks(&what));
+        }
+        Ok(())
+    }
+
+    fn primitives(&self, mesh: usize) -> Result<Vec<Primitive<'_>>, PlantFileError> {
+        let primitives = self.words["meshes"][mesh]["primitives"].as_array();
+        let primitives = primitives.ok_or_else(|| lacks(&format!("mesh {mesh} has no primitives")))?;
+        let primitive = |words: &Value| {
+            let missing = || lacks(&format!("mesh {mesh} has no positions"));
+            let positions = whole(&words["attributes"]["POSITION"]).ok_or_else(missing)?;
+            let vertices = self.rows(positions, "VEC3", &[F32])?;
+            let is_surface = whole(&words["mode"]).is_none_or(|mode| mode as u64 == TRIANGLES);
+            let indices = whole(&words["indices"]).filter(|_| is_surface);
+            let indices =
+                indices.map(|accessor| self.rows(accessor, "SCALAR", &[U8, U16, U32])).transpose()?;
+            Ok(Primitive { vertices, is_surface, indices })
+        };
+        primitives.iter().map(primitive).collect()
     }
 
     /// Adds the primitives of a mesh; how many vertices each has.
     fn take(&self, mesh: usize, matrix: &Matrix, all: &mut Mesh) -> Result<Vec<usize>, PlantFileError> {
-        let primitives = self.words["meshes"][mesh]["primitives"].as_array();
-        let primitives = primitives.ok_or_else(|| lacks(&format!("mesh {mesh} has no primitives")))?;
         let mut counts = Vec::new();
-        for primitive in primitives {
-            let (first, missing) = (all.positions.len(), || lacks(&format!("mesh {mesh} has no positions")));
-            let positions = whole(&primitive["attributes"]["POSITION"]).ok_or_else(missing)?;
-            let floats = self.numbers(positions, "VEC3", &[F32])?;
+        for primitive in self.primitives(mesh)? {
+            let first = all.positions.len() as u32;
+            let floats: Vec<f64> = primitive.vertices.numbers().collect();
             let places = floats.as_chunks::<3>().0.iter();
             all.positions.extend(places.map(|place| laid(placed(matrix, *place))));
-            let n = all.positions.len() - first;
-            counts.push(n);
-            if whole(&primitive["mode"]).is_some_and(|mode| mode as u64 != TRIANGLES) {
-                continue;
-            }
-            let listed = match whole(&primitive["indices"]) {
-                Some(accessor) => self.numbers(accessor, "SCALAR", &[U8, U16, U32])?,
-                None => (0..n).map(|k| k as f64).collect(),
-            };
-            if listed.iter().any(|index| *index >= n as f64) {
-                return Err(lacks(&format!("a triangle of mesh {mesh} has a corner that is none")));
-            }
-            let corner = |index: f64| first as u32 + index as u32;
-            all.triangles.extend(listed.as_chunks::<3>().0.iter().map(|corners| corners.map(corner)));
+            counts.push(primitive.vertices.count);
+            let none = || lacks(&format!("a triangle of mesh {mesh} has a corner that is none"));
+            let triangles = primitive.triangles().ok_or_else(none)?;
+            all.triangles.extend(triangles.into_iter().map(|corners| corners.map(|corner| first + corner)));
         }
         Ok(counts)
     }
+}
 
-    /// All numbers of an accessor.
-    fn numbers(&self, accessor: usize, kind: &str, wanted: &[u32]) -> Result<Vec<f64>, PlantFileError> {
-        let words = &self.words["accessors"][accessor];
-        let size = whole(&words["componentType"]).unwrap_or(0) as u32;
-        let is_plain = words["type"] == kind && wanted.contains(&size) && words["sparse"].is_null();
-        let view = whole(&words["bufferView"]).map(|view| &self.words["bufferViews"][view]);
-        let view = view.filter(|view| view.is_object());
-        let (true, Some(view)) = (is_plain, view) else {
-            let what = format!("the numbers of accessor {accessor} are packed: export the mesh unpacked");
-            return Err(lacks(&what));
+/// A part of a mesh.
+struct Primitive<'a> {
+    vertices: Rows<'a>,
+    is_surface: bool,
+    /// Vertices are corners in their own order where there are none.
+    indices: Option<Rows<'a>>,
+}
+
+impl Primitive<'_> {
+    /// Vertices and corners; none is for nothing.
+    fn size(&self) -> usize {
+        1 + self.vertices.count + self.indices.as_ref().map_or(0, |indices| indices.count)
+    }
+
+    /// Vertices of each triangle; `None` where one is beyond the last.
+    fn triangles(&self) -> Option<Vec<[u32; 3]>> {
+        let n = self.vertices.count as u32;
+        let corners: Vec<u32> = match &self.indices {
+            Some(indices) => indices.numbers().map(|index| index as u32).collect(),
+            None => (0..n).collect(),
         };
-        let columns = if kind == "VEC3" { 3 } else { 1 };
-        let bytes = match size {
-            U8 => 1,
-            U16 => 2,
-            _ => 4,
-        };
-        let of = |value: &Value| whole(value).unwrap_or(0);
-        let stride = whole(&view["byteStride"]).unwrap_or(columns * bytes);
-        let first = of(&view["byteOffset"]).saturating_add(of(&words["byteOffset"]));
-        let mut found = Vec::new();
-        for row in 0..of(&words["count"]) {
-            for column in 0..columns {
-                let at = row.saturating_mul(stride).saturating_add(first).saturating_add(column * bytes);
-                let number = self.numbers.get(at..at.saturating_add(bytes));
-                let number = number.ok_or_else(|| lacks("numbers lie beyond the end of the file"))?;
-                found.push(match *number {
-                    [byte] => f64::from(byte),
-                    [a, b] => f64::from(u16::from_le_bytes([a, b])),
-                    [a, b, c, d] if size == U32 => f64::from(u32::from_le_bytes([a, b, c, d])),
-                    [a, b, c, d] => f64::from(f32::from_le_bytes([a, b, c, d])),
-                    _ => f64::NAN,
-                });
-            }
+        if !self.is_surface {
+            return Some(Vec::new());
         }
-        Ok(found)
+        corners.iter().all(|corner| *corner < n).then(|| corners.as_chunks::<3>().0.to_vec())
     }
 }
 
-fn lacks(what: &str) -> PlantFileError {
+pub(super) fn lacks(what: &str) -> PlantFileError {
     PlantFileError::Lacks(what.to_owned())
 }
 
-fn whole(value: &Value) -> Option<usize> {
+pub(super) fn whole(value: &Value) -> Option<usize> {
     usize::try_from(value.as_u64()?).ok()
 }
 

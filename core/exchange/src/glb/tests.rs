@@ -85,9 +85,11 @@ fn lists_of_points_and_lines_have_no_triangles() {
 #[test]
 fn what_is_not_read_is_named() {
     type Change = fn(&mut Value);
-    let cases: [(Change, &str); 14] = [
+    let cases: [(Change, &str); 20] = [
         (|words| words["buffers"][0]["uri"] = "far.bin".into(), "export it as one .glb"),
         (|words| words["buffers"] = json!([]), "export it as one .glb"),
+        (|words| words["asset"] = "2.0".into(), "`asset`, an object"),
+        (|words| words["asset"] = Value::Null, "`asset`, an object"),
         (|words| words["skins"] = json!([{}]), "bound to bones already"),
         (
             |words| {
@@ -99,6 +101,22 @@ fn what_is_not_read_is_named() {
         (|words| words["accessors"][1]["componentType"] = 5122.into(), "accessor 1 are packed"),
         (|words| words["accessors"][1]["count"] = 4_000_000_000_u64.into(), "beyond the end"),
         (|words| words["bufferViews"][1]["byteOffset"] = u64::MAX.into(), "beyond the end"),
+        (
+            |words| words["bufferViews"][1]["byteStride"] = 8.into(),
+            "accessor 1 take 12 bytes and begin every 8",
+        ),
+        (
+            |words| words["bufferViews"][0]["byteStride"] = 0.into(),
+            "accessor 0 take 1 bytes and begin every 0",
+        ),
+        (
+            |words| {
+                words["bufferViews"][1]["byteStride"] = 0.into();
+                words["accessors"][1]["count"] = 4_000_000_000_000_u64.into();
+            },
+            "begin every 0",
+        ),
+        (|words| words["accessors"][1]["count"] = u64::MAX.into(), "beyond the end"),
         (|words| words["accessors"][0]["bufferView"] = 7.into(), "accessor 0 are packed"),
         (|words| words["accessors"][1]["count"] = 2.into(), "a corner that is none"),
         (|words| words["nodes"][1]["children"] = json!([0]), "no trees"),
@@ -111,6 +129,15 @@ fn what_is_not_read_is_named() {
             Document::read(&scene(change)).and_then(|document| document.pieces()).unwrap_err().to_string();
         assert!(error.contains(wanted), "{wanted}: {error}");
     }
+    // A mesh that is small, and stands in as many places as fill the memory.
+    let forest = scene(|words| {
+        words["nodes"] = vec![json!({ "mesh": 0 }); 10_000].into();
+        words["scenes"][0]["nodes"] = (0..10_000).collect();
+        let primitive = words["meshes"][0]["primitives"][0].take();
+        words["meshes"][0]["primitives"] = vec![primitive; 2_000].into();
+    });
+    let error = Document::read(&forest).unwrap().pieces().unwrap_err().to_string();
+    assert!(error.contains("have 140000000 vertices and corners, and 134217728 are read at most"), "{error}");
     let whole = scene(|_| {});
     for end in 0..whole.len() {
         let read = Document::read(&whole[..end]).and_then(|document| document.pieces());
