@@ -46,6 +46,17 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, PlantFileError> {
     let mut numbers = Numbers { bytes: &bytes[first..], order };
     let mut mesh = Mesh::default();
     for element in &elements {
+        // A row without properties is nothing, and any number of them takes no bytes.
+        if element.properties.is_empty() && element.name != "vertex" {
+            continue;
+        }
+        let n_left = numbers.bytes.len();
+        if element.n_rows > n_left as u64 {
+            return Err(lacks(format!(
+                "{} rows of {} cannot be in the {n_left} bytes that are left",
+                element.n_rows, element.name
+            )));
+        }
         for row in 0..element.n_rows {
             let short =
                 || lacks(format!("the file ends in row {row} of {} of {}", element.n_rows, element.name));
@@ -58,16 +69,19 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, PlantFileError> {
                     }
                     continue;
                 };
-                let n = numbers.next(length).ok_or_else(short)?.max(0.0) as u64;
+                let n = numbers.next(length).ok_or_else(short)?;
+                let n = whole(n).ok_or_else(|| {
+                    lacks(format!("a list of {} has {n} numbers: {WHOLE} was wanted", element.name))
+                })?;
                 let is_face = element.name == "face" && property.name.starts_with("vertex_ind");
                 let mut corners = Vec::new();
                 for _ in 0..n {
                     let number = numbers.next(property.kind).ok_or_else(short)?;
                     if is_face {
-                        corners.push(number);
+                        let none = || lacks(format!("a face has vertex {number}: {WHOLE} was wanted"));
+                        corners.push(whole(number).ok_or_else(none)?);
                     }
                 }
-                let corners: Vec<u32> = corners.iter().map(|corner| corner.max(-1.0) as i64 as u32).collect();
                 mesh.triangles.extend(fan(&corners));
             }
             if element.name == "vertex" {
@@ -182,6 +196,13 @@ impl Numbers<'_> {
             Kind::Float(_) => f64::from_bits(bits),
         })
     }
+}
+
+const WHOLE: &str = "a whole number below 2^32";
+
+/// A number that counts; `None` for others.
+fn whole(number: f64) -> Option<u32> {
+    (number.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&number)).then_some(number as u32)
 }
 
 fn lacks(what: String) -> PlantFileError {

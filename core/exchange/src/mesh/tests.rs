@@ -68,6 +68,13 @@ fn stanford_is_read_in_all_three_orders() {
 }
 
 #[test]
+fn rows_of_nothing_are_passed_over() {
+    let header = HEADER.replace("element vertex", "element junk 18446744073709551615\nelement vertex");
+    let header = format!("ply\nformat binary_little_endian 1.0\n{header}");
+    is_square(MeshFormat::Ply, &[header.into_bytes(), numbers(|bytes| bytes)].concat());
+}
+
+#[test]
 fn what_is_no_mesh_is_named() {
     let ply = |rows: &str| {
         format!(
@@ -100,12 +107,21 @@ fn what_is_no_mesh_is_named() {
         (MeshFormat::Ply, "ply\nelement vertex 1\nend_header\n".to_owned(), "a header names a format"),
         (MeshFormat::Ply, ply("0 0 nan\n3 0 0 0\n"), "vertex 0 lies at [0.0, 0.0, NaN]"),
         (MeshFormat::Ply, ply("0 0 0\n3 0 0 1\n"), "a face has vertex 1"),
-        (MeshFormat::Ply, ply("0 0 0\n3 0 0 -1\n"), "a face has vertex"),
+        (MeshFormat::Ply, ply("0 0 0\n3 0 0 -1\n"), "a face has vertex -1: a whole number below 2^32"),
+        (MeshFormat::Ply, ply("0 0 0\n3 0 0 4294967296\n"), "a face has vertex 4294967296: a whole"),
+        (MeshFormat::Ply, ply("0 0 0\n3 0 0 0.7\n"), "a face has vertex 0.7: a whole"),
+        (MeshFormat::Ply, ply("0 0 0\n-1\n"), "a list of face has -1 numbers: a whole"),
+        (MeshFormat::Ply, ply("0 0 0\nnan\n"), "a list of face has NaN numbers: a whole"),
         (MeshFormat::Ply, ply("0 0 0\n4000000000 0 0 1\n"), "the file ends in row 0 of 1 of face"),
         (
             MeshFormat::Ply,
             ply("0 0 0\n").replace("vertex 1\n", "vertex 99999999999999\n"),
-            "row 1 of 99999999999999",
+            "99999999999999 rows of vertex cannot be in the 6 bytes that are left",
+        ),
+        (
+            MeshFormat::Ply,
+            "ply\nformat ascii 1.0\nelement vertex 18446744073709551615\nend_header\n0\n".to_owned(),
+            "rows of vertex cannot be",
         ),
     ] {
         let error = format.read(text.as_bytes()).unwrap_err().to_string();
