@@ -15,13 +15,15 @@ use crate::turn::{Turn, norm};
 const UNIT: f64 = 1e-6;
 /// One that was made unit is so near to it.
 const MADE_UNIT: f64 = 4e-15;
+/// Pixels. Nothing of a skeleton is longer or farther away, so that no sum of bones overflows, however many there are.
+const FARTHEST: f64 = 1e9;
 
 /// The end of a bone; the root has none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Joint {
     /// Row of the joint that its bone begins at, before its own; `None` for the root, row 0.
     pub parent: Option<u32>,
-    /// Length of its bone, pixels: above 0; 0 for the root.
+    /// Length of its bone, pixels: above 0, to 1e9; 0 for the root.
     pub length: f64,
     /// Groups that it is the centre of, numbered from 0; none for forks.
     pub groups: Vec<u32>,
@@ -36,7 +38,7 @@ pub struct Leaf {
     pub track: TrackId,
     /// Row of the joint.
     pub joint: u32,
-    /// From the joint to it, pixels, a frame each: what the bone does not explain of its motion is in here.
+    /// From the joint to it, pixels, to 1e9 either way, a frame each: what the bone does not explain of its motion is in here.
     pub offsets: Vec<[f64; 3]>,
 }
 
@@ -70,16 +72,18 @@ pub enum SkeletonError {
         /// Row that it names.
         parent: u32,
     },
-    /// A length that is none.
-    #[error("the bone of joint {joint} is {length} px long, and one that is longer than 0 was wanted")]
+    /// A length that is none, or too long.
+    #[error(
+        "the bone of joint {joint} is {length:?} px long, and one above 0, of 1e9 px at most, was wanted"
+    )]
     Length {
         /// Row.
         joint: usize,
         /// Pixels.
         length: f64,
     },
-    /// A root that is nowhere.
-    #[error("the root lies at {0:?} px")]
+    /// A root that is nowhere, or too far away.
+    #[error("the root lies at {0:?} px, and a place within 1e9 px of 0 was wanted")]
     Place([f64; 3]),
     /// Not one direction for every joint and frame.
     #[error("{came} directions, and {wanted} were wanted: one for every joint in every frame")]
@@ -99,8 +103,10 @@ pub enum SkeletonError {
         /// As given.
         direction: [f64; 3],
     },
-    /// A leaf of no joint, without a place in every frame, or one that is nowhere.
-    #[error("leaf {leaf} wants a joint that there is and a finite place in each of {n_frames} frames")]
+    /// A leaf of no joint, without a place in every frame, or one that is nowhere or too far away.
+    #[error(
+        "leaf {leaf} wants a joint that there is and a place within 1e9 px of it in each of {n_frames} frames"
+    )]
     Leaf {
         /// Row.
         leaf: usize,
@@ -166,7 +172,7 @@ impl Skeleton {
     ) -> Result<Self, SkeletonError> {
         let n = joints.len();
         check_tree(&joints)?;
-        if !root.iter().all(|v| v.is_finite()) {
+        if !is_near(root) {
             return Err(SkeletonError::Place(root));
         }
         let wanted = n * times.len() as usize;
@@ -201,7 +207,7 @@ impl Skeleton {
         let is_good = |leaf: &Leaf| {
             (leaf.joint as usize) < self.joints.len()
                 && leaf.offsets.len() == n_frames as usize
-                && leaf.offsets.iter().flatten().all(|v| v.is_finite())
+                && leaf.offsets.iter().all(|offset| is_near(*offset))
         };
         if let Some(leaf) = leaves.iter().position(|leaf| !is_good(leaf)) {
             return Err(SkeletonError::Leaf { leaf, n_frames });
@@ -287,6 +293,11 @@ impl Skeleton {
     }
 }
 
+/// What is no number is not near, either.
+fn is_near(place: [f64; 3]) -> bool {
+    place.iter().all(|v| v.abs() <= FARTHEST)
+}
+
 fn check_tree(joints: &[Joint]) -> Result<(), SkeletonError> {
     if joints.len() < 2 || u32::try_from(joints.len()).is_err() {
         return Err(SkeletonError::TooFew(joints.len()));
@@ -299,7 +310,7 @@ fn check_tree(joints: &[Joint]) -> Result<(), SkeletonError> {
             }
             _ => {}
         }
-        let is_length = joint.length.is_finite() && (joint.length > 0.0 || row == 0);
+        let is_length = joint.length.abs() <= FARTHEST && (joint.length > 0.0 || row == 0);
         if !is_length {
             return Err(SkeletonError::Length { joint: row, length: joint.length });
         }

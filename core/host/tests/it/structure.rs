@@ -79,7 +79,8 @@ fn what_is_no_skeleton_is_named() {
     for (fault, wanted) in [
         ("cycle", "joint 1 has parent 1, which does not come before it"),
         ("roots", "joint 1 has no parent: a skeleton has one root"),
-        ("short", "the bone of joint 1 is 0 px long"),
+        ("short", "the bone of joint 1 is 0.0 px long"),
+        ("endless", "the bone of joint 1 is 1e308 px long, and one above 0, of 1e9 px at most"),
         ("long-root", "gave the root, which has no bone, one of 1 px"),
         ("lost", "joint 1 has no direction in frame 0"),
         ("adrift", "the root lies at [0.25, inf, -3.0] px"),
@@ -88,6 +89,7 @@ fn what_is_no_skeleton_is_named() {
         ("twice", "let joint 1 bear group 0 twice"),
         ("leaf", "committed a leaf of track 3 of 3"),
         ("fall", "committed 7 offsets of 3 leaves, wanted one in each of 3 frames"),
+        ("blown", "leaf 1 wants a joint that there is and a place within 1e9 px of it"),
         ("stump", "a skeleton has two joints at least, this one has 1"),
     ] {
         for grown in grow(fault, &filmed) {

@@ -36,8 +36,17 @@ fn what_is_no_skeleton_is_named() {
     assert!(matches!(of(&pair, &[UP, [f64::NAN; 3]]), SkeletonError::Direction { .. }));
     let lost = Skeleton::new([f64::NAN, 0.0, 0.0], pair.to_vec(), vec![UP; 2], times(1));
     assert!(matches!(lost, Err(SkeletonError::Place(_))));
+    let lost = Skeleton::new([0.0, 0.0, -2e9], pair.to_vec(), vec![UP; 2], times(1));
+    assert_eq!(lost, Err(SkeletonError::Place([0.0, 0.0, -2e9])));
+    // Two of these, one on the other, would end nowhere.
+    for length in [1e308, 2e9, f64::INFINITY, f64::NAN] {
+        let error = of(&[pair[0].clone(), joint(Some(0), 1.0), joint(Some(1), length)], &[UP; 3]);
+        assert!(matches!(error, SkeletonError::Length { joint: 2, .. }), "{length}: {error}");
+    }
     let good = Skeleton::new([0.0; 3], pair.to_vec(), vec![UP; 2], times(1)).unwrap();
-    for (joint, offsets) in [(2, vec![UP]), (1, vec![]), (1, vec![[f64::NAN; 3]])] {
+    for (joint, offsets) in
+        [(2, vec![UP]), (1, vec![]), (1, vec![[f64::NAN; 3]]), (1, vec![[0.0, 1e308, 0.0]])]
+    {
         let leaf = Leaf { track: TrackId(0), joint, offsets };
         let error = good.clone().with_leaves(vec![leaf]).unwrap_err();
         assert_eq!(error, SkeletonError::Leaf { leaf: 0, n_frames: 1 });
