@@ -3,10 +3,12 @@
 //! Up is y there and z here: x right, y up, z towards the camera, so that what is at (x, y, z) here is at (x, z, -y) there.
 
 mod accessor;
+mod own;
 mod scene;
 #[cfg(test)]
 pub(crate) mod tests;
 
+pub use own::is_own;
 pub use scene::Piece;
 pub(crate) use scene::{Matrix, product};
 
@@ -155,7 +157,7 @@ impl Document {
         if bytes > MOST_BYTES {
             return Err(DocumentError::TooLarge { bytes });
         }
-        let mut file = AtomicFile::create(path, |head| head.starts_with(b"glTF"))?;
+        let mut file = AtomicFile::create(path, |_head| is_own(path))?;
         let counts = [2, bytes as u32, words.len() as u32].map(u32::to_le_bytes).concat();
         let numbers = (self.numbers.len() as u32).to_le_bytes();
         for part in [b"glTF", &counts[..], b"JSON", &words, &numbers, b"BIN\0", &self.numbers] {

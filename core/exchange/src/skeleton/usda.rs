@@ -21,6 +21,8 @@ use crate::table::TableError;
 
 /// Of a clip of one frame, frames per second.
 const FPS: f64 = 25.0;
+/// In the first lines of what honami writes: models of others are not to be lost.
+const DOC: &str = "doc = \"a plant moved by honami\"";
 /// Times are told to a millionth of a frame.
 const TICKS: f64 = 1e6;
 
@@ -41,7 +43,7 @@ pub fn usda(
     let fps = motion.times().nominal_fps().unwrap_or(FPS);
     let codes = codes(motion, fps)?;
     let mut text = format!(
-        "#usda 1.0\n(\n    defaultPrim = \"plant\"\n    doc = \"a plant moved by honami\"\n    startTimeCode = 0\n    \
+        "#usda 1.0\n(\n    defaultPrim = \"plant\"\n    {DOC}\n    startTimeCode = 0\n    \
          endTimeCode = {}\n    timeCodesPerSecond = {fps}\n    framesPerSecond = {fps}\n    metersPerUnit = 1\n    \
          upAxis = \"Y\"\n)\n\ndef SkelRoot \"plant\" (\n    prepend apiSchemas = [\"SkelBindingAPI\"]\n)\n{{\n",
         codes.last().copied().unwrap_or_default()
@@ -59,7 +61,10 @@ pub fn usda(
 /// # Errors
 /// What the disk says.
 pub fn write_usda(path: &Path, text: &str) -> Result<(), TableError> {
-    let mut file = AtomicFile::create(path, |head| is_begun_alike(head, text))?;
+    let is_own = |head: &[u8]| {
+        is_begun_alike(head, text) && String::from_utf8_lossy(head).lines().any(|line| line.trim() == DOC)
+    };
+    let mut file = AtomicFile::create(path, is_own)?;
     file.write_all(text.as_bytes()).map_err(|source| TableError::File { path: path.into(), source })?;
     file.finish()
 }

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use honami_exchange::glb::is_own;
 use honami_exchange::plant::{BeamRow, PointCache, SwayRow};
 use honami_exchange::{AtomicFile, Writer};
 
@@ -49,10 +50,7 @@ impl Files {
         Ok(Self {
             table: outs.table.map(Writer::create).transpose()?,
             cache: outs.cache.map(cache).transpose()?,
-            glb: outs
-                .glb
-                .map(|path| AtomicFile::create(path, |head| head.starts_with(b"glTF")))
-                .transpose()?,
+            glb: outs.glb.map(|path| AtomicFile::create(path, |_head| is_own(path))).transpose()?,
             beams: outs.beams.map(|path| beams(plant, path)).transpose()?,
         })
     }

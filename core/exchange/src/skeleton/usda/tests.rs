@@ -59,6 +59,8 @@ fn a_file_of_another_kind_is_not_written_over() {
     write_usda(&path, &text).unwrap();
     write_usda(&path, &text).unwrap();
     assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
-    std::fs::write(&path, "my notes").unwrap();
-    assert!(matches!(write_usda(&path, &text), Err(TableError::Unlike { .. })));
+    for theirs in ["my notes", "#usda 1.0\n(\n    doc = \"an oak\"\n)\n"] {
+        std::fs::write(&path, theirs).unwrap();
+        assert!(matches!(write_usda(&path, &text), Err(TableError::Unlike { .. })), "{theirs}");
+    }
 }
