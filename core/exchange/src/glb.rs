@@ -10,7 +10,7 @@ pub(crate) mod tests;
 
 pub use own::is_own;
 pub use scene::Piece;
-pub(crate) use scene::{Matrix, product};
+pub(crate) use scene::{Matrix, TRIANGLES, product};
 
 use std::io::Write as _;
 use std::path::Path;
@@ -80,11 +80,7 @@ impl Document {
             }),
             numbers: Vec::new(),
         };
-        let indices: Vec<u8> =
-            mesh.triangles.iter().flatten().flat_map(|index| index.to_le_bytes()).collect();
-        let count = 3 * mesh.triangles.len();
-        let indices =
-            made.add(INDICES, &indices, json!({ "componentType": U32, "type": "SCALAR", "count": count }));
+        let indices = made.triangles(&mesh.triangles);
         let mut attributes = json!({ "POSITION": made.vertices(&mesh.positions) });
         if !mesh.normals.is_empty() {
             attributes["NORMAL"] = made.vertices(&mesh.normals).into();
@@ -123,6 +119,13 @@ impl Document {
         self.numbers.extend(bytes);
         accessor["bufferView"] = self.put("bufferViews", view).into();
         self.put("accessors", accessor)
+    }
+
+    /// Appends corners; the number of their accessor.
+    pub(crate) fn triangles(&mut self, triangles: &[[u32; 3]]) -> usize {
+        let bytes: Vec<u8> = triangles.iter().flatten().flat_map(|index| index.to_le_bytes()).collect();
+        let what = json!({ "componentType": U32, "type": "SCALAR", "count": 3 * triangles.len() });
+        self.add(INDICES, &bytes, what)
     }
 
     /// Appends three numbers a vertex, which are turned upright.

@@ -100,6 +100,6 @@ pub fn write_frame(path: &Path, format: MeshFormat, frame: &Frame<'_>) -> Result
 }
 
 /// Triangles about the first corner of a polygon, which is convex in all that programs write.
-fn fan(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
+pub(crate) fn fan(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
     corners.windows(2).skip(1).map(|pair| [corners[0], pair[0], pair[1]])
 }

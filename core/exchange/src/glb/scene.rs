@@ -7,6 +7,7 @@ use serde_json::Value;
 
 use super::accessor::Rows;
 use super::{Document, F32, U8, U16, U32, laid};
+use crate::mesh::fan;
 use crate::plant::PlantFileError;
 
 /// Columns of a matrix, one after another.
@@ -15,8 +16,10 @@ pub(crate) type Matrix = [f64; 16];
 const NONE: Matrix = [1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.];
 /// What may be required of a reader and changes no vertex.
 const HARMLESS: [&str; 5] = ["KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "KHR_xmp"];
-/// Points of a list are triangles.
-const TRIANGLES: u64 = 4;
+/// How corners make triangles: three by three, each with the two before it, or each with the one before it and the first.
+pub(crate) const TRIANGLES: usize = 4;
+const STRIP: usize = 5;
+const FAN: usize = 6;
 /// Vertices and corners of a scene that is read: gigabytes of memory, twenty million vertices of a usual mesh.
 const MOST_NUMBERS: usize = 1 << 27;
 
@@ -29,6 +32,8 @@ pub struct Piece {
     pub(crate) matrix: Matrix,
     /// Vertices of each of its primitives.
     pub(crate) counts: Vec<usize>,
+    /// Where its place is a mirror, triangles of each of its primitives, counterclockwise there; else none.
+    pub(crate) turned: Vec<Vec<[u32; 3]>>,
 }
 
 impl Document {
@@ -104,11 +109,8 @@ impl Document {
         let stands = self.stands()?;
         self.check_size(&stands)?;
         let mut all = Mesh::default();
-        let piece = |(node, mesh, matrix)| {
-            let counts = self.take(mesh, &matrix, &mut all)?;
-            Ok(Piece { node, mesh, matrix, counts })
-        };
-        let pieces: Result<Vec<Piece>, PlantFileError> = stands.into_iter().map(piece).collect();
+        let pieces: Result<Vec<Piece>, PlantFileError> =
+            stands.into_iter().map(|stand| self.take(stand, &mut all)).collect();
         Ok((all, pieces?))
     }
 
@@ -161,36 +163,47 @@ impl Document {
             let missing = || lacks(&format!("mesh {mesh} has no positions"));
             let positions = whole(&words["attributes"]["POSITION"]).ok_or_else(missing)?;
             let vertices = self.rows(positions, "VEC3", &[F32])?;
-            let is_surface = whole(&words["mode"]).is_none_or(|mode| mode as u64 == TRIANGLES);
-            let indices = whole(&words["indices"]).filter(|_| is_surface);
+            let mode = whole(&words["mode"]).unwrap_or(TRIANGLES);
+            let indices = whole(&words["indices"]).filter(|_| (TRIANGLES..=FAN).contains(&mode));
             let indices =
                 indices.map(|accessor| self.rows(accessor, "SCALAR", &[U8, U16, U32])).transpose()?;
-            Ok(Primitive { vertices, is_surface, indices })
+            Ok(Primitive { vertices, mode, indices })
         };
         primitives.iter().map(primitive).collect()
     }
 
-    /// Adds the primitives of a mesh; how many vertices each has.
-    fn take(&self, mesh: usize, matrix: &Matrix, all: &mut Mesh) -> Result<Vec<usize>, PlantFileError> {
-        let mut counts = Vec::new();
+    /// Adds the primitives of a mesh where it stands.
+    fn take(
+        &self,
+        (node, mesh, matrix): (usize, usize, Matrix),
+        all: &mut Mesh,
+    ) -> Result<Piece, PlantFileError> {
+        let is_mirror = determinant(&matrix) < 0.0;
+        let (mut counts, mut turned) = (Vec::new(), Vec::new());
         for primitive in self.primitives(mesh)? {
             let first = all.positions.len() as u32;
             let floats: Vec<f64> = primitive.vertices.numbers().collect();
             let places = floats.as_chunks::<3>().0.iter();
-            all.positions.extend(places.map(|place| laid(placed(matrix, *place))));
+            all.positions.extend(places.map(|place| laid(placed(&matrix, *place))));
             counts.push(primitive.vertices.count);
             let none = || lacks(&format!("a triangle of mesh {mesh} has a corner that is none"));
-            let triangles = primitive.triangles().ok_or_else(none)?;
-            all.triangles.extend(triangles.into_iter().map(|corners| corners.map(|corner| first + corner)));
+            let mut triangles = primitive.triangles().ok_or_else(none)?;
+            if is_mirror {
+                triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
+            }
+            all.triangles.extend(triangles.iter().map(|corners| corners.map(|corner| first + corner)));
+            if is_mirror {
+                turned.push(triangles);
+            }
         }
-        Ok(counts)
+        Ok(Piece { node, mesh, matrix, counts, turned })
     }
 }
 
 /// A part of a mesh.
 struct Primitive<'a> {
     vertices: Rows<'a>,
-    is_surface: bool,
+    mode: usize,
     /// Vertices are corners in their own order where there are none.
     indices: Option<Rows<'a>>,
 }
@@ -208,10 +221,16 @@ impl Primitive<'_> {
             Some(indices) => indices.numbers().map(|index| index as u32).collect(),
             None => (0..n).collect(),
         };
-        if !self.is_surface {
-            return Some(Vec::new());
-        }
-        corners.iter().all(|corner| *corner < n).then(|| corners.as_chunks::<3>().0.to_vec())
+        let triangles = match self.mode {
+            TRIANGLES => corners.as_chunks::<3>().0.to_vec(),
+            // Every other one lies the other way round.
+            STRIP => {
+                corners.windows(3).enumerate().map(|(k, at)| [at[0], at[1 + k % 2], at[2 - k % 2]]).collect()
+            }
+            FAN => fan(&corners).collect(),
+            _ => return Some(Vec::new()),
+        };
+        corners.iter().all(|corner| *corner < n).then_some(triangles)
     }
 }
 
@@ -257,6 +276,12 @@ fn own(node: &Value) -> Result<Matrix, PlantFileError> {
 /// One after another.
 pub(crate) fn product(a: &Matrix, b: &Matrix) -> Matrix {
     std::array::from_fn(|at| (0..4).map(|k| a[4 * k + at % 4] * b[4 * (at / 4) + k]).sum())
+}
+
+/// Below zero where left becomes right.
+fn determinant(m: &Matrix) -> f64 {
+    m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8])
+        + m[2] * (m[4] * m[9] - m[5] * m[8])
 }
 
 fn placed(m: &Matrix, [x, y, z]: [f64; 3]) -> [f64; 3] {

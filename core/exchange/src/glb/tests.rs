@@ -73,13 +73,54 @@ fn meshes_are_where_their_nodes_put_them() {
 
 #[test]
 fn lists_of_points_and_lines_have_no_triangles() {
-    for (mode, n) in [(0, 0), (1, 0), (4, 2), (5, 0)] {
+    for (mode, n) in [(0, 0), (1, 0), (4, 2), (5, 2), (6, 2)] {
         let bytes = scene(|words| words["meshes"][0]["primitives"][0]["mode"] = mode.into());
         let (mesh, pieces) = Document::read(&bytes).unwrap().pieces().unwrap();
         assert_eq!((mesh.triangles.len(), mesh.positions.len(), pieces.len()), (n, 6, 2));
     }
     let bytes = scene(|words| words["meshes"][0]["primitives"][0]["indices"] = Value::Null);
     assert_eq!(Document::read(&bytes).unwrap().pieces().unwrap().0.triangles, [[0, 1, 2], [3, 4, 5]]);
+}
+
+/// Six corners, as the standard's own formulas make triangles of them, however many there are.
+#[test]
+fn strips_and_fans_are_unrolled() {
+    let corners = [0_u8, 1, 2, 1, 0, 2];
+    for n in 0..=corners.len() {
+        for mode in [5, 6] {
+            let bytes = scene(|words| {
+                words["meshes"][0]["primitives"][0]["mode"] = mode.into();
+                words["accessors"][0] =
+                    json!({ "componentType": 5121, "type": "SCALAR", "count": n, "bufferView": 2 });
+                words["scenes"][0]["nodes"] = json!([2]);
+                words["bufferViews"]
+                    .as_array_mut()
+                    .unwrap()
+                    .push(json!({ "byteOffset": 52, "byteLength": n }));
+            });
+            let mut document = Document::read(&bytes).unwrap();
+            document.numbers.extend(corners);
+            let strip = |k: usize| [corners[k], corners[k + 1 + k % 2], corners[k + 2 - k % 2]];
+            let fan = |k: usize| [corners[0], corners[k + 1], corners[k + 2]];
+            let wanted: Vec<[u8; 3]> =
+                (0..n.saturating_sub(2)).map(|k| if mode == 5 { strip(k) } else { fan(k) }).collect();
+            let found = document.pieces().unwrap().0.triangles;
+            assert_eq!(found, wanted.iter().map(|it| it.map(u32::from)).collect::<Vec<_>>(), "{mode} {n}");
+        }
+    }
+}
+
+/// What is counterclockwise in a mesh is so in the scene, whether left and right are exchanged or all three axes are.
+#[test]
+fn mirrors_do_not_turn_inside_out() {
+    for (scale, is_mirror) in [([-1, 1, 1], true), ([-2, -2, 1], false), ([-1, -1, -1], true)] {
+        let bytes = scene(|words| words["nodes"][2] = json!({ "scale": scale, "mesh": 0 }));
+        let (mesh, pieces) = Document::read(&bytes).unwrap().pieces().unwrap();
+        let last = if is_mirror { [3, 5, 4] } else { [3, 4, 5] };
+        assert_eq!(mesh.triangles, [[0, 1, 2], last], "{scale:?}");
+        assert_eq!(pieces[1].turned, if is_mirror { vec![vec![[0, 2, 1]]] } else { Vec::new() });
+        assert!(pieces[0].turned.is_empty());
+    }
 }
 
 #[test]

@@ -10,7 +10,7 @@ use honami_model::skeleton::Skeleton;
 use serde_json::{Value, json};
 
 use super::joints::{Joints, MOST_JOINTS, rotations};
-use crate::glb::{ARRAY, Document, F32, Matrix, OTHER, Piece, U8, U16, product};
+use crate::glb::{ARRAY, Document, F32, Matrix, OTHER, Piece, TRIANGLES, U8, U16, product};
 
 /// Why there is no rig.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -57,14 +57,20 @@ pub fn rigged(
             .put("materials", json!({ "name": "weights", "pbrMetallicRoughness": look, "doubleSided": true }))
     });
     let (mut used, mut skins, mut first) = (BTreeSet::new(), BTreeMap::new(), 0);
+    let meshes = document.words["meshes"].clone();
     for piece in pieces {
-        let mut mesh = document.words["meshes"][piece.mesh].clone();
+        let mut mesh = meshes[piece.mesh].clone();
         for (k, &n) in piece.counts.iter().enumerate() {
             let (primitive, own) = (&mut mesh["primitives"][k], first..first + n);
             bind(&mut document, &mut primitive["attributes"], &bindings[own.clone()]);
             if let Some(material) = coloured {
                 primitive["material"] = material.into();
                 colour(&mut document, &mut primitive["attributes"], &colours[own]);
+            }
+            // The node was the mirror, and bones carry what they carry whichever node it is of.
+            if let Some(triangles) = piece.turned.get(k).filter(|triangles| !triangles.is_empty()) {
+                primitive["mode"] = TRIANGLES.into();
+                primitive["indices"] = document.triangles(triangles).into();
             }
             first += n;
         }

@@ -48,6 +48,7 @@ struct Rig {
     vertices: Vec<[f64; 3]>,
     bindings: Vec<([u16; 4], [f32; 4])>,
     colours: Vec<[u8; 4]>,
+    corners: Vec<u32>,
 }
 
 const UNMOVED: [[f32; 4]; 4] =
@@ -119,6 +120,9 @@ impl Rig {
                 vertices: reader.read_positions().unwrap().map(|v| v.map(f64::from)).collect(),
                 bindings: bones.zip(reader.read_weights(0).unwrap().into_f32()).collect(),
                 colours: colours.collect(),
+                corners: reader
+                    .read_indices()
+                    .map_or((0..3).collect(), |corners| corners.into_u32().collect()),
             })
         };
         document.scenes().next().unwrap().nodes().filter_map(rig).collect()
@@ -262,6 +266,35 @@ fn meshes_of_others_are_carried_from_where_they_stand() {
             let found = rigs[k / 3].vertex(k % 3, frame as usize);
             assert!(apart(found, wanted) < 1e-3, "frame {frame}, vertex {k}: {found:?} {wanted:?}");
             assert_eq!(rigs[k / 3].colours[k % 3], [k as u8, 2 * k as u8, 255, 255]);
+        }
+    }
+}
+
+/// A mesh that stands in a scene in front of its mirror image: both are written with their outsides outside, of a list, a
+/// strip and without indices.
+#[test]
+fn mirrors_are_written_with_their_outside_outside() {
+    let small = skeleton(&[(0, 3.0)], &[(0.0, 0.0)], 1);
+    for change in [json!({}), json!({ "mode": 5 }), json!({ "indices": null })] {
+        for mirror in [1, 2] {
+            let document = Document::read(&scene(|words| {
+                words["nodes"][mirror]["scale"] = json!([1.0, -1.0, 1.0]);
+                words["nodes"][2].as_object_mut().unwrap().remove("matrix");
+                let primitive = words["meshes"][0]["primitives"][0].as_object_mut().unwrap();
+                primitive.extend(change.as_object().unwrap().clone());
+                primitive.retain(|_, value| !value.is_null());
+            }));
+            let document = document.unwrap();
+            let (mesh, pieces) = document.pieces().unwrap();
+            let bindings = vec![Binding::new([(0, 1.0), (0, 0.0), (0, 0.0), (0, 0.0)]); 6];
+            let bound = rigged(document, &pieces, &bindings, &[], &small, &small).unwrap();
+            // The first hung on a node of the scene, and stands by itself now, behind the second.
+            let rigs: Vec<Rig> = Rig::all(bound).into_iter().rev().collect();
+            for (k, rig) in rigs.iter().enumerate() {
+                let wanted = mesh.triangles[k].map(|corner| corner - 3 * k as u32);
+                assert_eq!(rig.corners, wanted, "{change} {mirror} {k}");
+                assert_eq!(rig.corners == [0, 2, 1], k + 1 == mirror);
+            }
         }
     }
 }
