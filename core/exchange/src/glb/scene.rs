@@ -1,6 +1,6 @@
 //! What stands in the scene of a file of others: its meshes, where they stand.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use honami_model::mesh::Mesh;
 use serde_json::Value;
@@ -96,6 +96,13 @@ impl Document {
             notes.push(format!(
                 "{n} of its pictures are in files of their own: keep these beside what is written"
             ));
+        }
+        let bear = list("nodes").iter().filter(|node| node["mesh"].is_u64());
+        let names: BTreeSet<&String> =
+            bear.filter_map(|node| node["extensions"].as_object()).flat_map(serde_json::Map::keys).collect();
+        if !names.is_empty() {
+            let names: Vec<&str> = names.into_iter().map(String::as_str).collect();
+            notes.push(format!("meshes go without what their nodes say by {}", names.join(", ")));
         }
         notes
     }

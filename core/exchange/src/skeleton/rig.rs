@@ -116,7 +116,12 @@ fn stand(document: &mut Document, node: usize, mesh: usize, skin: usize) {
     old.as_object_mut()
         .into_iter()
         .for_each(|old| old.retain(|name, value| name != "mesh" && !value.is_null()));
-    let is_alone = old["children"].is_null() && list(document.scene()).contains(&node.into());
+    // Where there is more than its place to it, a camera or what others hung there, it stays for that.
+    let is_place = |(name, _): (&String, &Value)| {
+        ["matrix", "translation", "rotation", "scale"].contains(&name.as_str())
+    };
+    let is_alone = old.as_object().is_some_and(|old| old.iter().all(is_place));
+    let is_alone = is_alone && list(document.scene()).contains(&node.into());
     if is_alone {
         document.words["nodes"][node] = made;
     } else {

@@ -299,6 +299,39 @@ fn mirrors_are_written_with_their_outside_outside() {
     }
 }
 
+/// A node goes where its mesh was all there was to it, and stays where it stood for what else it bears.
+#[test]
+fn what_nodes_bear_beside_meshes_stays() {
+    let small = skeleton(&[(0, 3.0)], &[(0.0, 0.0)], 1);
+    let light = json!({ "KHR_lights_punctual": { "light": 0 } });
+    for (more, n_nodes) in [
+        (json!({}), 0),
+        (json!({ "camera": 0 }), 1),
+        (json!({ "extensions": light }), 1),
+        (json!({ "extras": 7 }), 0),
+    ] {
+        let document = Document::read(&scene(|words| {
+            words["nodes"][2].as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
+        }));
+        let document = document.unwrap();
+        let place = document.words["nodes"][2]["matrix"].clone();
+        let (_, pieces) = document.pieces().unwrap();
+        let bindings = vec![Binding::new([(0, 1.0), (0, 0.0), (0, 0.0), (0, 0.0)]); 6];
+        let bound = rigged(document, &pieces, &bindings, &[], &small, &small).unwrap();
+        let nodes = bound.words["nodes"].as_array().unwrap();
+        // One for the first mesh, which hung on a node, and the joints: root, bone, end.
+        assert_eq!(nodes.len(), 3 + 1 + 3 + n_nodes, "{more}");
+        let bearers: Vec<&Value> = nodes.iter().filter(|node| node["skin"].is_u64()).collect();
+        assert_eq!(bearers.len(), 2);
+        assert!(bearers.iter().any(|node| node["name"] == "leaf" && node["extras"] == more["extras"]));
+        if n_nodes == 1 {
+            let mut wanted = more;
+            wanted["matrix"] = place;
+            assert_eq!(nodes[2], wanted);
+        }
+    }
+}
+
 #[test]
 fn frames_have_the_times_of_the_clip_from_the_first_on() {
     let times = |times_s: &[f64]| {
