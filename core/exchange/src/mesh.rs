@@ -69,7 +69,7 @@ impl MeshFormat {
     pub fn read(self, bytes: &[u8]) -> Result<(Mesh, Vec<String>), PlantFileError> {
         match self {
             Self::Obj => obj::read(&String::from_utf8_lossy(bytes)),
-            Self::Ply => ply::read(bytes).map(|mesh| (mesh, Vec::new())),
+            Self::Ply => ply::read(bytes),
         }
     }
 }

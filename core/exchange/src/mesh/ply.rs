@@ -40,8 +40,8 @@ struct Element {
     properties: Vec<Property>,
 }
 
-/// Reads vertices and faces; all else is passed over.
-pub(super) fn read(bytes: &[u8]) -> Result<Mesh, PlantFileError> {
+/// Reads vertices and faces, and notes what else there is.
+pub(super) fn read(bytes: &[u8]) -> Result<(Mesh, Vec<String>), PlantFileError> {
     let (order, elements, first) = header(bytes)?;
     let mut numbers = Numbers { bytes: &bytes[first..], order };
     let mut mesh = Mesh::default();
@@ -64,7 +64,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, PlantFileError> {
             for property in &element.properties {
                 let Some(length) = property.list else {
                     let number = numbers.next(property.kind).ok_or_else(short)?;
-                    if let Some(axis) = ["x", "y", "z"].iter().position(|axis| *axis == property.name) {
+                    if let Some(axis) = AXES.iter().position(|axis| *axis == property.name) {
                         place[axis] = number;
                     }
                     continue;
@@ -73,7 +73,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, PlantFileError> {
                 let n = whole(n).ok_or_else(|| {
                     lacks(format!("a list of {} has {n} numbers: {WHOLE} was wanted", element.name))
                 })?;
-                let is_face = element.name == "face" && property.name.starts_with("vertex_ind");
+                let is_face = element.keeps(property);
                 let mut corners = Vec::new();
                 for _ in 0..n {
                     let number = numbers.next(property.kind).ok_or_else(short)?;
@@ -97,7 +97,35 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, PlantFileError> {
     let n = mesh.positions.len();
     match mesh.triangles.iter().flatten().find(|corner| **corner as usize >= n) {
         Some(corner) => Err(lacks(format!("a face has vertex {corner}, and there are 0 to less than {n}"))),
-        None => Ok(mesh),
+        None => Ok((mesh, elements.iter().filter_map(Element::note).collect())),
+    }
+}
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+impl Element {
+    /// Whether a property of it is part of a mesh.
+    fn keeps(&self, property: &Property) -> bool {
+        match self.name.as_str() {
+            "vertex" => property.list.is_none() && AXES.contains(&property.name.as_str()),
+            "face" => property.list.is_some() && property.name.starts_with("vertex_ind"),
+            _ => false,
+        }
+    }
+
+    /// What of it is left out.
+    fn note(&self) -> Option<String> {
+        let names = self.properties.iter().filter(|property| !self.keeps(property));
+        let names: Vec<&str> = names.map(|property| property.name.as_str()).collect();
+        if self.n_rows == 0 || names.is_empty() {
+            return None;
+        }
+        let what = if names.len() == self.properties.len() {
+            format!("{} (rows: {})", self.name, self.n_rows)
+        } else {
+            format!("{} of {}", names.join(", "), self.name)
+        };
+        Some(format!("left out of the .ply: {what}"))
     }
 }
 

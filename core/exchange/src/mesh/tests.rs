@@ -68,6 +68,30 @@ fn stanford_is_read_in_all_three_orders() {
 }
 
 #[test]
+fn what_is_left_out_of_stanford_is_named() {
+    let text = "2 -3 7 1e9\n255 0 0 .5\n255 2 0 .5\n255 2 1 .5\n255 0 1 .5\n4 0 1 2 3 9\n";
+    let notes = |header: &str, text: &str| {
+        MeshFormat::Ply.read(format!("ply\nformat ascii 1.0\n{header}{text}").as_bytes()).unwrap().1
+    };
+    let wanted = [
+        "left out of the .ply: camera (rows: 1)",
+        "left out of the .ply: red of vertex",
+        "left out of the .ply: flags of face",
+    ];
+    assert_eq!(notes(HEADER, text), wanted);
+    let header =
+        HEADER.replace("double far", "double far\nelement tristrips 0\nproperty list int int vertex_indices");
+    assert_eq!(notes(&header, text), wanted);
+    let strip = HEADER.replace("element camera 1", "element tristrips 1");
+    assert!(notes(&strip, text)[0].contains("tristrips (rows: 1)"));
+    let corners = "property list uint8 int32 vertex_index\n";
+    let end = HEADER.find("element face").unwrap();
+    let plain = HEADER[HEADER.find("element vertex").unwrap()..end].replace("property uchar red\n", "");
+    let header = format!("{plain}element face 1\n{corners}end_header\n");
+    assert!(notes(&header, "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n").is_empty());
+}
+
+#[test]
 fn rows_of_nothing_are_passed_over() {
     let header = HEADER.replace("element vertex", "element junk 18446744073709551615\nelement vertex");
     let header = format!("ply\nformat binary_little_endian 1.0\n{header}");
