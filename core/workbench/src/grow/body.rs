@@ -8,6 +8,7 @@ use honami_model::mesh::{Binding, Mesh};
 use honami_model::plant::{Node, Plant};
 use honami_model::skeleton::Skeleton;
 use honami_model::turn::norm;
+use honami_structure::StructureError;
 
 use crate::error::WorkbenchError;
 use crate::plant::tubes::{SIDES, Tubes};
@@ -16,15 +17,20 @@ use crate::plant::tubes::{SIDES, Tubes};
 const THICKEST: f64 = 0.02;
 
 /// Tubes about the bones of a skeleton at rest, each bound to its own; between two that go on, half to either.
+///
+/// # Errors
+/// [`StructureError::TooManyBones`] for more than 65535 joints, as bindings count them; [`WorkbenchError::Beams`].
 pub(super) fn body(skeleton: &Skeleton) -> Result<(Mesh, Vec<Binding>), WorkbenchError> {
+    let n_joints = skeleton.joints().len();
+    if u16::try_from(n_joints).is_err() {
+        return Err(StructureError::TooManyBones(n_joints).into());
+    }
     let places = skeleton.places(skeleton.rest());
     let joints = skeleton.joints().iter().zip(&places).zip(radii(skeleton, &places));
     let nodes = joints.map(|((joint, &position), radius)| Node { parent: joint.parent, position, radius });
     let beams = Beams::new(&Plant::new(nodes.collect())?, &Options::default())?;
     let mut bones = vec![0; beams.len()];
-    // Rows beyond 16 bits are refused where a rig is made.
-    let row = |row: usize| u16::try_from(row).unwrap_or(u16::MAX);
-    beams.of_plant().iter().enumerate().for_each(|(joint, node)| bones[*node as usize] = row(joint));
+    beams.of_plant().iter().zip(0_u16..).for_each(|(node, joint)| bones[*node as usize] = joint);
     let rings = Tubes::new(&beams);
     let bound = rings.rings().iter().flat_map(|ring| {
         let [before, after] = ring.tips().map(|tip| (bones[tip as usize], 0.5));

@@ -47,3 +47,18 @@ fn areas_add_up() {
         assert!((radius - THICKEST * farthest * (share / 3.0_f64).sqrt()).abs() < 1e-12, "{radii:?}");
     }
 }
+
+/// Rows that bindings cannot count would be carried by another bone.
+#[test]
+fn more_bones_than_bindings_count_are_refused() {
+    let broom = |n: usize| {
+        let joint = Joint { parent: Some(0), length: 1.0, ..Joint::default() };
+        let joints: Vec<Joint> = [Joint::default()].into_iter().chain(vec![joint; n - 1]).collect();
+        let times = FrameTimes::constant(1, 25.0).unwrap();
+        Skeleton::new([0.0; 3], joints, vec![[0.0, 0.0, 1.0]; n], times).unwrap()
+    };
+    for n in [65_536, 65_600] {
+        let error = body(&broom(n)).unwrap_err().to_string();
+        assert!(error.contains(&format!("65535 joints at most, not {n}")), "{error}");
+    }
+}
