@@ -29,6 +29,7 @@ pub(super) fn grow(args: &Grow, common: &Common) -> anyhow::Result<Answer> {
     let plugin = registry.find(Kind::Structure, args.plugin.with.as_deref().unwrap_or(DEFAULT))?;
     let params = values(args, plugin)?;
     let project = look(&args.project)?;
+    carried::check_names(args, &files, project.clip().clip.times.len())?;
     let request = GrowRequest {
         params,
         envelope: args.envelope.clone(),

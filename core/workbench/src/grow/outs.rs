@@ -56,6 +56,15 @@ impl Out {
             }
         }
     }
+
+    /// The files that are written as this where a motion has so many frames.
+    #[must_use]
+    pub fn names(self, path: &Path, n_frames: u32) -> Vec<PathBuf> {
+        match self {
+            Self::Frames(_) => (0..n_frames).filter_map(|frame| numbered(path, frame)).collect(),
+            _ => vec![path.to_owned()],
+        }
+    }
 }
 
 /// `walk/%04d.ply` as `walk/0007.ply`; `None` where there is not one such place in the name.

@@ -1,5 +1,7 @@
 //! `grow --onto`: what the skeleton carries.
 
+use std::path::PathBuf;
+
 use honami_model::brief::Brief;
 use honami_workbench::grow::{self, Blend, Bound, Carried, Growth, Onto, Out};
 use serde_json::json;
@@ -7,6 +9,7 @@ use serde_json::json;
 use super::super::args::grow::{self as typed, Grow};
 use super::super::{Answer, want};
 use super::Files;
+use super::siblings::numbered;
 
 /// Whether what is asked of it can be.
 pub(super) fn check(args: &Grow, files: &Files<'_>) -> anyhow::Result<()> {
@@ -38,9 +41,22 @@ pub(super) fn check(args: &Grow, files: &Files<'_>) -> anyhow::Result<()> {
         "a .pc2 has the vertices of an .obj or .ply, and no colours: name that by --onto, and no --weights"
             .to_owned()
     })?;
-    let read = args.onto.as_ref().and_then(|plant| plant.canonicalize().ok());
-    let over = files.iter().find(|(_, out)| read.is_some() && out.canonicalize().ok() == read);
-    want(over.is_none(), || "what is written takes another name than the plant that is read".to_owned())?;
+    Ok(())
+}
+
+/// Whether nothing that is written, in any frame and of any sibling, takes the place of the plant that is read.
+pub(super) fn check_names(args: &Grow, files: &Files<'_>, n_frames: u32) -> anyhow::Result<()> {
+    let Some(plant) = args.onto.as_ref().and_then(|plant| plant.canonicalize().ok()) else { return Ok(()) };
+    let is_it = |out: &PathBuf| out.canonicalize().is_ok_and(|place| place == plant);
+    let over = (0..=args.siblings.unwrap_or(0)).find_map(|number| {
+        let named = |out: &PathBuf| if number == 0 { out.clone() } else { numbered(out, number) };
+        let of_files = files.iter().flat_map(|(kind, out)| kind.names(&named(out), n_frames));
+        of_files.chain(args.leaves.iter().map(named)).find(is_it)
+    });
+    want(over.is_none(), || {
+        let over = over.unwrap_or_default();
+        format!("what is written takes another name than the plant that is read: {}", over.display())
+    })?;
     Ok(())
 }
 
@@ -80,4 +96,51 @@ pub(super) fn describe(args: &Grow, carried: &Carried, answer: &mut Answer) {
 /// To four digits.
 fn rounded(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser as _;
+
+    use super::super::files;
+    use super::*;
+
+    #[derive(clap::Parser)]
+    struct Line {
+        #[command(flatten)]
+        grow: Grow,
+    }
+
+    #[test]
+    fn no_name_is_that_of_the_plant() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["oak-1.glb", "0039.ply", "0003-2.ply", "l-1.csv"] {
+            std::fs::write(folder.path().join(name), name).unwrap();
+        }
+        std::fs::create_dir(folder.path().join("same")).unwrap();
+        for (plant, line, is_over) in [
+            ("oak-1.glb", "oak-1.glb", true),
+            ("oak-1.glb", "same/../oak-1.glb", true),
+            ("oak-1.glb", "oak.glb", false),
+            ("oak-1.glb", "oak.glb --siblings 1", true),
+            ("oak-1.glb", "rig.glb oak.bvh --siblings 3", false),
+            ("0039.ply", "%04d.ply", true),
+            ("0039.ply", "%05d.ply", false),
+            ("0003-2.ply", "%04d.ply --siblings 1", false),
+            ("0003-2.ply", "%04d.ply --siblings 2", true),
+            ("l-1.csv", "a.glb --leaves l.csv", false),
+            ("l-1.csv", "a.glb --leaves l.csv --siblings 1", true),
+            ("none.glb", "none.glb", false),
+        ] {
+            let at = |word: &str| match word.contains('.') {
+                true => folder.path().join(word).display().to_string(),
+                false => word.to_owned(),
+            };
+            let words = format!("grow p.honami --onto {plant} {line}");
+            let args = Line::parse_from(words.split(' ').map(at)).grow;
+            let found = check_names(&args, &files(&args).unwrap(), 40).map_err(|error| error.to_string());
+            assert_eq!(found.is_err(), is_over, "{words}");
+            assert!(found.err().is_none_or(|error| error.ends_with(plant)), "{words}");
+        }
+    }
 }

@@ -70,7 +70,7 @@ pub(super) fn draw(
 }
 
 /// `motion.bvh` as `motion-3.bvh`.
-fn numbered(out: &Path, number: u32) -> PathBuf {
+pub(super) fn numbered(out: &Path, number: u32) -> PathBuf {
     let stem = out.file_stem().unwrap_or_default().to_string_lossy();
     let ending = out.extension().unwrap_or_default().to_string_lossy();
     out.with_file_name(format!("{stem}-{number}.{ending}"))
