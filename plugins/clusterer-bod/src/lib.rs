@@ -49,7 +49,8 @@ params! {
     pub(crate) struct Settings {
         /// What makes two tracks alike.
         likeness: Likeness = "steps" => { label: "Likeness" },
-        /// Nearest others that each track is averaged with before it is compared, no more than one in 12 of all; 0: none.
+        /// Nearest others that each track is averaged with before it is compared, no more than one in 12 of the tracks that
+        /// move; 0: none.
         smooth: i64 = 8 => { label: "Smoothing neighbours", min: 0, max: 1000, soft_max: 20 },
         /// What is done about leaves that flutter each for itself.
         flutter: Flutter = "auto" => { label: "Flutter" },
