@@ -184,6 +184,9 @@ impl Tracks {
         keep_going: &mut dyn FnMut(f64) -> bool,
     ) -> Result<Self, MotionError> {
         let bod = Bod::new(table);
+        if !keep_going(0.1) {
+            return Err(MotionError::Stopped);
+        }
         let rest = residual(table, &bod);
         let flutters = rest.as_ref().is_some_and(Residual::is_flutter);
         let take_down = match options.flutter {

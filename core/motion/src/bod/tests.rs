@@ -308,6 +308,34 @@ fn what_leaves_share_is_no_flutter_nor_is_white_noise() {
     assert!(white.own.is_none() && !white.is_flutter() && flatness(&white.power[1..]) > 0.9, "{white:?}");
 }
 
+/// What all share at the highest frequency makes its neighbours loud, in which there is noise alone: each track's own.
+#[test]
+fn what_is_shared_at_the_highest_frequency_is_no_flutter() {
+    let amounts = numbers(2 * LEAVES * 14, 12);
+    let table = leaves(|track, frame, axis| {
+        let amount = |k: usize| amounts[2 * (track * 14 + k) + axis];
+        let mode = |k: usize| {
+            let cycles = 20.0 + 3.0 * k as f64;
+            amount(k) * (std::f64::consts::TAU * cycles * frame as f64 / CLIP as f64).sin()
+        };
+        // These and the two swings are the 15 strongest.
+        let strong: f64 = (0..13).map(mode).sum();
+        strong + 0.25 * amount(13) * if frame % 2 == 0 { 1.0 } else { -1.0 }
+    });
+    let left = residual(&table, &Bod::new(&table)).unwrap();
+    assert!(left.power.last() > Some(&(10.0 * left.power[left.power.len() - 10])), "{left:?}");
+    assert!(left.own.unwrap() < 0.5, "{:?}", left.own);
+}
+
+#[test]
+fn of_many_loud_frequencies_the_loudest_are_looked_at() {
+    let power: Vec<f64> = (0..1001).map(|k| if k % 3 == 0 { 1.0 + f64::from(k) } else { 0.5 }).collect();
+    let loud = whiten::loudest(&power, 2.0);
+    let wanted: Vec<usize> = (0..256).map(|k| 999 - 3 * (255 - k)).collect();
+    assert_eq!(loud, wanted);
+    assert_eq!(whiten::loudest(&power[..10], 2.0), [3, 6, 9]);
+}
+
 /// Against the singular values themselves; noise comes to 1, one motion of all to 1 / n.
 #[test]
 fn how_much_is_each_tracks_own_is_what_the_formula_says() {
@@ -337,6 +365,8 @@ fn how_much_is_each_tracks_own_is_what_the_formula_says() {
         assert!((own - known).abs() < 0.02, "{alone}: {own}, known {known}");
     }
     assert_eq!(whiten::own(&[], &power, &loud[..2]), None);
+    let nothing = vec![vec![Complex::new(0.0, 0.0); 10]; 4];
+    assert_eq!(whiten::own(&nothing, &power, &loud), None, "it would be 0 / 0");
 }
 
 #[test]

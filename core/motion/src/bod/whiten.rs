@@ -22,6 +22,8 @@ const FLOOR: f64 = 1e-3;
 /// A frequency is loud with more than so many times the median power; of fewer loud ones nothing is said.
 const LOUD: f64 = 3.0;
 const FEWEST_LOUD: usize = 3;
+/// And of more the loudest are looked at: memory and time grow with their number and its square.
+const MOST_LOUD: usize = 256;
 /// Leaves flutter where more than this share of all motion is left without the strongest components, and it is more each
 /// track's own than this.
 const MUCH_LEFT: f64 = 0.1;
@@ -35,8 +37,8 @@ pub struct Residual {
     /// Share of all motion that is left, 0 to 1.
     pub share: f64,
     /// How far what is loud is each track's own: near 1 where no track shares it with others, towards 0 where few motions make
-    /// up all of it; `None` of a spectrum without 3 loud frequencies, as white noise has. With Z the n loud frequencies of all
-    /// 2 N series, each over the root of its power, and s its singular values: (Σ s²)² / (n Σ s⁴), over 1 / (1 + n / 2 N),
+    /// up all of it; `None` of a spectrum without 3 loud frequencies, as white noise has. With Z the n loudest frequencies, 256
+    /// at most, of all 2 N series, each over the root of its power, and s its singular values: (Σ s²)² / (n Σ s⁴), over 1 / (1 + n / 2 N),
     /// which is what it comes to of noise.
     pub own: Option<f64>,
 }
@@ -85,12 +87,21 @@ pub fn residual(table: &Table, bod: &Bod) -> Option<Residual> {
     sorted.sort_by(f64::total_cmp);
     let median = sorted[sorted.len() / 2];
     power.iter_mut().for_each(|p| *p = p.max(FLOOR * median));
-    // At 0 cycles there is nothing, and the last of an even number of frames is half a frequency.
-    let loud: Vec<usize> = (1..n_frames.div_ceil(2)).filter(|&k| power[k] > LOUD * median).collect();
+    let loud = loudest(&power, LOUD * median);
     (median > 0.0).then(|| Residual { own: own(&waves, &power, &loud), power, share: left / all })
 }
 
-/// See [`Residual::own`].
+/// Frequencies of more power than this, rising; of many those of the most.
+pub(super) fn loudest(power: &[f64], threshold: f64) -> Vec<usize> {
+    // At 0 cycles there is nothing. The last is counted: its neighbours may be loud only because it is.
+    let mut loud: Vec<usize> = (1..power.len()).filter(|&k| power[k] > threshold).collect();
+    loud.sort_by(|&a, &b| power[b].total_cmp(&power[a]));
+    loud.truncate(MOST_LOUD);
+    loud.sort_unstable();
+    loud
+}
+
+/// See [`Residual::own`]; `None`, too, where nothing is at these frequencies.
 pub(super) fn own(waves: &[Vec<Complex<f64>>], power: &[f64], loud: &[usize]) -> Option<f64> {
     let n = loud.len();
     if n < FEWEST_LOUD {
@@ -108,7 +119,7 @@ pub(super) fn own(waves: &[Vec<Complex<f64>>], power: &[f64], loud: &[usize]) ->
     let trace: f64 = (0..2 * n).map(|k| gram[k * (2 * n + 1)]).sum();
     let squares: f64 = gram.iter().map(|product| product * product).sum();
     let evenness = trace * trace / (2 * n) as f64 / squares;
-    Some(evenness * (1.0 + n as f64 / waves.len() as f64))
+    (squares > 0.0).then(|| evenness * (1.0 + n as f64 / waves.len() as f64))
 }
 
 /// The same tracks with the spectrum of a residual divided out.
