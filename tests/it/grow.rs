@@ -141,6 +141,49 @@ fn another_program_reads_the_same_motion() {
     }
 }
 
+/// What was never tracked is in no file: neither as frames that stand still, of which loops would be, nor as creeping.
+#[test]
+fn only_what_was_tracked_grows() {
+    let bench = Bench::new();
+    bench.synth("clip.y4m", 60, "");
+    bench.json("new p.honami clip.y4m");
+    bench.json("track p.honami --with klt --frames 15..40");
+    bench.json("cluster p.honami --groups 6");
+    let answer = bench.json("grow p.honami m.bvh j.csv --flat --leaves l.csv --truth clip.truth.csv");
+    assert_eq!(answer["frames"], serde_json::json!([15, 40]));
+    assert_eq!(answer["truth"]["frames"], answer["frames"]);
+    assert!(std::fs::read_to_string(bench.path("m.bvh")).unwrap().contains("\nFrames: 25\n"));
+    for name in ["j.csv", "l.csv"] {
+        let table = rows(&bench.path(name));
+        let frames: std::collections::BTreeSet<u32> =
+            table.iter().map(|row| row["frame"].parse().unwrap()).collect();
+        assert!(frames.into_iter().eq(15..40), "{name}");
+        let time = table[0]["time_s"].parse::<f64>().unwrap();
+        assert!((time - 15.0 / 25.0).abs() < 1e-9, "{name} begins at {time} s");
+    }
+    let frames_of = |answer: &serde_json::Value| [0, 1].map(|k| answer["frames"][k].as_u64().unwrap());
+    let [first, end] = frames_of(&bench.json("grow p.honami loop.csv --loop --flat"));
+    assert!(15 <= first && end < 40 && end - first >= 13, "{first}..{end}");
+    assert_eq!(rows(&bench.path("loop.csv"))[0]["frame"], first.to_string());
+    // A truth of fewer frames is compared as far as it goes.
+    let truth = std::fs::read_to_string(bench.path("clip.truth.csv")).unwrap();
+    let until = |end: u32| {
+        let is_kept = |line: &&str| {
+            line.split(',').nth(1).and_then(|word| word.parse().ok()).is_none_or(|frame: u32| frame < end)
+        };
+        truth.lines().filter(is_kept).map(|line| format!("{line}\n")).collect::<String>()
+    };
+    std::fs::write(bench.path("half.csv"), until(30)).unwrap();
+    std::fs::write(bench.path("none.csv"), until(10)).unwrap();
+    assert!(bench.text("grow p.honami --truth half.csv").contains("in frames 15..30 that both have"));
+    let none = bench.line("grow p.honami --truth none.csv");
+    assert!(
+        none.code == Some(1)
+            && none.stderr.contains("the truth has frames 0..10, and the skeleton moves through 15..40"),
+        "{none:?}"
+    );
+}
+
 #[test]
 fn what_cannot_grow_says_why() {
     let bench = Bench::tracked();
@@ -159,6 +202,9 @@ fn what_cannot_grow_says_why() {
         ("grow p.honami --leaves out.obj", 2, "leaves are written as .csv, not as out.obj"),
         ("grow p.honami --root 3", 2, "wanted a place as X,Y in pixels, got 3"),
         ("grow p.honami --root nan,1", 2, "wanted a place as X,Y"),
+        ("grow p.honami --root -5000,9e9", 1, "up to 160 pixels off it, not at -5000,9e9: --root takes X,Y"),
+        ("grow p.honami --root 1e300,1", 1, "not at 1e300,1: --root takes X,Y"),
+        ("grow p.honami --root 80,280.5", 1, "a root lies in the picture (160x120 pixels)"),
         ("grow p.honami --groups 0", 1, "groups, not 0"),
         ("grow p.honami --groups 100000", 1, "groups, not 100000"),
         ("grow p.honami --truth p.honami", 1, "p.honami"),

@@ -47,17 +47,17 @@ impl SkeletonFormat {
     }
 }
 
-/// Writes a skeleton, whole or not at all.
+/// Writes a skeleton, whole or not at all; tables number its frames from `first` on.
 ///
 /// # Errors
 /// [`TableError::File`] when the disk refuses, [`TableError::Precious`] when something stands there.
-pub fn write(path: &Path, format: SkeletonFormat, skeleton: &Skeleton) -> Result<(), TableError> {
+pub fn write(path: &Path, format: SkeletonFormat, skeleton: &Skeleton, first: u32) -> Result<(), TableError> {
     let text = match format {
         SkeletonFormat::Bvh => bvh::text(skeleton),
         SkeletonFormat::Swc => swc::text(skeleton),
         SkeletonFormat::Angles => {
             let mut table = Writer::create(path)?;
-            for row in angles::rows(skeleton) {
+            for row in angles::rows(skeleton, first) {
                 table.write(&row)?;
             }
             return table.finish();
@@ -75,14 +75,14 @@ pub fn at_rest(skeleton: &Skeleton) -> String {
     swc::text(skeleton)
 }
 
-/// Writes where leaves are in every frame; returns how many rows.
+/// Writes where leaves are in every frame, the first of which is numbered `first`; returns how many rows.
 ///
 /// # Errors
 /// As [`write()`].
-pub fn write_leaves(path: &Path, skeleton: &Skeleton) -> Result<usize, TableError> {
+pub fn write_leaves(path: &Path, skeleton: &Skeleton, first: u32) -> Result<usize, TableError> {
     let mut table = Writer::create(path)?;
     let mut n = 0;
-    for row in leaf_table::rows(skeleton) {
+    for row in leaf_table::rows(skeleton, first) {
         table.write(&row)?;
         n += 1;
     }

@@ -76,7 +76,9 @@ pub enum StructureError {
         y: f64,
     },
     /// Too few frames to come round in.
-    #[error("a loop takes {wanted} frames at least, the clip has {came}")]
+    #[error(
+        "a loop takes {wanted} frames at least, one after the other, in which anything is seen: there are {came}"
+    )]
     TooBrief {
         /// Frames that there are.
         came: u32,

@@ -10,27 +10,29 @@ use honami_model::skeleton::{Leaf, Skeleton};
 
 use crate::StructureError;
 
-/// Frames that a clip has at least.
+/// Frames that it may be of, at least.
 const MIN_FRAMES: u32 = 4;
-/// A loop is at least this share of the clip.
+/// A loop is at least this share of the frames that it may be of.
 const MIN_SHARE: f64 = 0.5;
 
-/// The skeleton over the frames of its best loop, and which those are: after the last comes the first, without a jump.
+/// The skeleton over the frames of its best loop, all of them `within` some, and which those are: after the last comes the
+/// first, without a jump. Times stay.
 ///
 /// Best is where directions of bones, weighted by length, and their changes from frame to frame are most alike at both
-/// ends; no shorter than half the clip.
+/// ends; no shorter than half of the frames that it is within.
 ///
 /// # Errors
 /// [`StructureError::TooBrief`] for less than 4 frames.
-pub fn repeat(skeleton: &Skeleton) -> Result<(Skeleton, Range<u32>), StructureError> {
-    let n_frames = skeleton.times().len();
+pub fn repeat(skeleton: &Skeleton, within: Range<u32>) -> Result<(Skeleton, Range<u32>), StructureError> {
+    let within = within.start..within.end.min(skeleton.times().len());
+    let n_frames = within.end.saturating_sub(within.start);
     if n_frames < MIN_FRAMES {
         return Err(StructureError::TooBrief { came: n_frames, wanted: MIN_FRAMES });
     }
     let least = ((f64::from(n_frames) * MIN_SHARE).ceil() as u32).max(2);
-    let ends = (0..n_frames).flat_map(|first| (first + least..n_frames).map(move |end| first..end));
+    let ends = within.clone().flat_map(|first| (first + least..within.end).map(move |end| first..end));
     let jumps = ends.map(|frames| (jump(skeleton, &frames), frames));
-    let (_, frames) = jumps.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, 0..n_frames - 1));
+    let (_, frames) = jumps.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, within.start..within.end - 1));
     let (first, last) = (skeleton.directions(frames.start), skeleton.directions(frames.end));
     let directions = frames.clone().flat_map(|frame| {
         let share = share(&frames, frame);
@@ -42,8 +44,7 @@ pub fn repeat(skeleton: &Skeleton) -> Result<(Skeleton, Range<u32>), StructureEr
         };
         skeleton.directions(frame).iter().zip(first).zip(last).map(corrected)
     });
-    let times = skeleton.times().as_slice();
-    let times = frames.clone().map(|frame| times[frame as usize] - times[frames.start as usize]).collect();
+    let times = skeleton.times().as_slice()[frames.start as usize..frames.end as usize].to_vec();
     let leaves = skeleton.leaves().iter().map(|leaf| carried(leaf, &frames)).collect();
     let joints = skeleton.joints().to_vec();
     let repeated = Skeleton::new(skeleton.root(), joints, directions.collect(), FrameTimes::new(times)?)?

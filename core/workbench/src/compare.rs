@@ -16,6 +16,7 @@ pub use keys::{KeyPaths, LeftOut, key_paths};
 pub use meter::Time;
 pub use points::{detect, points_of, read_points};
 pub use there_and_back::Back;
+pub(crate) use truth::check_inside;
 pub use truth::{Truth, check_truth, read_flow, read_truth, truth_of_flow};
 
 use crate::drive::{self, Plan, Rows, Seed};

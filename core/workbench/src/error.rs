@@ -1,5 +1,6 @@
 //! What can keep a job from its end.
 
+use std::ops::Range;
 use std::path::PathBuf;
 
 use honami_model::brief::Brief;
@@ -219,6 +220,32 @@ pub enum WorkbenchError {
         start: u32,
         /// One past the last.
         wanted: u32,
+    },
+    /// A truth of other frames than a skeleton moves through.
+    #[error(
+        "the truth has frames {}..{}, and the skeleton moves through {}..{}: no frame is of both, and those are what is compared",
+        truth.start, truth.end, grown.start, grown.end
+    )]
+    TruthApart {
+        /// Frames of the truth.
+        truth: Range<u32>,
+        /// Frames of the skeleton.
+        grown: Range<u32>,
+    },
+    /// A root far off the picture.
+    #[error(
+        "a root lies in the picture ({width}x{height} pixels) or up to {} pixels off it, not at {},{}: --root takes X,Y, right \
+         and down from its upper left corner", width.max(height), Brief(*x), Brief(*y)
+    )]
+    FarRoot {
+        /// Pixels, right.
+        x: f64,
+        /// Pixels, down.
+        y: f64,
+        /// Of the picture, pixels.
+        width: u32,
+        /// Of the picture, pixels.
+        height: u32,
     },
     /// A true position lies outside the picture.
     #[error(

@@ -67,7 +67,8 @@ pub struct Growth {
     pub n_collapsed: usize,
     /// Groups that have no joint, for they lay outside the envelope.
     pub n_left_out: usize,
-    /// Frames of the clip that it moves through.
+    /// Frames of the clip that it moves through: from the first to the last in which anything of a group is seen, or a loop
+    /// among them.
     pub frames: Range<u32>,
     /// Who has grown it, and how.
     pub provenance: Provenance,
@@ -80,8 +81,9 @@ pub struct Growth {
 /// Grows a skeleton by a structure builder; the project stays as it is.
 ///
 /// # Errors
-/// [`WorkbenchError::NoGroups`], [`WorkbenchError::Groups`], what the plugin says, [`WorkbenchError::Stopped`],
-/// [`WorkbenchError::Structure`] where nothing is seen and of what does not repeat, and what the project and the image of the envelope met.
+/// [`WorkbenchError::NoGroups`], [`WorkbenchError::Groups`], [`WorkbenchError::FarRoot`], what the plugin says,
+/// [`WorkbenchError::Stopped`], [`WorkbenchError::Structure`] where nothing is seen and of what does not repeat, and what the
+/// project and the image of the envelope met.
 pub fn grow(
     project: &Project,
     host: &Host,
@@ -91,6 +93,9 @@ pub fn grow(
 ) -> Result<Growth, WorkbenchError> {
     let gathered = gather(project, request.groups)?;
     let clip = &project.clip().clip;
+    if let Some(root) = request.root {
+        check_root(root, clip)?;
+    }
     let envelope = request.envelope.as_ref().map(|image| white(image, clip)).transpose()?;
     let begun = std::time::Instant::now();
     let tree = gathered.tree();
@@ -106,8 +111,13 @@ pub fn grow(
         Err(HostError::Cancelled { .. }) => return Err(WorkbenchError::Stopped),
         other => other?,
     };
-    let (skeleton, frames) =
-        if request.is_loop { repeat(&skeleton)? } else { (skeleton, 0..clip.times.len()) };
+    let (skeleton, frames) = match request.is_loop {
+        true => {
+            let (repeated, of) = repeat(&skeleton, gathered.unbroken.clone())?;
+            (repeated, gathered.frames.start + of.start..gathered.frames.start + of.end)
+        }
+        false => (skeleton, gathered.frames.clone()),
+    };
     let joints_of =
         |group: usize| bears.iter().filter(move |pair| pair.1 as usize == group).map(|pair| pair.0);
     let ends: Vec<usize> =
@@ -149,9 +159,20 @@ pub(crate) struct Usual {
 /// As [`grow`].
 pub(crate) fn usual(project: &Project) -> Result<Usual, WorkbenchError> {
     let gathered = gather(project, None)?;
-    let Gathered { paths, groups, .. } = &gathered;
-    let grown = diener::grow(paths, groups, &project.clip().clip.times, diener::Settings::default())?;
+    let Gathered { paths, groups, times, .. } = &gathered;
+    let grown = diener::grow(paths, groups, times, diener::Settings::default())?;
     Ok(Usual { skeleton: grown.skeleton, n_groups: gathered.members().len(), notes: gathered.notes })
+}
+
+/// Refuses a root that is farther from the picture than its larger side.
+fn check_root([x, y]: [f64; 2], clip: &Clip) -> Result<(), WorkbenchError> {
+    let (width, height) = (clip.width, clip.height);
+    let most = f64::from(width.max(height));
+    let is_near = |v: f64, size: u32| (-most..=f64::from(size) + most).contains(&v);
+    match is_near(x, width) && is_near(y, height) {
+        true => Ok(()),
+        false => Err(WorkbenchError::FarRoot { x, y, width, height }),
+    }
 }
 
 /// Where an image is white: bright by half at least.
@@ -179,10 +200,10 @@ pub fn draw(siblings: &Siblings, seed: u64, number: u32) -> Result<Skeleton, Wor
     Ok(siblings.draw(seed, number)?)
 }
 
-/// Writes where the leaves of a skeleton are; returns the number of rows.
+/// Writes where the leaves of a skeleton are, its frames numbered from `first` on; returns the number of rows.
 ///
 /// # Errors
 /// What the disk met.
-pub fn write_leaves(skeleton: &Skeleton, out: &File) -> Result<usize, WorkbenchError> {
-    Ok(honami_exchange::skeleton::write_leaves(out, skeleton)?)
+pub fn write_leaves(skeleton: &Skeleton, first: u32, out: &File) -> Result<usize, WorkbenchError> {
+    Ok(honami_exchange::skeleton::write_leaves(out, skeleton, first)?)
 }

@@ -43,16 +43,18 @@ pub(super) fn grow(args: &Grow, common: &Common) -> anyhow::Result<Answer> {
     let siblings = args.siblings.map(|n| grow::siblings(&growth, settings).map(|of| (n, of))).transpose()?;
     let carried = carried::carried(args, &growth)?;
     for (kind, out) in &files {
-        grow::write(&growth.skeleton, *kind, &carried, out)?;
+        grow::write(&growth.skeleton, growth.frames.start, *kind, &carried, out)?;
     }
-    let n_rows = args.leaves.as_ref().map(|out| grow::write_leaves(&growth.skeleton, out)).transpose()?;
+    let leaves = |out: &PathBuf| grow::write_leaves(&growth.skeleton, growth.frames.start, out);
+    let n_rows = args.leaves.as_ref().map(leaves).transpose()?;
     let mut answer = describe(args, &growth);
     carried::describe(args, &carried, &mut answer);
     if let Some(judged) = judged {
-        answer.text += &format!("\n{}", told(&judged));
+        answer.text += &format!("\n{}", told(&judged, &growth));
         answer.json["truth"] = json!({
             "groups": judged.n_groups,
             "tracks": judged.n_tracks,
+            "frames": [judged.frames.start, judged.frames.end],
             "median_px": judged.median_px,
             "still_px": judged.still_px,
             "motion_px": judged.motion_px,
@@ -78,7 +80,7 @@ pub(super) fn grow(args: &Grow, common: &Common) -> anyhow::Result<Answer> {
         answer.text += &format!("\n{}: leaves, {n_rows} rows", out.display());
     }
     if let Some((n, siblings)) = &siblings {
-        siblings::draw(*n, siblings, args, &files, &carried, &mut answer)?;
+        siblings::draw(*n, siblings, growth.frames.start, args, &files, &carried, &mut answer)?;
     }
     Ok(answer)
 }
@@ -176,9 +178,14 @@ fn describe(args: &Grow, growth: &Growth) -> Answer {
     Answer { json, text, done: true }
 }
 
-fn told(judged: &Judged) -> String {
+fn told(judged: &Judged, growth: &Growth) -> String {
+    let frames = &judged.frames;
+    let of = match *frames == growth.frames {
+        true => String::new(),
+        false => format!(", in frames {}..{} that both have", frames.start, frames.end),
+    };
     format!(
-        "beside the truth of {} tracks in {} groups: joints are {:.2} px off in the median; standing still they would be \
+        "beside the truth of {} tracks in {} groups{of}: joints are {:.2} px off in the median; standing still they would be \
          {:.2} px off, and their motion alone is {:.2} px off",
         judged.n_tracks, judged.n_groups, judged.median_px, judged.still_px, judged.motion_px
     )

@@ -16,7 +16,7 @@ pub struct AngleRow {
     pub parent: Option<u32>,
     /// Groups that it is the centre of, numbered from 1 as on the screen, with blanks between; empty for forks.
     pub groups: String,
-    /// Frame, from 0.
+    /// Frame of the clip.
     pub frame: u32,
     /// Its time, seconds.
     pub time_s: f64,
@@ -83,8 +83,8 @@ impl Row for AngleRow {
     }
 }
 
-/// Rows of all joints, frame by frame.
-pub(super) fn rows(skeleton: &Skeleton) -> impl Iterator<Item = AngleRow> + '_ {
+/// Rows of all joints, frame by frame, the first of which is numbered `first`.
+pub(super) fn rows(skeleton: &Skeleton, first: u32) -> impl Iterator<Item = AngleRow> + '_ {
     let times = skeleton.times();
     (0..times.len()).flat_map(move |frame| {
         let directions = skeleton.directions(frame);
@@ -97,7 +97,7 @@ pub(super) fn rows(skeleton: &Skeleton) -> impl Iterator<Item = AngleRow> + '_ {
                 joint: row as u32,
                 parent: joint.parent,
                 groups: groups.join(" "),
-                frame,
+                frame: first + frame,
                 time_s: times.get(frame).unwrap_or_default(),
                 length_px: parent.map(|_| joint.length),
                 angle_rad: parent.map(|parent| wrapped(angle(row) - angle(parent))),

@@ -12,7 +12,7 @@ pub struct LeafRow {
     pub track: TrackId,
     /// The joint that carries it.
     pub joint: u32,
-    /// Frame, from 0.
+    /// Frame of the clip.
     pub frame: u32,
     /// Its time, seconds.
     pub time_s: f64,
@@ -53,8 +53,8 @@ impl Row for LeafRow {
     }
 }
 
-/// Rows of all leaves, frame by frame.
-pub(super) fn rows(skeleton: &Skeleton) -> impl Iterator<Item = LeafRow> + '_ {
+/// Rows of all leaves, frame by frame, the first of which is numbered `first`.
+pub(super) fn rows(skeleton: &Skeleton, first: u32) -> impl Iterator<Item = LeafRow> + '_ {
     let times = skeleton.times();
     (0..times.len()).flat_map(move |frame| {
         let places = skeleton.places(skeleton.directions(frame));
@@ -65,7 +65,7 @@ pub(super) fn rows(skeleton: &Skeleton) -> impl Iterator<Item = LeafRow> + '_ {
             LeafRow {
                 track: leaf.track,
                 joint: leaf.joint,
-                frame,
+                frame: first + frame,
                 time_s: times.get(frame).unwrap_or_default(),
                 x_px,
                 y_px,

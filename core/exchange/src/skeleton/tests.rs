@@ -112,7 +112,7 @@ fn read(text: &str) -> Vec<BTreeMap<usize, [f64; 3]>> {
 fn written(format: SkeletonFormat, skeleton: &Skeleton) -> String {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("out");
-    write(&path, format, skeleton).unwrap();
+    write(&path, format, skeleton, 0).unwrap();
     std::fs::read_to_string(path).unwrap()
 }
 
@@ -165,7 +165,7 @@ fn angles_are_those_between_bones_in_the_picture() {
     let skeleton = skeleton(&[(0, 10.0), (1, 20.0), (2, 5.0)], &up_then_right, 1);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("angles.csv");
-    write(&path, SkeletonFormat::of(&path).unwrap(), &skeleton).unwrap();
+    write(&path, SkeletonFormat::of(&path).unwrap(), &skeleton, 0).unwrap();
     let rows: Vec<AngleRow> = crate::read(&path).unwrap().collect::<Result<_, _>>().unwrap();
     assert_eq!(rows.len(), 4);
     assert_eq!((rows[0].parent, rows[0].length_px, rows[0].angle_rad), (None, None, None));
@@ -181,7 +181,7 @@ fn angles_are_those_between_bones_in_the_picture() {
     assert!((rows[2].depth_px - 20.0 * 0.2_f64.sin()).abs() < 1e-9);
     assert_eq!(rows[3].groups, "3");
     let leaves = folder.path().join("leaves.csv");
-    assert_eq!(write_leaves(&leaves, &skeleton).unwrap(), 1);
+    assert_eq!(write_leaves(&leaves, &skeleton, 0).unwrap(), 1);
     let leaf = crate::read::<LeafRow>(&leaves).unwrap().next().unwrap().unwrap();
     assert_eq!(
         (leaf.track, leaf.joint, leaf.x_px, leaf.y_px, leaf.depth_px),

@@ -5,6 +5,9 @@ use honami_model::track::TrackId;
 
 use super::*;
 
+/// All frames that there are.
+const WHOLE: Range<u32> = 0..u32::MAX;
+
 /// Two bones, the second as far from upright as `angle` says.
 fn swinging(n_frames: u32, angle: impl Fn(f64) -> f64) -> Skeleton {
     let bone = |parent| Joint { parent: Some(parent), length: 50.0, ..Joint::default() };
@@ -38,21 +41,21 @@ fn steps(skeleton: &Skeleton) -> Vec<f64> {
 #[test]
 fn a_motion_that_comes_back_is_cut_where_it_does() {
     let skeleton = swinging(100, |t| 0.4 * (t * std::f64::consts::TAU / 40.0).sin());
-    let (looped, frames) = repeat(&skeleton).unwrap();
+    let (looped, frames) = repeat(&skeleton, WHOLE).unwrap();
     // Half periods differ in where it goes on to.
     assert_eq!((frames.end - frames.start) % 40, 0, "{frames:?}");
     for (k, frame) in frames.clone().enumerate() {
         let far = looped.directions(k as u32)[2][0] - skeleton.directions(frame)[2][0];
         assert!(far.abs() < 1e-9, "nothing has to be corrected: {far} in frame {frame}");
     }
-    assert_eq!(looped.times().get(0), Some(0.0));
+    assert_eq!(looped.times().get(0), skeleton.times().get(frames.start), "times are those of the clip");
     assert_eq!(looped.leaves()[0].offsets.len(), frames.len());
 }
 
 #[test]
 fn a_motion_that_does_not_come_back_has_no_jump_either() {
     let skeleton = swinging(90, |t| 0.3 * (t * 0.31).sin() + 0.2 * (t * 0.173 + 1.0).sin() + 0.002 * t);
-    let (looped, frames) = repeat(&skeleton).unwrap();
+    let (looped, frames) = repeat(&skeleton, WHOLE).unwrap();
     assert!(frames.len() >= 45);
     let steps = steps(&looped);
     let (last, others) = steps.split_last().unwrap();
@@ -64,8 +67,20 @@ fn a_motion_that_does_not_come_back_has_no_jump_either() {
 
 #[test]
 fn a_loop_takes_four_frames() {
-    let error = repeat(&swinging(3, |t| t)).unwrap_err();
+    let error = repeat(&swinging(3, |t| t), WHOLE).unwrap_err();
     assert_eq!(error, StructureError::TooBrief { came: 3, wanted: 4 });
-    let (looped, frames) = repeat(&swinging(4, |_| 0.1)).unwrap();
+    let (looped, frames) = repeat(&swinging(4, |_| 0.1), WHOLE).unwrap();
     assert_eq!(looped.times().len() as usize, frames.len());
+}
+
+/// What stands still repeats best, and is no part of what may be.
+#[test]
+fn a_loop_is_of_the_frames_that_it_may_be_of() {
+    let skeleton = swinging(300, |t| if t < 100.0 { 0.3 * (t * 0.31).sin() + 0.002 * t } else { 0.1 });
+    assert!(repeat(&skeleton, WHOLE).unwrap().1.start >= 100);
+    let (looped, frames) = repeat(&skeleton, 20..100).unwrap();
+    assert!(frames.start >= 20 && frames.end < 100 && frames.len() >= 40, "{frames:?}");
+    assert!(steps(&looped).iter().any(|step| *step > 1.0));
+    let error = repeat(&skeleton, 50..53).unwrap_err();
+    assert_eq!(error, StructureError::TooBrief { came: 3, wanted: 4 });
 }

@@ -60,6 +60,14 @@ pub fn check_truth(truth: &Truth, clip: &Clip, frames: &Range<u32>) -> Result<()
     if end < frames.end {
         return Err(WorkbenchError::TruthEnd { end, start: frames.start, wanted: frames.end });
     }
+    check_inside(truth, clip)
+}
+
+/// Refuses a truth that shows a point where the clip has no picture.
+///
+/// # Errors
+/// [`WorkbenchError::TruthPoint`] for the first such position.
+pub(crate) fn check_inside(truth: &Truth, clip: &Clip) -> Result<(), WorkbenchError> {
     let (width, height) = (clip.width, clip.height);
     let inside = |v: f64, size: u32| (-0.5 - MARGIN_PX..f64::from(size) - 0.5 + MARGIN_PX).contains(&v);
     for (track, path) in truth {

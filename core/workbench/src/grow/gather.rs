@@ -1,6 +1,12 @@
 //! What a skeleton grows from: the shown tracks and the tree of their groups, as a plugin is given them.
 
+#[cfg(test)]
+mod tests;
+
+use std::ops::Range;
+
 use honami_host::{GroupTree, Tracks};
+use honami_model::clip::FrameTimes;
 use honami_model::track::{Span, TrackId};
 use honami_store::Project;
 use honami_structure::StructureError;
@@ -15,7 +21,13 @@ use crate::track::threads;
 pub(super) struct Gathered {
     /// As a plugin is given them.
     pub(super) tracks: Tracks,
-    /// Where each is seen.
+    /// From the first to the last frame of the clip in which any feature of a group is seen.
+    pub(super) frames: Range<u32>,
+    /// When these were.
+    pub(super) times: FrameTimes,
+    /// The longest run of them in which something is seen in every one, from their first on: loops are of these.
+    pub(super) unbroken: Range<u32>,
+    /// Where each is seen, in these frames.
     pub(super) paths: Vec<Path>,
     /// The tree of their groups, as the hierarchy is cut and as hands have changed it.
     pub(super) groups: Vec<Group>,
@@ -36,15 +48,23 @@ pub(super) fn gather(project: &Project, groups: Option<u32>) -> Result<Gathered,
         return Err(WorkbenchError::Groups { groups: k, n_tracks });
     }
     let clip = &project.clip().clip;
-    let mut tracks = Tracks::new(clip.width, clip.height, 0, clip.times.as_slice().to_vec());
+    let mut spans = Vec::with_capacity(n_tracks);
+    for &track in &clustering.tracks {
+        spans.push((track, project.shown(track)?));
+    }
+    let is_anything = seen_in(spans.iter().filter_map(|(_, span)| span.as_deref()), clip.times.len());
+    let frames = whole(&is_anything).ok_or(StructureError::NothingSeen)?;
+    let within = &is_anything[frames.start as usize..frames.end as usize];
+    let times = clip.times.as_slice()[frames.start as usize..frames.end as usize].to_vec();
+    let mut tracks = Tracks::new(clip.width, clip.height, i64::from(frames.start), times.clone());
     (tracks.max_threads, tracks.seed) = (threads(), SEED);
     let mut paths = Vec::with_capacity(n_tracks);
-    for &track in &clustering.tracks {
-        let span = project.shown(track)?;
+    for (track, span) in &spans {
         let span = span.as_deref();
-        let samples = span.iter().flat_map(|span| &span.samples).map(|s| (s.x, s.y, s.status));
-        tracks.push(track.0, span.map_or(0, |span| i64::from(span.first_frame)), samples);
-        paths.push(path(track, span, clip.times.len()));
+        let kept = span.map_or(frames.start..frames.start, |span| cut(&span.frames(), &frames));
+        let samples = kept.clone().filter_map(|frame| span?.get(frame)).map(|s| (s.x, s.y, s.status));
+        tracks.push(track.0, i64::from(kept.start), samples);
+        paths.push(path(*track, span, frames.clone()));
     }
     let mut notes = Vec::new();
     if let Some(stale) = project.is_stale(shown.id)? {
@@ -55,12 +75,63 @@ pub(super) fn gather(project: &Project, groups: Option<u32>) -> Result<Gathered,
     if n_lost > 0 {
         notes.push(format!("{n_lost} of {n_tracks} tracks are seen in no frame now and are left out"));
     }
+    notes.extend(blind(within, frames.start));
     let shown = dendrogram.groups(k, project.document().held_groups(shown.id));
     let groups = tree_of(dendrogram, &shown, &is_seen);
     if groups.is_empty() {
         return Err(StructureError::NothingSeen.into());
     }
-    Ok(Gathered { tracks, paths, groups, notes })
+    let (unbroken, times) = (unbroken(within), FrameTimes::new(times).map_err(StructureError::from)?);
+    Ok(Gathered { tracks, frames, times, unbroken, paths, groups, notes })
+}
+
+/// Whether anything is seen, a frame of the clip each.
+fn seen_in<'a>(spans: impl Iterator<Item = &'a Span>, n_frames: u32) -> Vec<bool> {
+    let mut is_seen = vec![false; n_frames as usize];
+    for (frame, sample) in spans.flat_map(|span| span.frames().zip(&span.samples)) {
+        if let Some(is_seen) = is_seen.get_mut(frame as usize) {
+            *is_seen |= sample.status.is_seen();
+        }
+    }
+    is_seen
+}
+
+/// From the first to the last that is true; `None` where none is.
+fn whole(is_seen: &[bool]) -> Option<Range<u32>> {
+    let first = is_seen.iter().position(|is_seen| *is_seen)?;
+    let last = is_seen.iter().rposition(|is_seen| *is_seen)?;
+    Some(first as u32..last as u32 + 1)
+}
+
+/// The longest run of what is true, the first of those as long.
+fn unbroken(is_seen: &[bool]) -> Range<u32> {
+    let (mut longest, mut first) = (0..0, 0);
+    for (frame, is_seen) in (1..).zip(is_seen) {
+        if !is_seen {
+            first = frame;
+        } else if frame - first > longest.end - longest.start {
+            longest = first..frame;
+        }
+    }
+    longest
+}
+
+/// What is to be said of frames in which nothing is seen, the first of which is numbered so.
+fn blind(is_seen: &[bool], first: u32) -> Option<String> {
+    let n = is_seen.iter().filter(|is_seen| !**is_seen).count();
+    let begin = is_seen.iter().position(|is_seen| !is_seen)?;
+    let len = is_seen[begin..].iter().take_while(|is_seen| !**is_seen).count();
+    let gap = format!("{}..{}", first + begin as u32, first + (begin + len) as u32);
+    let more = if n > len { format!(" and in {} more", n - len) } else { String::new() };
+    Some(format!(
+        "nothing of any group is seen in frames {gap}{more}: groups go straight there from the frame before to the frame after"
+    ))
+}
+
+/// The part of some frames that is of others, too; empty and among those where there is none.
+fn cut(some: &Range<u32>, others: &Range<u32>) -> Range<u32> {
+    let inside = |frame: u32| frame.clamp(others.start, others.end);
+    inside(some.start)..inside(some.end)
 }
 
 impl Gathered {
@@ -80,11 +151,11 @@ impl Gathered {
     }
 }
 
-/// Where a track is seen.
-pub(super) fn path(track: TrackId, span: Option<&Span>, n_frames: u32) -> Path {
+/// Where a track is seen in these frames.
+pub(super) fn path(track: TrackId, span: Option<&Span>, frames: Range<u32>) -> Path {
     let at = |frame: u32| {
         let sample = span?.get(frame).filter(|sample| sample.status.is_seen())?;
         Some([f64::from(sample.x), f64::from(sample.y)])
     };
-    Path { track, at: (0..n_frames).map(at).collect() }
+    Path { track, at: frames.map(at).collect() }
 }

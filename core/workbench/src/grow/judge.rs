@@ -1,6 +1,7 @@
 //! A skeleton beside the truth of a generated clip: how far its tips are from where their groups truly are.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 use std::path::Path;
 
 use honami_model::skeleton::seen;
@@ -11,19 +12,21 @@ use honami_structure::follow::follow;
 
 use super::Growth;
 use super::gather::path;
-use crate::compare::{Truth, check_truth, read_truth};
+use crate::compare::{Truth, check_inside, read_truth};
 use crate::error::WorkbenchError;
 
 /// A track follows the true point that is this near when it begins, pixels.
 const NEAR: f64 = 8.0;
 
 /// How far a skeleton is from the truth.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Judged {
     /// Groups with a track that follows a true point.
     pub n_groups: usize,
     /// Such tracks.
     pub n_tracks: usize,
+    /// Frames that are compared: those that the truth and the skeleton both have.
+    pub frames: Range<u32>,
     /// Median over groups and frames of the distance in the picture from the joint of a group to where its true points say
     /// that it is, pixels.
     pub median_px: f64,
@@ -40,11 +43,12 @@ type Told = (u32, Vec<[f64; 2]>);
 /// Holds a skeleton against a table of true positions, as `synth` writes it.
 ///
 /// # Errors
-/// [`WorkbenchError::NoTruth`] where no track begins near a true point, and what is wrong with the table.
+/// [`WorkbenchError::TruthApart`] where no frame is of both; [`WorkbenchError::NoTruth`] where no track begins near a true point, and what is wrong with the table.
 pub fn judge(growth: &Growth, project: &Project, truth: &Path) -> Result<Judged, WorkbenchError> {
     let clip = &project.clip().clip;
     let truth = read_truth(truth, clip.n_frames())?;
-    check_truth(&truth, clip, &growth.frames)?;
+    check_inside(&truth, clip)?;
+    let compared = both(&truth, &growth.frames)?;
     let mut told = BTreeMap::new();
     for tracks in &growth.groups {
         for (track, place) in places(project, tracks)? {
@@ -55,6 +59,7 @@ pub fn judge(growth: &Growth, project: &Project, truth: &Path) -> Result<Judged,
     }
     let frames = (0..).zip(growth.frames.clone());
     let poses: Vec<(u32, Vec<[f64; 2]>)> = frames
+        .filter(|(_, frame)| compared.contains(frame))
         .map(|(row, frame)| {
             let places = growth.skeleton.places(growth.skeleton.directions(row));
             (frame, places.into_iter().map(seen).collect())
@@ -81,7 +86,19 @@ pub fn judge(growth: &Growth, project: &Project, truth: &Path) -> Result<Judged,
     }
     let median = |values| median(values).ok_or(WorkbenchError::NoTruth);
     let (median_px, still_px, motion_px) = (median(moving)?, median(still)?, median(motion)?);
-    Ok(Judged { n_groups, n_tracks: told.len(), median_px, still_px, motion_px })
+    Ok(Judged { n_groups, n_tracks: told.len(), frames: compared, median_px, still_px, motion_px })
+}
+
+/// The frames that the truth and a skeleton both have.
+fn both(truth: &Truth, grown: &Range<u32>) -> Result<Range<u32>, WorkbenchError> {
+    let first = truth.values().map(|path| path.first_frame).min().unwrap_or(0);
+    let ends = truth.values().map(|path| path.first_frame.saturating_add(path.positions.len() as u32));
+    let end = ends.max().unwrap_or(0);
+    let compared = first.max(grown.start)..end.min(grown.end);
+    if compared.is_empty() {
+        return Err(WorkbenchError::TruthApart { truth: first..end, grown: grown.clone() });
+    }
+    Ok(compared)
 }
 
 /// From the centre of a group to where each of its tracks usually is, pixels (right, down).
@@ -89,7 +106,7 @@ fn places(project: &Project, tracks: &[TrackId]) -> Result<Vec<(TrackId, [f64; 2
     let n_frames = project.clip().clip.times.len();
     let mut paths = Vec::with_capacity(tracks.len());
     for &track in tracks {
-        paths.push(path(track, project.shown(track)?.as_deref(), n_frames));
+        paths.push(path(track, project.shown(track)?.as_deref(), 0..n_frames));
     }
     let followed = follow(&paths.iter().collect::<Vec<_>>());
     let places = followed.into_iter().flat_map(|followed| followed.places);

@@ -80,13 +80,19 @@ fn numbered(path: &Path, frame: u32) -> Option<PathBuf> {
     (!after.contains('%')).then(|| path.with_file_name(format!("{before}{frame:0width$}{after}")))
 }
 
-/// Writes a skeleton, or what it carries, which may be bound to another of the same bones.
+/// Writes a skeleton, or what it carries, which may be bound to another of the same bones; tables number frames from `first` on.
 ///
 /// # Errors
 /// What the disk met; [`WorkbenchError::Rig`]; [`WorkbenchError::NoVertices`].
-pub fn write(skeleton: &Skeleton, out: Out, carried: &Carried, path: &Path) -> Result<(), WorkbenchError> {
+pub fn write(
+    skeleton: &Skeleton,
+    first: u32,
+    out: Out,
+    carried: &Carried,
+    path: &Path,
+) -> Result<(), WorkbenchError> {
     if let Out::Skeleton(format) = out {
-        return Ok(honami_exchange::skeleton::write(path, format, skeleton)?);
+        return Ok(honami_exchange::skeleton::write(path, format, skeleton, first)?);
     }
     let own;
     let bound = match &carried.bound {

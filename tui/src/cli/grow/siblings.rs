@@ -9,10 +9,12 @@ use serde_json::json;
 use super::super::Answer;
 use super::super::args::grow::Grow;
 
-/// Draws `n` siblings, and writes each beside every file of the skeleton; tells of it in the answer.
+/// Draws `n` siblings, and writes each beside every file of the skeleton, frames numbered from `first` on; tells of it in the
+/// answer.
 pub(super) fn draw(
     n: u32,
     siblings: &Siblings,
+    first: u32,
     args: &Grow,
     files: &[(Out, &PathBuf)],
     carried: &Carried,
@@ -25,12 +27,12 @@ pub(super) fn draw(
         drawing += begun.elapsed();
         for (kind, out) in files {
             let out = numbered(out, number);
-            grow::write(&sibling, *kind, carried, &out)?;
+            grow::write(&sibling, first, *kind, carried, &out)?;
             written.push(out);
         }
         if let Some(leaves) = &args.leaves {
             let out = numbered(leaves, number);
-            grow::write_leaves(&sibling, &out)?;
+            grow::write_leaves(&sibling, first, &out)?;
             written.push(out);
         }
     }
