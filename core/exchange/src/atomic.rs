@@ -30,13 +30,7 @@ impl AtomicFile {
     /// library stands there, or what is no file, such as a device, [`TableError::Unlike`] for any other file that would not
     /// have been written so: nobody means to lose it.
     pub fn create(path: &Path, is_alike: impl FnOnce(&[u8]) -> bool) -> Result<Self, TableError> {
-        let head = head(path);
-        if let Some(what) = precious(path, &head) {
-            return Err(TableError::Precious { path: path.into(), what });
-        }
-        if !(head.is_empty() || is_alike(&head)) {
-            return Err(TableError::Unlike { path: path.into() });
-        }
+        Self::check(path, is_alike)?;
         let place = std::fs::canonicalize(path).unwrap_or_else(|_none| path.to_owned());
         let folder = place.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let mut builder = tempfile::Builder::new();
@@ -59,6 +53,21 @@ impl AtomicFile {
         let (file, unfinished) = begun.map_err(plain)?;
         let file = BufWriter::with_capacity(1 << 16, file);
         Ok(Self { path: path.into(), place: place.clone(), file, unfinished })
+    }
+
+    /// Whether what stands at `path` would give way, if anything does.
+    ///
+    /// # Errors
+    /// [`TableError::Precious`] and [`TableError::Unlike`], as [`create`](Self::create).
+    pub fn check(path: &Path, is_alike: impl FnOnce(&[u8]) -> bool) -> Result<(), TableError> {
+        let head = head(path);
+        if let Some(what) = precious(path, &head) {
+            return Err(TableError::Precious { path: path.into(), what });
+        }
+        if !(head.is_empty() || is_alike(&head)) {
+            return Err(TableError::Unlike { path: path.into() });
+        }
+        Ok(())
     }
 
     /// The name it will have.

@@ -85,6 +85,15 @@ pub struct Frame<'a> {
     pub colours: &'a [[u8; 3]],
 }
 
+/// Whether what stands where a frame is to be written would give way, if anything does.
+///
+/// # Errors
+/// [`TableError::Precious`], [`TableError::Unlike`].
+pub fn check_frame(path: &Path, format: MeshFormat) -> Result<(), TableError> {
+    let begin = if format == MeshFormat::Obj { obj::BEGIN } else { ply::BEGIN };
+    AtomicFile::check(path, |head| head.starts_with(begin.as_bytes()))
+}
+
 /// Writes a frame, whole or not at all.
 ///
 /// # Errors

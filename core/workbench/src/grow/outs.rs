@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use honami_exchange::mesh::{Frame, MeshFormat, Up, write_frame};
+use honami_exchange::mesh::{Frame, MeshFormat, Up, check_frame, write_frame};
 use honami_exchange::plant::PointCache;
 use honami_exchange::skeleton::{SkeletonFormat, rigged, usda, write_usda};
 use honami_model::skeleton::Skeleton;
@@ -123,6 +123,10 @@ pub fn write(
                     path: folder.into(),
                 };
                 fs::create_dir(folder).map_err(failed)?;
+            }
+            // All or none: half of a motion is mixed with what stood there.
+            for name in out.names(path, motion.times().len()) {
+                check_frame(&name, format)?;
             }
             for frame in 0..motion.times().len() {
                 let Some(path) = numbered(path, frame) else { continue };

@@ -3,6 +3,7 @@
 use honami_model::clip::FrameTimes;
 use honami_model::skeleton::Joint;
 
+use super::super::{Blend, Carried, MeshFormat, Out, write};
 use super::*;
 
 /// A stem, and two branches from its end, the first of which bears two more; rows are not in the order of branches.
@@ -61,4 +62,22 @@ fn more_bones_than_bindings_count_are_refused() {
         let error = body(&broom(n)).unwrap_err().to_string();
         assert!(error.contains(&format!("65535 joints at most, not {n}")), "{error}");
     }
+}
+
+/// A file of others that one frame would replace keeps all of them from being written.
+#[test]
+fn frames_are_written_all_or_none() {
+    let folder = tempfile::tempdir().unwrap();
+    let times = FrameTimes::constant(3, 25.0).unwrap();
+    let joints = vec![Joint::default(), Joint { parent: Some(0), length: 1.0, ..Joint::default() }];
+    let skeleton = Skeleton::new([0.0; 3], joints, vec![[0.0, 0.0, 1.0]; 6], times).unwrap();
+    let carried = Carried { bound: None, unit: 1.0, blend: Blend::Linear, are_weights_shown: false };
+    let path = folder.path().join("%d.ply");
+    std::fs::write(folder.path().join("2.ply"), "ply\nmine\n").unwrap();
+    let kind = Out::Frames(MeshFormat::Ply);
+    let error = write(&skeleton, kind, &carried, &path).unwrap_err().to_string();
+    assert!(error.contains("2.ply") && !folder.path().join("0.ply").exists(), "{error}");
+    std::fs::remove_file(folder.path().join("2.ply")).unwrap();
+    write(&skeleton, kind, &carried, &path).unwrap();
+    assert!(folder.path().join("2.ply").exists());
 }
