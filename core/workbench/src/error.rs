@@ -568,6 +568,14 @@ pub enum WorkbenchError {
     /// A skeleton stands nowhere.
     #[error(transparent)]
     Skeleton(#[from] honami_model::skeleton::SkeletonError),
+    /// A skeleton as large as asked for is none.
+    #[error("with {} m a pixel, lengths in metres: {source}; is it the unit?", Brief(*unit))]
+    Unit {
+        /// Metres of a pixel.
+        unit: f64,
+        /// What is too large.
+        source: honami_model::skeleton::SkeletonError,
+    },
     /// Bones that no tube goes along.
     #[error(transparent)]
     Wood(#[from] honami_model::plant::PlantError),

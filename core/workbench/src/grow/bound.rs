@@ -71,9 +71,10 @@ impl Bound {
     /// Tubes along the bones of a skeleton, its root in the origin, a pixel so many metres.
     ///
     /// # Errors
-    /// [`WorkbenchError::Skeleton`], [`WorkbenchError::Beams`].
+    /// [`WorkbenchError::Unit`], [`WorkbenchError::Beams`].
     pub fn own(skeleton: &Skeleton, unit: f64) -> Result<Self, WorkbenchError> {
-        let rest = skeleton.standing([0.0; 3], unit, 0.0)?;
+        let standing = skeleton.standing([0.0; 3], unit, 0.0);
+        let rest = standing.map_err(|source| WorkbenchError::Unit { unit, source })?;
         let (mesh, bindings) = body(&rest)?;
         let Read { mesh, up, document, pieces, is_one, notes, .. } = made(mesh, Vec::new())?;
         let (foot, turn_rad) = ([0.0; 3], 0.0);
