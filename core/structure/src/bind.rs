@@ -16,15 +16,16 @@ const FARTHEST: f64 = 1e9;
 /// So much of a plant's length can be a pixel.
 const UNITS: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
 
-/// Where a mesh stands: the mean of its lowest vertices, the lowest hundredth of its height.
+/// Where a mesh stands: the mean of its lowest vertices, the lowest hundredth of its height. Vertices that no triangle uses
+/// are nowhere to be seen, and do not count.
 ///
 /// # Errors
 /// [`StructureError::NoMesh`] without triangles, [`StructureError::Vertex`].
 pub fn foot(mesh: &Mesh) -> Result<[f64; 3], StructureError> {
     check(mesh)?;
-    let heights = || mesh.positions.iter().map(|place| place[2]);
-    let (low, high) = (heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max));
-    let lowest = || mesh.positions.iter().filter(|place| place[2] <= low + LOW * (high - low));
+    let used = used(mesh);
+    let [low, high] = reach(&used, 2);
+    let lowest = || used.iter().filter(|place| place[2] <= low + LOW * (high - low));
     let n = lowest().count() as f64;
     let mean = |axis: usize| lowest().map(|place| place[axis]).sum::<f64>() / n;
     Ok([mean(0), mean(1), low])
@@ -47,7 +48,7 @@ pub fn fitted(
     let unit = match unit {
         Some(unit) => unit,
         None => {
-            let of_mesh = mesh.positions.iter().map(|place| place[2] - foot[2]).fold(0.0, f64::max);
+            let of_mesh = used(mesh).iter().map(|place| place[2] - foot[2]).fold(0.0, f64::max);
             let of_skeleton = height(skeleton);
             if of_mesh <= 0.0 || of_skeleton <= 0.0 {
                 return Err(StructureError::NoHeight { of_mesh, of_skeleton });
@@ -59,6 +60,32 @@ pub fn fitted(
         return Err(StructureError::Unit(unit));
     }
     Ok(skeleton.standing(foot, unit, turn_rad)?)
+}
+
+/// How high a mesh is, and how wide where it is wider, by the vertices that its triangles use; lengths of the mesh.
+#[must_use]
+pub fn size(mesh: &Mesh) -> [f64; 2] {
+    let used = used(mesh);
+    let [x, y, z] = [0, 1, 2].map(|axis| reach(&used, axis)).map(|[low, high]| (high - low).max(0.0));
+    [z, x.max(y)]
+}
+
+/// The lowest and the highest along an axis.
+fn reach(places: &[[f64; 3]], axis: usize) -> [f64; 2] {
+    let along = || places.iter().map(|place| place[axis]);
+    [along().fold(f64::INFINITY, f64::min), along().fold(f64::NEG_INFINITY, f64::max)]
+}
+
+/// The vertices that triangles use, each once.
+fn used(mesh: &Mesh) -> Vec<[f64; 3]> {
+    let mut is_used = vec![false; mesh.positions.len()];
+    for &vertex in mesh.triangles.iter().flatten() {
+        if let Some(is_used) = is_used.get_mut(vertex as usize) {
+            *is_used = true;
+        }
+    }
+    let used = mesh.positions.iter().zip(is_used).filter(|(_, is_used)| *is_used);
+    used.map(|(place, _)| *place).collect()
 }
 
 /// From the root to the highest joint at rest, or leaf in the mean over the frames.

@@ -24,8 +24,10 @@ fn chain(n: u32) -> Skeleton {
     skeleton([0.0; 3], &(0..n).map(|parent| (parent, 1.0, UP)).collect::<Vec<_>>())
 }
 
+/// A triangle for every vertex.
 fn mesh(positions: &[[f64; 3]]) -> Mesh {
-    Mesh { positions: positions.to_vec(), triangles: vec![[0, 0, 0]], ..Mesh::default() }
+    let triangles = (0..positions.len() as u32).map(|row| [row; 3]).collect();
+    Mesh { positions: positions.to_vec(), triangles, ..Mesh::default() }
 }
 
 /// The weight of every bone of so many.
@@ -168,4 +170,21 @@ proptest! {
             prop_assert!((found - wanted / total).abs() < 1e-2, "{} {}", found, wanted / total);
         }
     }
+}
+
+/// A scan has points that are of no surface: they say neither where it stands nor how large it is.
+#[test]
+fn vertices_of_no_triangle_do_not_count() {
+    let of_surface = [[0.0, 0.0, 0.0], [1.0, 0.0, 4.0], [-2.0, 0.5, 2.0]];
+    let clean = mesh(&of_surface);
+    let mut scan = clean.clone();
+    scan.positions.extend([[900.0, 0.0, 500.0], [0.0, -70.0, -800.0]]);
+    near(&size(&clean), &[4.0, 3.0]);
+    near(&size(&scan), &size(&clean));
+    let [foot, of_scan] = [foot(&clean).unwrap(), foot(&scan).unwrap()];
+    near(&foot, &of_scan);
+    let chain = chain(2);
+    let fit = |mesh: &Mesh| fitted(&chain, mesh, foot, None, 0.0).unwrap();
+    assert_eq!(fit(&scan), fit(&clean));
+    assert!((fit(&scan).joints()[1].length - 2.0).abs() < 1e-12, "two bones of 1 are as high as 4");
 }

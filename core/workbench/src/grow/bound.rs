@@ -18,6 +18,8 @@ use crate::plant::{self, Wish};
 
 /// Metres of a pixel where a skeleton carries tubes of its own, unless told otherwise.
 pub const UNIT: f64 = 0.001;
+/// A plant is at most so many times as wide as it is high, or it lies.
+const WIDEST: f64 = 4.0;
 /// Files are read whole: larger ones are refused, bytes.
 const MOST_BYTES: u64 = 1 << 31;
 
@@ -106,6 +108,22 @@ impl Bound {
     #[must_use]
     pub fn sizes(&self) -> [usize; 2] {
         [self.mesh.positions.len(), self.mesh.triangles.len()]
+    }
+
+    /// How high what is carried is, and how wide where it is wider, in its lengths.
+    #[must_use]
+    pub fn extent(&self) -> [f64; 2] {
+        bind::size(&self.mesh)
+    }
+
+    /// What is to be said of a file that `--up` may be typed of, and that is much wider than high as it was read.
+    #[must_use]
+    pub fn lying(&self) -> Option<String> {
+        let ([height, width], up) = (self.extent(), self.up.filter(|_| self.is_one)?);
+        let (taken, other) = if up == Up::Y { ("y", "z") } else { ("z", "y") };
+        (width > WIDEST * height).then(|| {
+            format!("it is more than {WIDEST} times as wide as it is high, with {taken} taken as up: --up {other} if it lies so")
+        })
     }
 
     /// A skeleton of the same bones where this one's is.

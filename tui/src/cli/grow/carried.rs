@@ -78,18 +78,24 @@ pub(super) fn describe(args: &Grow, carried: &Carried, answer: &mut Answer) {
     let (Some(bound), Some(plant)) = (&carried.bound, &args.onto) else { return };
     let [n_vertices, n_triangles] = bound.sizes();
     let unit = bound.unit();
+    let [height, width] = bound.extent();
     answer.text += &format!(
-        "\n{}: {n_vertices} vertices, {n_triangles} triangles, a pixel being {} of its lengths",
+        "\n{}: {n_vertices} vertices, {n_triangles} triangles, {} high and {} wide, a pixel being {} of its lengths",
         plant.display(),
+        Brief(rounded(height)),
+        Brief(rounded(width)),
         Brief(rounded(unit))
     );
-    bound.notes.iter().for_each(|note| answer.text += &format!("\nnote: {}: {note}", plant.display()));
+    let notes: Vec<String> = bound.notes.iter().cloned().chain(bound.lying()).collect();
+    notes.iter().for_each(|note| answer.text += &format!("\nnote: {}: {note}", plant.display()));
     answer.json["onto"] = json!({
         "plant": plant,
         "vertices": n_vertices,
         "triangles": n_triangles,
+        "height": height,
+        "width": width,
         "unit": unit,
-        "notes": bound.notes,
+        "notes": notes,
     });
 }
 

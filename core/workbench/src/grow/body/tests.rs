@@ -75,9 +75,9 @@ fn frames_are_written_all_or_none() {
     let path = folder.path().join("%d.ply");
     std::fs::write(folder.path().join("2.ply"), "ply\nmine\n").unwrap();
     let kind = Out::Frames(MeshFormat::Ply);
-    let error = write(&skeleton, kind, &carried, &path).unwrap_err().to_string();
+    let error = write(&skeleton, 0, kind, &carried, &path).unwrap_err().to_string();
     assert!(error.contains("2.ply") && !folder.path().join("0.ply").exists(), "{error}");
     std::fs::remove_file(folder.path().join("2.ply")).unwrap();
-    write(&skeleton, kind, &carried, &path).unwrap();
+    write(&skeleton, 0, kind, &carried, &path).unwrap();
     assert!(folder.path().join("2.ply").exists());
 }
