@@ -102,8 +102,8 @@ impl Changes {
     /// Whether nothing has changed.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        let is_grouped = self.groups.is_none();
-        is_grouped && self.subjects.is_empty() && self.judgements.is_empty() && self.gone.is_empty()
+        let of_tracks = self.subjects.is_empty() && self.judgements.is_empty() && self.gone.is_empty();
+        of_tracks && self.groups.is_none()
     }
 }
 

@@ -16,8 +16,9 @@ const FEWEST: usize = 5;
 const STILL_PX2: f64 = 0.05;
 /// Distances below are noise, pixels.
 const NOISE_PX: f64 = 0.25;
-/// Rounds, at most, in which a gain comes to heed only what agrees with it; it stays when it changes by less than this.
+/// Rounds, at most, in which a gain comes to heed only what agrees with it.
 const N_ROUNDS: usize = 8;
+/// A gain that a round changes by less is kept.
 const SETTLED: f64 = 1e-3;
 
 impl Evidence {
