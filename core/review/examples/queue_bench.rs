@@ -73,26 +73,31 @@ fn main() {
     let begun = Instant::now();
     let mut evidence = Evidence::new(subjects, 2);
     let measure_s = begun.elapsed().as_secs_f64();
-    let begun = Instant::now();
-    evidence.group((0..N_TRACKS).map(|track| (TrackId(track), track % N_GROUPS)).collect());
-    let group_s = begun.elapsed().as_secs_f64();
     let (mut review, none) = (Review::default(), Default::default());
     let begun = Instant::now();
     let tracks: Vec<TrackId> = evidence.tracks().collect();
     tracks.into_iter().for_each(|track| review.set(track, evidence.segments(track, &none)));
     let segment_s = begun.elapsed().as_secs_f64();
-    let edit_ms = longest_ms((0..20).map(|track| {
-        let edited = subject(&mut rng, track);
-        let begun = Instant::now();
-        for track in evidence.replace(edited) {
-            review.set(track, evidence.segments(track, &none));
-        }
-        begun.elapsed()
-    }));
+    let mut edit_ms = |evidence: &mut Evidence, review: &mut Review| {
+        longest_ms((0..20).map(|track| {
+            let edited = subject(&mut rng, track);
+            let begun = Instant::now();
+            for track in evidence.replace(edited) {
+                review.set(track, evidence.segments(track, &none));
+            }
+            begun.elapsed()
+        }))
+    };
+    let alone_ms = edit_ms(&mut evidence, &mut review);
+    let begun = Instant::now();
+    evidence.group((0..N_TRACKS).map(|track| (TrackId(track), track % N_GROUPS)).collect());
+    let group_s = begun.elapsed().as_secs_f64();
+    let grouped_ms = edit_ms(&mut evidence, &mut review);
     let line = serde_json::json!({
         "items": N_ITEMS, "next_item_ms": next_ms, "re_rank_track_ms": rank_ms,
-        "tracks": N_TRACKS, "frames": N_FRAMES, "measure_all_s": measure_s, "group_all_s": group_s, "segments_all_s": segment_s,
-        "edit_to_ranking_ms": edit_ms, "queue": review.queue.len(),
+        "tracks": N_TRACKS, "frames": N_FRAMES, "measure_all_s": measure_s, "segments_all_s": segment_s,
+        "group_all_s": group_s,
+        "edit_to_ranking_ms": alone_ms, "edit_to_ranking_grouped_ms": grouped_ms, "queue": review.queue.len(),
     });
     println!("{line}");
 }
