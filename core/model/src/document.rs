@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::judgement::Judgement;
 use crate::over::Over;
+use crate::shape::Shape;
 use crate::track::{Sample, Status, TrackId, TrackSet};
 
 /// Number of a run: one use of a tracker. Runs never change once they have ended.
@@ -165,6 +166,8 @@ pub struct Document {
     pub(crate) clustering: Option<ShownClustering>,
     pub(crate) group_names: BTreeMap<(ClusteringId, u32), String>,
     pub(crate) held: BTreeMap<ClusteringId, Vec<Vec<u32>>>,
+    pub(crate) root: Option<[f64; 2]>,
+    pub(crate) shapes: BTreeMap<(ClusteringId, u32), Shape>,
 }
 
 impl Document {
@@ -178,6 +181,8 @@ impl Document {
             clustering: None,
             group_names: BTreeMap::new(),
             held: BTreeMap::new(),
+            root: None,
+            shapes: BTreeMap::new(),
         }
     }
 
@@ -238,6 +243,24 @@ impl Document {
     #[must_use]
     pub fn held_groups(&self, clustering: ClusteringId) -> &[Vec<u32>] {
         self.held.get(&clustering).map_or(&[], Vec::as_slice)
+    }
+
+    /// Where a person has placed the root of skeletons, pixels (right, down).
+    #[must_use]
+    pub fn root(&self) -> Option<[f64; 2]> {
+        self.root
+    }
+
+    /// How a person has shaped the bone that ends at a group or fork, a node of a clustering's dendrogram.
+    #[must_use]
+    pub fn shape(&self, clustering: ClusteringId, node: u32) -> Option<Shape> {
+        self.shapes.get(&(clustering, node)).copied()
+    }
+
+    /// The bones of a clustering that a person has shaped, in order of their nodes.
+    pub fn shapes(&self, clustering: ClusteringId) -> impl Iterator<Item = (u32, Shape)> {
+        let all = (clustering, 0)..=(clustering, u32::MAX);
+        self.shapes.range(all).map(|(&(_, node), &shape)| (node, shape))
     }
 
     fn is_seen(&self, id: TrackId, track: &Track) -> bool {

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::document::{ClusteringId, Document, Key, Origin, RunId, ShownClustering, ShownRun, Track};
 use crate::judgement::Judgement;
 use crate::over::Over;
+use crate::shape::Shape;
 use crate::track::{TrackId, TrackSet};
 
 pub use error::EditError;
@@ -125,6 +126,20 @@ pub enum Edit {
         /// Of each group the nodes of the dendrogram that it consists of, at least one; no node is in two.
         groups: Vec<Vec<u32>>,
     },
+    /// A person says where skeletons stand, or leaves it to whoever grows them.
+    PlaceRoot {
+        /// Pixels (right, down), finite.
+        root: Option<[f64; 2]>,
+    },
+    /// A person shapes a bone, or leaves it as it grows.
+    ShapeBone {
+        /// The clustering whose groups the skeleton is of.
+        clustering: ClusteringId,
+        /// The node of its dendrogram whose centre the bone ends at.
+        node: u32,
+        /// How it is shaped.
+        shape: Option<Shape>,
+    },
 }
 
 /// Edits that are done and undone together, and one line that says what happened.
@@ -154,7 +169,9 @@ impl Edit {
             | Self::ShowClustering { .. }
             | Self::SetCut { .. }
             | Self::NameGroup { .. }
-            | Self::HoldGroups { .. } => TrackSet::default(),
+            | Self::HoldGroups { .. }
+            | Self::PlaceRoot { .. }
+            | Self::ShapeBone { .. } => TrackSet::default(),
         }
     }
 }
@@ -240,6 +257,19 @@ impl Document {
                     groups => self.held.insert(*clustering, groups.to_vec()),
                 };
                 Ok(Edit::HoldGroups { clustering: *clustering, groups: old.unwrap_or_default() })
+            }
+            Edit::PlaceRoot { root } => {
+                check_root(*root)?;
+                Ok(Edit::PlaceRoot { root: std::mem::replace(&mut self.root, *root) })
+            }
+            Edit::ShapeBone { clustering, node, shape } => {
+                shape.as_ref().map_or(Ok(()), Shape::check)?;
+                let at = (*clustering, *node);
+                let old = match shape {
+                    Some(shape) => self.shapes.insert(at, *shape),
+                    None => self.shapes.remove(&at),
+                };
+                Ok(Edit::ShapeBone { clustering: *clustering, node: *node, shape: old })
             }
         }
     }
@@ -398,6 +428,13 @@ fn check_name(name: Option<&str>) -> Result<(), EditError> {
 
 fn check_cut(k: Option<u32>) -> Result<(), EditError> {
     if k == Some(0) { Err(EditError::NoGroups) } else { Ok(()) }
+}
+
+fn check_root(root: Option<[f64; 2]>) -> Result<(), EditError> {
+    match root {
+        Some([x, y]) if !(x.is_finite() && y.is_finite()) => Err(EditError::Root(format!("{x}, {y}"))),
+        _ => Ok(()),
+    }
 }
 
 fn check_groups(groups: &[Vec<u32>]) -> Result<(), EditError> {

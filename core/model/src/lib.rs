@@ -19,6 +19,7 @@ pub mod picture;
 pub mod plant;
 pub mod provenance;
 pub mod regroup;
+pub mod shape;
 pub mod skeleton;
 pub mod track;
 pub mod turn;

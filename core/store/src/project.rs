@@ -277,9 +277,9 @@ impl Project {
         match edit {
             Edit::ShowRun { run, tracks, .. } => self.check_run(*run, tracks),
             Edit::ShowClustering { clustering: Some(shown) } => self.check_clustering(shown.id),
-            Edit::NameGroup { clustering, .. } | Edit::HoldGroups { clustering, .. } => {
-                self.check_clustering(*clustering)
-            }
+            Edit::NameGroup { clustering, .. }
+            | Edit::HoldGroups { clustering, .. }
+            | Edit::ShapeBone { clustering, .. } => self.check_clustering(*clustering),
             _ => Ok(()),
         }
     }

@@ -1,6 +1,7 @@
 //! Why edits are refused, in the user's words.
 
 use crate::document::RunId;
+use crate::shape::ShapeError;
 use crate::track::TrackId;
 
 /// Why an edit cannot be done.
@@ -80,6 +81,12 @@ pub enum EditError {
     /// A group that is held has a node at least, and none of another.
     #[error("groups made by hand need tracks of their own: one is empty, or has what is another's")]
     NotApart,
+    /// A root that is nowhere; as it came.
+    #[error("a root lies at two finite numbers of pixels, not at {0}")]
+    Root(String),
+    /// A shape that a bone cannot have.
+    #[error(transparent)]
+    Shape(#[from] ShapeError),
     /// A name must have letters; `None` takes it away.
     #[error("a name cannot be empty")]
     EmptyName,

@@ -6,6 +6,7 @@ use super::{Edit, EditError, Transaction, apply};
 use crate::document::{ClusteringId, Document, Key, Made, Origin, RunId, ShownClustering};
 use crate::judgement::{Effort, Judgement, Verdict};
 use crate::over::{Laid, Over};
+use crate::shape::Shape;
 use crate::track::{Quality, Sample, Source, Status, TrackId, TrackSet};
 
 const N_FRAMES: u32 = 8;
@@ -62,7 +63,25 @@ fn any_edit() -> impl Strategy<Value = Edit> {
         }),
         (1_u32..3, prop::collection::vec(prop::collection::vec(0_u32..9, 0..3), 0..3))
             .prop_map(|(id, groups)| Edit::HoldGroups { clustering: ClusteringId(id), groups }),
+        prop::option::of([any_number(), any_number()]).prop_map(|root| Edit::PlaceRoot { root }),
+        (1_u32..3, 0_u32..5, prop::option::of(any_shape())).prop_map(|(id, node, shape)| Edit::ShapeBone {
+            clustering: ClusteringId(id),
+            node,
+            shape
+        }),
     ]
+}
+
+fn any_number() -> impl Strategy<Value = f64> {
+    prop_oneof![9 => -2.5_f64..5.0, 1 => Just(f64::NAN)]
+}
+
+fn any_shape() -> impl Strategy<Value = Shape> {
+    [any_number(), any_number(), any_number()].prop_map(|[plane_rad, lean_rad, gain]| Shape {
+        plane_rad,
+        lean_rad,
+        gain,
+    })
 }
 
 fn any_over() -> impl Strategy<Value = Option<Over>> {
