@@ -2,6 +2,7 @@
 
 use honami_model::skeleton::{Joint, Leaf, Skeleton};
 pub(crate) use honami_model::turn::{Turn, angle, axis, dot, norm};
+use rayon::prelude::*;
 
 use crate::StructureError;
 
@@ -41,7 +42,8 @@ pub(crate) fn made(skeleton: &Skeleton, bones: &[Made]) -> Result<Skeleton, Stru
     };
     let mut rows_of = vec![Vec::new(); skeleton.joints().len()];
     bones.iter().enumerate().for_each(|(row, bone)| rows_of[bone.of].push(row));
-    let leaves = skeleton.leaves().iter().flat_map(|leaf| {
+    // Thousands of leaves over thousands of frames are most of the work, and of the memory.
+    let leaves = skeleton.leaves().par_iter().flat_map_iter(|leaf| {
         rows_of[leaf.joint as usize].iter().map(|&row| Leaf {
             track: leaf.track,
             joint: row as u32,
