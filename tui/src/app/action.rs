@@ -200,6 +200,7 @@ table! {
     TakeIntoGroup "take-into-group" ["G t"] [Review ""] "take the picked tracks, else the selected one, into another group"
     NameGroup "name-group" ["G n"] [Review ""] "name the selected track's group"
     ReleaseGroups "release-groups" ["G r"] [Review ""] "forget the groups made by hand: they are those of the cut again"
+    Skeleton "skeleton" ["v k" "G g"] [Review ""] "grow the skeleton of the groups and show it over the picture, or not"
     Undo "undo" ["u"] [Review ""] "undo: take the last edit back"
     Redo "redo" ["Ctrl-r"] [Review ""] "redo: do again what was undone"
     // Looking.

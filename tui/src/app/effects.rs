@@ -178,6 +178,10 @@ impl World {
         self.session.project.path()
     }
 
+    pub(super) fn session(&self) -> &Session {
+        &self.session
+    }
+
     pub(super) fn media(&self) -> Arc<honami_workbench::media::Media> {
         Arc::clone(&self.session.media)
     }

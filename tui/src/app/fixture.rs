@@ -1,5 +1,7 @@
 //! A small project for tests: 100 frames at 25 per second, tracks 1, 2 and 7, three leaves of a hierarchy.
 
+pub(super) mod skeleton;
+
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;

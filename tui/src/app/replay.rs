@@ -11,7 +11,9 @@ use honami_workbench::versus;
 use super::action::Action;
 use super::command_log::{self, Head, Line, What};
 use super::effects::World;
+use super::growing::Grower;
 use super::seat::Seat;
+use super::skeleton::Skeletal;
 use super::state::{Notice, State};
 use super::update::{Effect, Fact, Msg, again, stand_by, update};
 use super::versus::{Versus, VersusRequest};
@@ -136,6 +138,7 @@ impl Player {
             self.wait_for_ghost().map_err(|error| error.to_string())?;
         }
         self.compare();
+        self.grow()?;
         for effect in again(&mut self.state, line)? {
             self.carry_out(effect);
         }
@@ -149,6 +152,15 @@ impl Player {
             let compared = compared.map(Arc::new).map_err(|error| error.to_string());
             drop(update(&mut self.state, Msg::Fact(Fact::Compared(runs, compared))));
         }
+    }
+
+    /// Grows the skeleton, where it is shown: whoever did the next thing had seen it.
+    fn grow(&mut self) -> Result<(), String> {
+        if let Some(revision) = Skeletal::request(&mut self.state) {
+            let grower = Grower::of(self.world.session()).map_err(|error| error.to_string())?;
+            drop(update(&mut self.state, Msg::Fact(grower.fact(revision))));
+        }
+        Ok(())
     }
 
     fn carry_out(&mut self, effect: Effect) {

@@ -15,6 +15,7 @@ use super::command_log::{CommandLog, Head, LogFile};
 use super::config::Config;
 use super::effects::World;
 use super::files::{self, Found};
+use super::growing::Growing;
 use super::late::Late;
 use super::layout::Lens;
 use super::pace::Pace;
@@ -88,6 +89,7 @@ pub(super) struct App {
     late: Late,
     plotting: Behind<Lot>,
     comparing: Behind<Duel>,
+    growing: Growing,
     /// When the figures of the link were last looked at.
     link_seen: Duration,
     /// When to keep where the user is.
@@ -113,6 +115,7 @@ impl App {
             late: Late::default(),
             plotting: Behind::new("plots", screen.waker()),
             comparing: Behind::new("two runs", screen.waker()),
+            growing: Growing::new(screen.waker()),
             link_seen: Duration::ZERO,
             seat_due: None,
             next: None,
@@ -341,6 +344,15 @@ impl App {
         Ok(())
     }
 
+    /// Has the skeleton grown, where it is shown, and takes it when it has.
+    fn grow(&mut self, world: &World) -> anyhow::Result<()> {
+        if let Some(fact) = self.growing.look(&mut self.state, world.session())? {
+            update(&mut self.state, Msg::Fact(fact));
+            self.frame = None;
+        }
+        Ok(())
+    }
+
     /// Takes the dense motion of the shown frame, where that is shown, as soon as it is measured.
     fn measure(&mut self, world: &mut World) {
         if let Some(fact) = world.dense(&self.state) {
@@ -363,6 +375,7 @@ impl App {
     fn show(&mut self, screen: &mut Screen, world: &mut World) -> anyhow::Result<()> {
         self.plot()?;
         self.compare(world)?;
+        self.grow(world)?;
         self.measure(world);
         let n_ready = world.n_ready();
         if n_ready != self.state.n_ready {

@@ -26,6 +26,7 @@ use super::prints::Prints;
 use super::queue::{Looked, Opened};
 use super::ranging::Ranging;
 use super::recovery::Recovery;
+use super::skeleton::Skeletal;
 use super::sketching::Sketching;
 use super::tracks::TrackRow;
 use super::versus::Versus;
@@ -98,6 +99,8 @@ pub struct State {
     pub dense: Option<Dense>,
     /// Two runs over the picture, instead of the tracks.
     pub versus: Option<Box<Versus>>,
+    /// The skeleton of the shown groups, over the picture.
+    pub skeleton: Skeletal,
     /// Whether all tracks are marked in the picture, not only the selected one.
     pub marks_all: bool,
     /// What the plots show.
@@ -337,6 +340,7 @@ impl State {
             motion: Motion::default(),
             dense: None,
             versus: None,
+            skeleton: Skeletal::default(),
             marks_all: true,
             plotted: Plotted::default(),
             panel_is_wide: false,

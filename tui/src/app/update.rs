@@ -15,6 +15,7 @@ mod pick;
 mod queue;
 mod ranges;
 mod recovery;
+mod skeleton;
 mod sketch;
 mod time;
 mod tracks;
@@ -346,6 +347,8 @@ mod keys_tests;
 mod offers_tests;
 #[cfg(test)]
 mod queue_tests;
+#[cfg(test)]
+mod skeleton_tests;
 #[cfg(test)]
 mod sketch_tests;
 #[cfg(test)]

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use super::{
     Action, Effect, Mode, State, choose, complain, edit, groups, history, look, motion, mouse, moving,
-    open_menu, pick, queue, ranges, recovery, say, sketch, time, tracks, versus,
+    open_menu, pick, queue, ranges, recovery, say, skeleton, sketch, time, tracks, versus,
 };
 use honami_model::judgement::Verdict;
 use honami_model::track::{Status, TrackSet};
@@ -119,6 +119,7 @@ fn look_about(state: &mut State, action: Action) -> Vec<Effect> {
         Action::VersusFlick => versus::flick(state),
         Action::VersusRuns => return vec![Effect::Entrants(None)],
         Action::PanelVersus => show_panel(state, Panel::Versus),
+        Action::Skeleton => skeleton::toggle(state),
         Action::Marks => state.marks_all = !state.marks_all,
         Action::Column if matches!(state.mode, Mode::Move(_)) => moving::next_model(state),
         Action::Column => state.panel = Panel::after(state.panel),
@@ -339,7 +340,7 @@ fn back(state: &mut State) -> Vec<Effect> {
                 job.is_stopping = true;
                 return vec![Effect::StopJob];
             }
-            if state.range.take().is_some() {
+            if skeleton::stop(state) || state.range.take().is_some() {
                 return Vec::new();
             }
             if !state.picked.is_empty() {

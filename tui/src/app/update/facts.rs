@@ -8,7 +8,9 @@ use honami_model::document::RunId;
 use honami_model::history::{Entry, EntryId};
 use honami_workbench::review::Told;
 
-use super::{Mode, State, actions, logged, motion, moving, offers, queue, sketch, tell, time, versus};
+use super::{
+    Mode, State, actions, logged, motion, moving, offers, queue, skeleton, sketch, tell, time, versus,
+};
 use crate::app::correcting::Answer;
 use crate::app::dense::FieldOf;
 use crate::app::files::Listing;
@@ -18,6 +20,7 @@ use crate::app::menu::Menu;
 use crate::app::plotted::Subject;
 use crate::app::prints::Print;
 use crate::app::recovery::Recovery;
+use crate::app::skeleton::Bones;
 use crate::app::state::{Display, Job, Link, Notice};
 use crate::app::tracks::TrackRow;
 use honami_workbench::plots::Plots;
@@ -80,6 +83,8 @@ pub enum Fact {
     Entrants(Option<RunId>, Vec<Entrant>),
     /// What became of comparing these two runs.
     Compared([RunId; 2], Result<Arc<Compared>, String>),
+    /// What became of growing the skeleton of this revision.
+    Grown(u64, Result<Arc<Bones>, String>),
     /// So many frames can be shown without waiting.
     Ready(u32),
     /// The undo tree has these entries more, and the document stands there.
@@ -106,10 +111,7 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
         Fact::Review(told) => {
             told.into_iter().for_each(|(track, segments)| state.review.set(track, segments));
         }
-        Fact::Groups(groups) => {
-            state.groups = groups.map(|groups| *groups);
-            state.plotted.revision += 1;
-        }
+        Fact::Groups(groups) => on_groups(state, groups.map(|groups| *groups)),
         Fact::Plots(subject, plots) => state.plotted.plots = Some((subject, plots)),
         Fact::Tracker(tracker) => state.tracker = tracker,
         Fact::Placed(track) => {
@@ -141,6 +143,7 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
         Fact::Versus(runs) => versus::on_runs(state, runs.map(|runs| *runs)),
         Fact::Entrants(first, entrants) => versus::on_entrants(state, first, entrants),
         Fact::Compared(runs, compared) => versus::on_compared(state, runs, compared),
+        Fact::Grown(revision, grown) => skeleton::on_grown(state, revision, grown),
         Fact::Ready(n) => state.n_ready = n,
         Fact::History(new, head) => {
             let (from, has_grown) = (state.history.head, !new.is_empty());
@@ -172,11 +175,26 @@ fn on_job(state: &mut State, job: Option<Job>) {
 }
 
 /// Says what has come about in its own time, and is no answer to a key: it has no place in the log.
-fn happened(state: &mut State, text: String, is_error: bool) {
+pub(super) fn happened(state: &mut State, text: String, is_error: bool) {
     state.notice = Some(Notice { text, is_error });
 }
 
+fn on_groups(state: &mut State, groups: Option<Groups>) {
+    if state.groups != groups {
+        state.skeleton.outdate();
+    }
+    if groups.is_none() {
+        state.skeleton.wither();
+    }
+    state.groups = groups;
+    state.plotted.revision += 1;
+}
+
 fn on_tracks(state: &mut State, rows: Vec<TrackRow>) {
+    let is_same = |(old, new): (&TrackRow, &TrackRow)| old.id == new.id && Arc::ptr_eq(&old.span, &new.span);
+    if state.tracks.len() != rows.len() || !state.tracks.iter().zip(&rows).all(is_same) {
+        state.skeleton.outdate();
+    }
     state.tracks = rows;
     state.plotted.revision += 1;
     versus::on_tracks(state);

@@ -3,6 +3,7 @@
 mod ghost;
 pub(super) mod motion;
 mod path;
+mod skeleton;
 mod sketch;
 pub(super) mod versus;
 
@@ -154,6 +155,7 @@ impl<'a> Canvas<'a> {
         };
         // Marks belong to the frame that is shown, which may be a moment behind.
         canvas.motion(state, shot.frame);
+        state.skeleton.bones.iter().for_each(|bones| canvas.skeleton(bones, shot.frame));
         match state.versus.as_deref().and_then(|versus| Some((versus.sides, versus.compared.as_deref()?))) {
             Some(of) => canvas.versus(state, of, shot.frame, nth),
             None => canvas.tracks(state, shot.frame, nth),

@@ -221,6 +221,19 @@ fn screens_of_two_runs() {
 }
 
 #[test]
+fn screens_of_skeletons() {
+    let shown = |state: &mut State| {
+        fixture::press(state, "v k");
+        fixture::skeleton::grow(state);
+    };
+    check("skeleton_80x24", (80, 24), "", shown);
+    check("skeleton_mono_40x12", (40, 12), "", |state| {
+        state.mono = true;
+        shown(state);
+    });
+}
+
+#[test]
 fn screens_of_motion_and_plots() {
     let (small, large) = ((80, 24), (120, 40));
     check("motion_80x24", small, "v v", |_| {});
@@ -428,4 +441,33 @@ fn marks_lie_where_the_tracks_are() {
     let mixed: Vec<u8> =
         (0..3).map(|c| ((u16::from(below[c]) + 2 * u16::from(style::group(None)[c])) / 3) as u8).collect();
     assert_eq!([cell.fg, cell.bg][y as usize % 2], Color::Rgb(mixed[0], mixed[1], mixed[2]));
+}
+
+/// Bones lie where the joints are, in the colours of their groups; frames that the skeleton has not are left alone.
+#[test]
+fn bones_lie_where_the_joints_are() {
+    let mut state = fixture::state();
+    (state.marks_all, state.selected, state.frame) = (false, None, 40);
+    let layout = Layout::of(&state);
+    let plain = |state: &State| picture::compose(state, &fixture::shot(state, layout.picture));
+    let before = plain(&state);
+    fixture::press(&mut state, "v k");
+    fixture::skeleton::grow(&mut state);
+    let (after, lens) = (plain(&state), Lens::of(&state, layout.picture));
+    let bones = state.skeleton.bones.clone().unwrap();
+    let places = bones.at(40).unwrap();
+    for (row, group) in [(2, 0), (3, 1)] {
+        let half = |axis: usize| f32::midpoint(places[1][axis], places[row][axis]);
+        let (x, y) = lens.pixel_of([half(0), -half(2)]).unwrap();
+        assert_eq!(after[(y * lens.size().0 + x) as usize], style::group(Some(group)), "bone {row}");
+    }
+    assert_ne!(before, after);
+    state.frame = 90;
+    assert_eq!(
+        plain(&state),
+        picture::compose(
+            &State { skeleton: Default::default(), ..state.clone() },
+            &fixture::shot(&state, layout.picture)
+        )
+    );
 }

@@ -1,0 +1,92 @@
+//! Skeletons grow behind the screen, one at a time: a newer one stops the one before.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use honami_workbench::WorkbenchError;
+use honami_workbench::grow::{GrowRequest, grow};
+use honami_workbench::plugins::{Host, Kind, PluginInfo};
+use honami_workbench::progress::{Flow, Progress};
+use honami_workbench::session::Session;
+use honami_workbench::store::{Access, Project};
+
+use super::behind::Behind;
+use super::skeleton::{Bones, Skeletal};
+use super::state::State;
+use super::update::Fact;
+use crate::term::signals::Waker;
+
+/// The structure builder.
+const BUILDER: &str = "diener";
+
+/// A revision, and what has become of growing it.
+type Lot = (u64, Result<Arc<Bones>, String>);
+
+/// What grows.
+pub(super) struct Growing {
+    behind: Behind<Lot>,
+    stop: Arc<Stop>,
+}
+
+/// All that it takes, on any thread.
+pub(super) struct Grower {
+    project: PathBuf,
+    host: Host,
+    plugin: PluginInfo,
+}
+
+/// Tells a growth to stop.
+#[derive(Default)]
+struct Stop(AtomicBool);
+
+impl Progress for Stop {
+    fn report(&self, _done: u64, _total: u64, _what: &str) -> Flow {
+        if self.0.load(Ordering::Relaxed) { Flow::Stop } else { Flow::Continue }
+    }
+}
+
+impl Growing {
+    pub(super) fn new(waker: Waker) -> Self {
+        Self { behind: Behind::new("skeleton", waker), stop: Arc::default() }
+    }
+
+    /// Has grown what a state shows, and tells what has become of it.
+    pub(super) fn look(&mut self, state: &mut State, session: &Session) -> std::io::Result<Option<Fact>> {
+        let request = Skeletal::request(state);
+        if request.is_some() || state.skeleton.awaited.is_none() {
+            self.stop.0.store(true, Ordering::Relaxed);
+        }
+        if let Some(revision) = request {
+            let grower = match Grower::of(session) {
+                Ok(grower) => grower,
+                Err(error) => return Ok(Some(Fact::Grown(revision, Err(error.to_string())))),
+            };
+            let stop = Arc::<Stop>::default();
+            self.stop = Arc::clone(&stop);
+            self.behind.ask(move || (revision, grower.grow(&*stop)))?;
+        }
+        Ok(self.behind.news()?.map(|(revision, grown)| Fact::Grown(revision, grown)))
+    }
+}
+
+impl Grower {
+    pub(super) fn of(session: &Session) -> Result<Self, WorkbenchError> {
+        let plugin = session.registry.find(Kind::Structure, BUILDER)?.clone();
+        let project = session.project.path().to_owned();
+        Ok(Self { project, host: session.options.host.clone(), plugin })
+    }
+
+    /// Grows the skeleton of the shown groups.
+    fn grow(&self, progress: &dyn Progress) -> Result<Arc<Bones>, String> {
+        let grown = Project::open(&self.project, Access::Read).map_err(WorkbenchError::from);
+        let request = GrowRequest::default();
+        let grown = grown.and_then(|project| grow(&project, &self.host, &self.plugin, &request, progress));
+        grown.map(|growth| Arc::new(Bones::of(growth))).map_err(|error| error.to_string())
+    }
+
+    /// What becomes of a revision, at once.
+    pub(super) fn fact(&self, revision: u64) -> Fact {
+        Fact::Grown(revision, self.grow(&Stop::default()))
+    }
+}
