@@ -201,6 +201,8 @@ table! {
     NameGroup "name-group" ["G n"] [Review ""] "name the selected track's group"
     ReleaseGroups "release-groups" ["G r"] [Review ""] "forget the groups made by hand: they are those of the cut again"
     Skeleton "skeleton" ["v k" "G g"] [Review ""] "grow the skeleton of the groups and show it over the picture, or not"
+    PlaceRoot "place-root" ["G p"] [Review ""] "place the root of the skeleton by hand: where the plant leaves the ground"
+    ReleaseSkeleton "release-skeleton" ["G R"] [Review ""] "forget what was done to the skeleton by hand: it is as it grows again"
     Undo "undo" ["u"] [Review ""] "undo: take the last edit back"
     Redo "redo" ["Ctrl-r"] [Review ""] "redo: do again what was undone"
     // Looking.

@@ -13,6 +13,7 @@ use honami_model::document::RunId;
 use honami_model::edit::Transaction;
 use honami_model::history::{Entry, EntryId, Step};
 use honami_model::judgement::Judgement;
+use honami_model::shape;
 use honami_model::track::TrackId;
 use honami_workbench::WorkbenchError;
 use honami_workbench::cluster::{self, ClusterRequest};
@@ -34,6 +35,7 @@ use super::rebuilding::Rebuilding;
 use super::recovery::Recovery;
 use super::reviewing::Reviewing;
 use super::seat::Seat;
+use super::skeleton::Hand;
 use super::state::{Job, Notice, State};
 use super::tracks::TrackRow;
 use super::update::{Effect, Fact, Hint, Judge};
@@ -200,6 +202,7 @@ impl World {
             Effect::Correct(step, hint) => self.correct(&step, hint),
             Effect::Regroup(step, hint) => regroup::prepare(&self.session.project, &step)
                 .and_then(|transaction| self.commit(transaction, hint)),
+            Effect::Shape(step, hint) => self.shape(&step, hint),
             Effect::Study(track) => {
                 self.studied = Some(track);
                 self.layers().map(|fact| fact.into_iter().collect())
@@ -263,6 +266,13 @@ impl World {
         let mut facts = self.commit(transaction, hint)?;
         facts.push(Fact::Corrected(made));
         Ok(facts)
+    }
+
+    fn shape(&mut self, step: &shape::Step, hint: Hint) -> Facts {
+        match shape::transaction(self.session.project.document(), step) {
+            Ok(transaction) => self.commit(transaction, hint),
+            Err(why) => Ok(vec![said_wrong(why.to_string()), Fact::Refused]),
+        }
     }
 
     fn judge(&mut self, found: Judge) -> Facts {
@@ -637,7 +647,9 @@ impl World {
         let new = history.entries().get(self.n_told..).unwrap_or_default().to_vec();
         self.n_told = history.entries().len();
         let told = Fact::History(new, history.head());
-        let mut facts = vec![Fact::Tracks(rows), Fact::Groups(groups), Fact::Tracker(tracker), told];
+        let hand = Hand::of(project.document());
+        let mut facts =
+            vec![Fact::Tracks(rows), Fact::Groups(groups), Fact::Hand(hand), Fact::Tracker(tracker), told];
         if self.used.look(&self.session.project)? {
             facts.push(self.used());
         }

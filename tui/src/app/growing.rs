@@ -80,8 +80,10 @@ impl Grower {
     /// Grows the skeleton of the shown groups.
     fn grow(&self, progress: &dyn Progress) -> Result<Arc<Bones>, String> {
         let grown = Project::open(&self.project, Access::Read).map_err(WorkbenchError::from);
-        let request = GrowRequest::default();
-        let grown = grown.and_then(|project| grow(&project, &self.host, &self.plugin, &request, progress));
+        let grown = grown.and_then(|project| {
+            let request = GrowRequest { root: project.document().root(), ..GrowRequest::default() };
+            grow(&project, &self.host, &self.plugin, &request, progress)
+        });
         grown.map(|growth| Arc::new(Bones::of(growth))).map_err(|error| error.to_string())
     }
 

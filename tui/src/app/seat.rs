@@ -31,6 +31,7 @@ pub(super) struct Seat {
     glyphs: Option<String>,
     no_stills: bool,
     motion: bool,
+    skeleton: bool,
     /// Speed that has its full colour, px/s.
     full_px_s: Option<f64>,
     /// Middle and half width of the directions that are shown, radians.
@@ -54,6 +55,7 @@ impl Seat {
             glyphs: Some(state.glyphs.name().to_owned()),
             no_stills: !state.stills,
             motion: state.motion.is_on,
+            skeleton: state.skeleton.is_on,
             full_px_s: state.motion.full_px_s,
             dial_rad: Some([state.motion.dial.centre_rad, state.motion.dial.half_width_rad]),
         }
@@ -77,6 +79,7 @@ impl Seat {
         state.glyphs = self.glyphs.as_deref().and_then(Glyphs::named).unwrap_or_default();
         state.stills = !self.no_stills;
         state.motion.is_on = self.motion;
+        state.skeleton.is_on = self.skeleton;
         state.motion.full_px_s = self.full_px_s.filter(|speed| speed.is_finite() && *speed > 0.0);
         if let Some([centre_rad, half_width_rad]) =
             self.dial_rad.filter(|dial| dial.iter().all(|x| x.is_finite()))

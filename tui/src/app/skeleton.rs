@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use honami_model::document::Document;
 use honami_workbench::grow::Growth;
 
 use super::state::State;
@@ -13,12 +14,29 @@ pub struct Skeletal {
     pub is_on: bool,
     /// How often what it grows from has changed.
     pub revision: u64,
+    /// What was done to it by hand.
+    pub hand: Hand,
     /// What has grown; what was before, until another has.
     pub bones: Option<Arc<Bones>>,
     /// What is awaited of the growth that goes on; `None` while none does.
     pub awaited: Option<Awaited>,
     /// The revision that was asked for last.
     asked: Option<u64>,
+}
+
+/// What a person has done to it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Hand {
+    /// Where its root was placed, pixels (right, down).
+    pub root: Option<[f64; 2]>,
+}
+
+impl Hand {
+    /// What a document has of it.
+    #[must_use]
+    pub fn of(document: &Document) -> Self {
+        Self { root: document.root() }
+    }
 }
 
 /// What is awaited of a growth.
@@ -90,16 +108,25 @@ impl Skeletal {
         (self.bones, self.awaited, self.asked) = (None, None, None);
     }
 
+    /// What was done to it by hand is this now.
+    pub fn take(&mut self, hand: Hand) {
+        if self.hand != hand {
+            self.hand = hand;
+            self.outdate();
+        }
+    }
+
     /// Shows it, from its growth on.
     pub fn show(&mut self) {
-        *self =
-            Self { is_on: true, awaited: Some(Awaited::Line), revision: self.revision, ..Self::default() };
+        (self.is_on, self.awaited) = (true, Some(Awaited::Line));
     }
 
     /// Shows it no longer; what grows is stopped.
     pub fn hide(&mut self) {
+        self.wither();
+        self.is_on = false;
         // What was asked for before is not what is asked for from now on.
-        *self = Self { revision: self.revision + 1, ..Self::default() };
+        self.outdate();
     }
 
     /// The revision that is to grow now, once.

@@ -168,6 +168,8 @@ pub enum Mode {
     Review,
     /// Choosing where a new feature goes; image pixels.
     Place([f32; 2]),
+    /// Choosing where the root of the skeleton is; image pixels.
+    Root([f32; 2]),
     /// Moving a sample of the selected track.
     Move(Box<Moving>),
     /// Drawing the selected track.
@@ -201,7 +203,7 @@ impl Mode {
     pub fn context(&self) -> Context {
         match self {
             Self::Review => Context::Review,
-            Self::Place(_) => Context::Place,
+            Self::Place(_) | Self::Root(_) => Context::Place,
             Self::Move(moving) => match moving.tool {
                 Tool::Place { .. } => Context::Move,
                 Tool::Slide(_) => Context::Slide,

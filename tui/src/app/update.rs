@@ -27,6 +27,7 @@ use std::time::Duration;
 use honami_model::document::RunId;
 use honami_model::edit::Transaction;
 use honami_model::history::EntryId;
+use honami_model::shape;
 use honami_model::track::TrackId;
 use honami_workbench::cluster::ClusterRequest;
 use honami_workbench::correct::Step;
@@ -83,6 +84,8 @@ pub enum Effect {
     Correct(Step, Hint),
     /// Change the shown groups by hand, and say what may be done next.
     Regroup(regroup::Step, Hint),
+    /// Do hand work on the skeleton of the shown groups, and say what may be done next.
+    Shape(shape::Step, Hint),
     /// Tell what a track is made from, now and after every change until an edit is committed.
     Study(TrackId),
     /// Work something out behind the screen for the studied track.
@@ -256,6 +259,7 @@ fn on_text(state: &mut State, text: &str) {
         Mode::Label(_) => chars.for_each(|c| pick::type_label(state, c)),
         Mode::Review
         | Mode::Place(_)
+        | Mode::Root(_)
         | Mode::Move(_)
         | Mode::Sketch(_)
         | Mode::Dial(_)

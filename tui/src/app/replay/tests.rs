@@ -99,6 +99,7 @@ fn a_session_done_again_makes_the_same_document() {
         "a Enter 8 . m 3 l Enter 4 , | m 2 k Tab Tab Tab Enter T l Enter [ ] * P t z Ctrl-Left b Esc S O",
         // What is held until a correction is worked out, and given up, leaves no line.
         "a Enter 8 . m 3 l Enter 4 , | m 2 k Tab Enter T l Esc Esc m 2 j Enter u",
+        "a Enter G p 3 l H Enter G R u u Ctrl-r G p Esc v k",
         "a Enter g l a m l Enter ? Esc g k Enter m l Enter 9 9 g f d d u",
     ] {
         let bench = Bench::new();

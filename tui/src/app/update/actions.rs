@@ -170,7 +170,7 @@ fn more(state: &mut State, by: i64) -> Vec<Effect> {
 /// Ctrl and the arrows: finest nudges where a point is moved, else what is seen.
 fn pan(state: &mut State, dx: f32, dy: f32) -> Vec<Effect> {
     match state.mode {
-        Mode::Place(_) | Mode::Move(_) => return steer(state, dx, dy, 0.1),
+        Mode::Place(_) | Mode::Root(_) | Mode::Move(_) => return steer(state, dx, dy, 0.1),
         _ => look::pan(state, dx.into(), dy.into()),
     }
     Vec::new()
@@ -205,6 +205,8 @@ fn correct(state: &mut State, action: Action) -> Vec<Effect> {
         Action::SplitGroup => return groups::split(state),
         Action::TakeIntoGroup => groups::choose_other(state, "take into", Choice::TakeInto),
         Action::NameGroup => groups::begin_name(state),
+        Action::PlaceRoot => skeleton::begin_root(state),
+        Action::ReleaseSkeleton => return skeleton::release(state),
         Action::ReleaseGroups => return groups::release(state),
         Action::GoOn => return recovery::go_on(state),
         Action::WaitOn => return recovery::answer(state, Patience::Wait),
@@ -229,7 +231,7 @@ fn steer(state: &mut State, dx: f32, dy: f32, px: f32) -> Vec<Effect> {
         // Nothing else goes through its lines.
         Mode::Review if state.panel == Some(Panel::Prints) => mouse::step_list(state, rows),
         Mode::Review => time::step_track(state, rows),
-        Mode::Place(at) => {
+        Mode::Place(at) | Mode::Root(at) => {
             let px = nudge_px(state.zoom);
             *at = edit::within(&state.clip, [at[0] + by[0] * px, at[1] + by[1] * px]);
         }
@@ -253,6 +255,7 @@ fn accept(state: &mut State) -> Vec<Effect> {
             None => edit::confirm(state),
         },
         Mode::Place(_) => edit::place(state),
+        Mode::Root(_) => skeleton::place_root(state),
         Mode::Move(_) => moving::keep(state),
         Mode::Sketch(_) => sketch::keep(state),
         Mode::Menu(_) => choose(state),
@@ -380,6 +383,7 @@ fn erase(state: &mut State) -> Vec<Effect> {
         Mode::Sketch(_) => sketch::take_back(state),
         Mode::Review
         | Mode::Place(_)
+        | Mode::Root(_)
         | Mode::Move(_)
         | Mode::Dial(_)
         | Mode::Label(_)

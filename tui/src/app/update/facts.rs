@@ -20,7 +20,7 @@ use crate::app::menu::Menu;
 use crate::app::plotted::Subject;
 use crate::app::prints::Print;
 use crate::app::recovery::Recovery;
-use crate::app::skeleton::Bones;
+use crate::app::skeleton::{Bones, Hand};
 use crate::app::state::{Display, Job, Link, Notice};
 use crate::app::tracks::TrackRow;
 use honami_workbench::plots::Plots;
@@ -35,6 +35,8 @@ pub enum Fact {
     Review(Vec<Told>),
     /// The shown clustering is this now.
     Groups(Option<Box<Groups>>),
+    /// This was done by hand to the skeleton of the shown groups.
+    Hand(Hand),
     /// The tracker whose run is on top.
     Tracker(Option<String>),
     /// What a track is made from; `None` where it is not shown any more.
@@ -113,6 +115,7 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
         }
         Fact::Groups(groups) => on_groups(state, groups.map(|groups| *groups)),
         Fact::Plots(subject, plots) => state.plotted.plots = Some((subject, plots)),
+        Fact::Hand(hand) => state.skeleton.take(hand),
         Fact::Tracker(tracker) => state.tracker = tracker,
         Fact::Placed(track) => {
             state.selected = Some(track);

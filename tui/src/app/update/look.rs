@@ -11,7 +11,7 @@ const PAN: f64 = 0.25;
 /// Looks so many steps closer, at the cursor or the selected track, or from farther away.
 pub(super) fn zoom(state: &mut State, by: i64) {
     let focus = match state.mode {
-        Mode::Place(at) => Some(at),
+        Mode::Place(at) | Mode::Root(at) => Some(at),
         Mode::Move(ref moving) => Some(moving.to()),
         _ => state.selected_at(),
     };

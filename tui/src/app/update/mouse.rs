@@ -21,7 +21,7 @@ pub(super) fn on_mouse(state: &mut State, mouse: Mouse) -> Vec<Effect> {
                 Mode::Form(form) => form.step(by),
                 Mode::Review if layout.column.contains(here) => step_list(state, by),
                 Mode::Review if layout.time.contains(here) => time::step(state, by),
-                Mode::Review | Mode::Place(_) | Mode::Move(_) | Mode::Sketch(_) => {
+                Mode::Review | Mode::Place(_) | Mode::Root(_) | Mode::Move(_) | Mode::Sketch(_) => {
                     if let Some(point) = lens.point_of(mouse.column, mouse.row) {
                         look::zoom_at(state, -by, point);
                     }
@@ -55,7 +55,7 @@ pub(super) fn on_mouse(state: &mut State, mouse: Mouse) -> Vec<Effect> {
         MouseKind::Press(0) | MouseKind::Drag(0) => {
             if let Some(point) = lens.point_of(mouse.column, mouse.row) {
                 match &mut state.mode {
-                    Mode::Place(at) => *at = point,
+                    Mode::Place(at) | Mode::Root(at) => *at = point,
                     Mode::Move(_) => moving::point(state, point),
                     Mode::Review if matches!(mouse.kind, MouseKind::Press(_)) => nearest(state, &lens, point),
                     _ => {}

@@ -1,9 +1,12 @@
-//! The skeleton over the picture: shown, hidden, taken in when it has grown.
+//! The skeleton over the picture: shown, hidden, taken in when it has grown; its root placed by hand.
 
 use std::sync::Arc;
 
+use honami_model::shape::Step;
+use honami_model::skeleton::seen;
+
 use super::facts::happened;
-use super::{State, complain, say};
+use super::{Effect, Mode, State, UNDO, complain, edit, say, time};
 use crate::app::skeleton::{Awaited, Bones};
 
 /// Grows the skeleton of the shown groups and shows it, or shows it no longer.
@@ -44,4 +47,33 @@ pub(super) fn on_grown(state: &mut State, revision: u64, grown: Result<Arc<Bones
         Ok(_) => {}
         Err(why) => happened(state, format!("no skeleton: {why}"), true),
     }
+}
+
+/// Has the root placed, from where it is; the skeleton is shown meanwhile.
+pub(super) fn begin_root(state: &mut State) {
+    if !edit::is_writable(state) {
+        return;
+    }
+    time::stop(state);
+    let grown = state.skeleton.bones.as_ref().map(|bones| seen(bones.growth.skeleton.root()));
+    let from = state.skeleton.hand.root.or(grown).map(|at| at.map(|v| v as f32));
+    let from = from.unwrap_or(state.centre).map(f32::round);
+    state.mode = Mode::Root(edit::within(&state.clip, from));
+    if !state.skeleton.is_on && state.groups.is_some() {
+        state.skeleton.show();
+    }
+}
+
+/// Keeps the root where it was placed.
+pub(super) fn place_root(state: &mut State) -> Vec<Effect> {
+    let Mode::Root(at) = std::mem::replace(&mut state.mode, Mode::Review) else { return Vec::new() };
+    vec![Effect::Shape(Step::Root(Some(at.map(f64::from))), UNDO)]
+}
+
+/// It is as it grows again.
+pub(super) fn release(state: &mut State) -> Vec<Effect> {
+    if !edit::is_writable(state) {
+        return Vec::new();
+    }
+    vec![Effect::Shape(Step::Release, UNDO)]
 }

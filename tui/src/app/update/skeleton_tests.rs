@@ -3,10 +3,16 @@
 use std::sync::Arc;
 
 use super::tests::{check, line, start};
-use super::{Fact, Msg, State, update};
+use honami_model::shape::Step;
+
+use super::{Effect, Fact, Msg, State, update};
 use crate::app::fixture::{self, press};
-use crate::app::skeleton::{Awaited, Bones, Skeletal};
+use crate::app::layout::Lens;
+use crate::app::skeleton::{Awaited, Bones, Hand, Skeletal};
 use crate::app::tracks::TrackRow;
+
+const LOCKED: &str =
+    "review | frame 0 track 1 | error read only: ada on lab2 holds this project; nothing can be changed here";
 
 #[test]
 fn skeletons_are_shown_and_hidden() {
@@ -22,6 +28,17 @@ fn skeletons_are_shown_and_hidden() {
             "review | frame 0 track - | error a skeleton grows from groups, and there are none: c groups the tracks",
         ),
         ("locked", "v k", growing),
+        // The root is placed where it is, or from the middle on, and the skeleton is seen meanwhile.
+        ("", "G p 3 l K", "root 163 119.75 | frame 0 track 1"),
+        ("", "G p Esc", "review | frame 0 track 1"),
+        (
+            "",
+            "G p 9 9 9 j Enter",
+            "review | frame 0 track 1 | Shape(Root(Some([160.0, 239.0])), \"u undoes\")",
+        ),
+        ("locked", "G p", LOCKED),
+        ("", "G R", "review | frame 0 track 1 | Shape(Release, \"u undoes\")"),
+        ("locked", "G R", LOCKED),
     ] {
         check(from, keys, expect);
     }
@@ -85,6 +102,37 @@ fn what_has_grown_is_said_once_and_what_changes_grows_anew() {
     assert_eq!(Skeletal::request(&mut state), None);
     tell(&mut state, tracks, groups.map(Box::new));
     assert!(Skeletal::request(&mut state).is_some());
+}
+
+#[test]
+fn a_root_is_placed_from_where_it_is() {
+    let mut state = start("");
+    press(&mut state, "G p");
+    fixture::skeleton::grow(&mut state);
+    assert!(state.skeleton.bones.is_some(), "it is shown while its root is placed");
+    press(&mut state, "Esc G p l");
+    assert!(line(&state, &[]).starts_with("root 161 210"), "{}", line(&state, &[]));
+    // The project has it elsewhere: it grows anew, from there.
+    press(&mut state, "Esc");
+    let hand = Hand { root: Some([12.0, 34.0]) };
+    drop(update(&mut state, Msg::Fact(Fact::Hand(hand))));
+    assert!(Skeletal::request(&mut state).is_some());
+    press(&mut state, "G p");
+    assert!(line(&state, &[]).starts_with("root 12 34"), "{}", line(&state, &[]));
+    drop(update(&mut state, Msg::Fact(Fact::Hand(hand))));
+    assert_eq!(Skeletal::request(&mut state), None, "the same once more");
+    // The mouse puts it where it is clicked, and takes it along.
+    let words = ["press:13,1", "drag:40,12", "Enter"];
+    let by_mouse: Vec<_> =
+        words.into_iter().flat_map(|word| fixture::send(&mut state, fixture::msg(word))).collect();
+    let [Effect::Shape(Step::Root(Some(at)), _)] = by_mouse[..] else { panic!("{by_mouse:?}") };
+    let lens = Lens::shown(&state);
+    assert_eq!(Some(at.map(|v| v as f32)), lens.point_of(40, 12));
+    press(&mut state, "G p");
+    // What the project refuses can be placed anew.
+    press(&mut state, "l Enter");
+    drop(update(&mut state, Msg::Fact(Fact::Refused)));
+    assert!(line(&state, &[]).starts_with("root 13 34"), "{}", line(&state, &[]));
 }
 
 #[test]

@@ -61,6 +61,7 @@ pub(super) fn line(state: &State, effects: &[Effect]) -> String {
     let mut words = vec![match &state.mode {
         Mode::Review => "review".to_owned(),
         Mode::Place([x, y]) => format!("place {x} {y}"),
+        Mode::Root([x, y]) => format!("root {x} {y}"),
         Mode::Move(moving) => {
             let (from, to) = (moving.from, moving.to());
             let mut words = format!("move {} {}", to[0] - from[0], to[1] - from[1]);

@@ -336,8 +336,10 @@ pub(super) fn hints(state: &State, area: Rect, frame: &mut Frame) {
         let dial = state.motion.dial_words();
         left.push_str(&format!("  showing {}", dial.as_deref().unwrap_or("all directions")));
     }
-    if let Mode::Place([x, y]) = state.mode {
-        left.push_str(&format!("  new feature at {x:.1}, {y:.1}"));
+    match state.mode {
+        Mode::Place([x, y]) => left.push_str(&format!("  new feature at {x:.1}, {y:.1}")),
+        Mode::Root([x, y]) => left.push_str(&format!("  root at {x:.1}, {y:.1}")),
+        _ => {}
     }
     if state.count.is_some() || !state.pending.is_empty() {
         let count = state.count.map_or_else(String::new, |n| n.to_string());

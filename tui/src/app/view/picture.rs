@@ -155,7 +155,7 @@ impl<'a> Canvas<'a> {
         };
         // Marks belong to the frame that is shown, which may be a moment behind.
         canvas.motion(state, shot.frame);
-        state.skeleton.bones.iter().for_each(|bones| canvas.skeleton(bones, shot.frame));
+        canvas.skeleton(state, shot.frame);
         match state.versus.as_deref().and_then(|versus| Some((versus.sides, versus.compared.as_deref()?))) {
             Some(of) => canvas.versus(state, of, shot.frame, nth),
             None => canvas.tracks(state, shot.frame, nth),
@@ -204,7 +204,7 @@ impl<'a> Canvas<'a> {
 
     fn cursor(&mut self, state: &State, frame: u32) {
         match state.mode {
-            Mode::Place(at) => self.cross(at),
+            Mode::Place(at) | Mode::Root(at) => self.cross(at),
             Mode::Move(ref moving) => self.ghost(moving, state.selected_row(), frame),
             Mode::Sketch(ref sketching) => self.sketch(sketching, state.selected_row(), frame),
             _ => {}

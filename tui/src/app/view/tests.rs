@@ -227,6 +227,10 @@ fn screens_of_skeletons() {
         fixture::skeleton::grow(state);
     };
     check("skeleton_80x24", (80, 24), "", shown);
+    check("root_80x24", (80, 24), "", |state| {
+        shown(state);
+        fixture::press(state, "G p 1 2 l");
+    });
     check("skeleton_mono_40x12", (40, 12), "", |state| {
         state.mono = true;
         shown(state);
