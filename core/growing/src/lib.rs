@@ -60,12 +60,12 @@ pub fn grow(
     cx.progress(0.1, "growing")?;
     let grown = algorithm(&seen).map_err(|error| Error::data(error.to_string()))?;
     cx.progress(0.9, "handing over")?;
-    Ok(skeleton(&grown, &seen))
+    Ok(skeleton(grown, &seen))
 }
 
 /// A skeleton as the host takes it, to the last bit.
-fn skeleton(grown: &Grown, seen: &Seen) -> Skeleton {
-    let from = &grown.skeleton;
+fn skeleton(grown: Grown, seen: &Seen) -> Skeleton {
+    let from = grown.skeleton;
     let joint = |joint: &honami_model::skeleton::Joint| Joint {
         parent: joint.parent,
         length: joint.length,
@@ -80,10 +80,11 @@ fn skeleton(grown: &Grown, seen: &Seen) -> Skeleton {
         }
     }
     let rows: BTreeMap<TrackId, u32> = (0..).zip(&seen.paths).map(|(row, path)| (path.track, row)).collect();
-    let leaf = |leaf: &honami_model::skeleton::Leaf| {
+    let (root, n_frames) = (from.root(), from.times().len());
+    let pose = (0..n_frames).flat_map(|frame| from.directions(frame)).copied().collect();
+    let leaf = |leaf: honami_model::skeleton::Leaf| {
         let track = rows.get(&leaf.track).copied()?;
-        Some(Leaf { joint: leaf.joint, track, offsets: leaf.offsets.clone() })
+        Some(Leaf { joint: leaf.joint, track, offsets: leaf.offsets })
     };
-    let pose = (0..from.times().len()).flat_map(|frame| from.directions(frame)).copied().collect();
-    Skeleton { root: from.root(), joints, pose, leaves: from.leaves().iter().filter_map(leaf).collect() }
+    Skeleton { root, joints, pose, leaves: from.into_leaves().into_iter().filter_map(leaf).collect() }
 }

@@ -245,6 +245,12 @@ impl Skeleton {
         &self.leaves
     }
 
+    /// What it carries, given away.
+    #[must_use]
+    pub fn into_leaves(self) -> Vec<Leaf> {
+        self.leaves
+    }
+
     /// Times of its frames.
     #[must_use]
     pub fn times(&self) -> &FrameTimes {

@@ -8,6 +8,8 @@ use crate::follow::mean;
 /// Semi-axes over standard deviations: the 95 % quantile of chi squared with two degrees of freedom, 5.9915, under a root
 /// (errata E21).
 const REACH: f64 = 2.447_746_830_680_816;
+/// An ellipse that is thinner than this share of its length is a line: places are measured no better, in single precision.
+const LINE: f64 = 1e-4;
 
 /// An ellipse that encloses 95 % of a normal distribution with the mean and covariance of some places.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,7 +47,7 @@ impl Ellipse {
     #[must_use]
     pub fn depth(&self, place: [f64; 2]) -> f64 {
         let [long, short] = self.reach;
-        if short <= 1e-9 * long {
+        if short <= LINE * long {
             return 0.0;
         }
         let (dx, dy) = (place[0] - self.centre[0], place[1] - self.centre[1]);

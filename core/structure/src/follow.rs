@@ -2,17 +2,14 @@
 //!
 //! The mean of those that are seen would jump whenever one comes or goes. So each track has its usual place beside the
 //! centre, and the centre is where those that are seen say it is: the least squares of x(track, frame) = centre(frame) +
-//! place(track). Where all are seen, that is their mean.
+//! place(track). Where all are seen, that is their mean. Tracks that are never seen together say nothing of each other's
+//! places: then who comes later goes on from where the others have left the centre.
 
+mod settle;
 #[cfg(test)]
 mod tests;
 
 use honami_model::track::TrackId;
-
-/// Places move less than this from one round to the next: they are found. Pixels.
-const SETTLED: f64 = 1e-6;
-/// Rounds at most; tracks that hardly overlap settle slowly.
-const MAX_ROUNDS: u32 = 200;
 
 /// A feature and where it is seen.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,6 +25,11 @@ impl Path {
     #[must_use]
     pub fn is_seen(&self) -> bool {
         self.at.iter().any(Option::is_some)
+    }
+
+    /// The frames in which it is seen, and where.
+    pub(crate) fn seen(&self) -> impl Iterator<Item = (usize, [f64; 2])> {
+        self.at.iter().enumerate().filter_map(|(frame, at)| Some((frame, (*at)?)))
     }
 }
 
@@ -55,45 +57,42 @@ impl Followed {
 pub fn follow(paths: &[&Path]) -> Option<Followed> {
     let n_frames = paths.iter().map(|path| path.at.len()).max()?;
     let has_gaps = paths.iter().any(|path| path.at.iter().any(Option::is_none));
-    let mut places = vec![[0.0; 2]; paths.len()];
-    let mut centre = Vec::new();
-    for _ in 0..MAX_ROUNDS {
-        centre = (0..n_frames).map(|frame| centre_of(paths, &places, frame)).collect();
-        let found: Vec<[f64; 2]> = paths.iter().map(|path| place_of(path, &centre)).collect();
-        let moved = found.iter().zip(&places).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]));
-        let farthest = moved.fold(0.0, f64::max);
-        places = found;
-        if !has_gaps || farthest < SETTLED {
-            break;
-        }
+    let mut centre = means(paths, n_frames, |_, at| at);
+    if has_gaps {
+        let places = settle::places(paths, n_frames);
+        centre = means(paths, n_frames, |k, at| less(at, places[k]));
+        settle::join(paths, &mut centre);
     }
+    let places = paths.iter().map(|path| place_of(path, &centre)).collect();
     bridge(&centre).map(|centre| Followed { centre, places })
 }
 
-/// The mean over the tracks seen in a frame of where each says the centre is.
-fn centre_of(paths: &[&Path], places: &[[f64; 2]], frame: usize) -> Option<[f64; 2]> {
-    let said = paths.iter().zip(places).filter_map(|(path, place)| {
-        let at = path.at.get(frame).copied().flatten()?;
-        Some([at[0] - place[0], at[1] - place[1]])
-    });
-    mean(said)
+/// The mean in every frame of something of each track that is seen there, of its row and where it is.
+fn means(
+    paths: &[&Path],
+    n_frames: usize,
+    of: impl Fn(usize, [f64; 2]) -> [f64; 2],
+) -> Vec<Option<[f64; 2]>> {
+    let mut sums = vec![(0_u32, [0.0; 2]); n_frames];
+    for (k, path) in paths.iter().enumerate() {
+        for (frame, at) in path.seen() {
+            let (n, sum) = &mut sums[frame];
+            (*n, *sum) = (*n + 1, more(*sum, of(k, at)));
+        }
+    }
+    sums.into_iter().map(|(n, sum)| (n > 0).then(|| sum.map(|v| v / f64::from(n)))).collect()
 }
 
 /// The mean over the frames in which a track is seen of where it is beside the centre.
 fn place_of(path: &Path, centre: &[Option<[f64; 2]>]) -> [f64; 2] {
-    let beside = path.at.iter().zip(centre).filter_map(|(at, centre)| {
-        let (at, centre) = ((*at)?, (*centre)?);
-        Some([at[0] - centre[0], at[1] - centre[1]])
-    });
-    mean(beside).unwrap_or_default()
+    mean(path.seen().filter_map(|(frame, at)| Some(less(at, centre[frame]?)))).unwrap_or_default()
 }
 
 /// The mean of places; `None` of none.
 pub(crate) fn mean(places: impl Iterator<Item = [f64; 2]>) -> Option<[f64; 2]> {
     let (mut n, mut sum) = (0_u32, [0.0; 2]);
     for place in places {
-        n += 1;
-        sum = [sum[0] + place[0], sum[1] + place[1]];
+        (n, sum) = (n + 1, more(sum, place));
     }
     (n > 0).then(|| sum.map(|v| v / f64::from(n)))
 }
@@ -112,4 +111,12 @@ fn bridge(centre: &[Option<[f64; 2]>]) -> Option<Vec<[f64; 2]>> {
         std::array::from_fn(|axis| before.1[axis] + share * (after.1[axis] - before.1[axis]))
     };
     Some((0..centre.len()).map(between).collect())
+}
+
+fn more(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0] + b[0], a[1] + b[1]]
+}
+
+fn less(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0] - b[0], a[1] - b[1]]
 }

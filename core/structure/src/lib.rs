@@ -91,6 +91,17 @@ pub enum StructureError {
     /// No copy at all.
     #[error("one copy at least: 0 were asked for")]
     Copies,
+    /// Copies whose leaves fill the memory.
+    #[error(
+        "where the leaves of {copies} copies are in every frame takes {gigabytes} GB, and 6 GB is the most: fewer copies, \
+         tracks or frames are wanted"
+    )]
+    TooManyLeaves {
+        /// As many as asked for.
+        copies: u32,
+        /// What it would take.
+        gigabytes: u64,
+    },
     /// An envelope without a place to be in.
     #[error("nothing in the image of the envelope is white: paint white where branches may be")]
     NoWhite,

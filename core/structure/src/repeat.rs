@@ -30,9 +30,7 @@ pub fn repeat(skeleton: &Skeleton, within: Range<u32>) -> Result<(Skeleton, Rang
         return Err(StructureError::TooBrief { came: n_frames, wanted: MIN_FRAMES });
     }
     let least = ((f64::from(n_frames) * MIN_SHARE).ceil() as u32).max(2);
-    let ends = within.clone().flat_map(|first| (first + least..within.end).map(move |end| first..end));
-    let jumps = ends.map(|frames| (jump(skeleton, &frames), frames));
-    let (_, frames) = jumps.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, within.start..within.end - 1));
+    let frames = smoothest(skeleton, &within, least);
     let (first, last) = (skeleton.directions(frames.start), skeleton.directions(frames.end));
     let directions = frames.clone().flat_map(|frame| {
         let share = share(&frames, frame);
@@ -57,21 +55,55 @@ fn share(frames: &Range<u32>, frame: u32) -> f64 {
     f64::from(frame - frames.start) / f64::from(frames.end - frames.start)
 }
 
-/// How far the pose at the end of a range of frames is from that at its beginning, and how differently both go on.
-fn jump(skeleton: &Skeleton, frames: &Range<u32>) -> f64 {
-    let at = |frame: u32| skeleton.directions(frame);
-    let (first, second) = (at(frames.start), at(frames.start + 1));
-    let (before, last) = (at(frames.end - 1), at(frames.end));
-    let far = |row: usize| {
-        (0..3)
-            .map(|axis| {
-                let apart = last[row][axis] - first[row][axis];
-                let bend = (last[row][axis] - before[row][axis]) - (second[row][axis] - first[row][axis]);
-                apart * apart + bend * bend
-            })
-            .sum::<f64>()
+/// The range of at least so many frames whose ends have the smallest jump, the first of equals.
+///
+/// All are tried, in long clips hundreds of millions: bones that move most come first, so that a range is given up soon.
+fn smoothest(skeleton: &Skeleton, within: &Range<u32>, least: u32) -> Range<u32> {
+    let poses: Vec<&[[f64; 3]]> = within.clone().map(|frame| skeleton.directions(frame)).collect();
+    let moves = |row: usize| -> f64 {
+        poses
+            .iter()
+            .map(|pose| squared(std::array::from_fn(|axis| pose[row][axis] - skeleton.rest()[row][axis])))
+            .sum()
     };
-    skeleton.joints().iter().enumerate().skip(1).map(|(row, joint)| joint.length * far(row)).sum()
+    let mut bones: Vec<(f64, usize, f64)> = (skeleton.joints().iter().enumerate().skip(1))
+        .map(|(row, joint)| (joint.length * moves(row), row, joint.length))
+        .collect();
+    bones.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    let (n, least) = (poses.len(), least as usize);
+    let (mut found, mut smallest) = (0..n - 1, f64::INFINITY);
+    for first in 0..n {
+        for end in first + least..n {
+            let jump = jump(&poses, &bones, first..end, smallest);
+            if jump < smallest {
+                (found, smallest) = (first..end, jump);
+            }
+        }
+    }
+    within.start + found.start as u32..within.start + found.end as u32
+}
+
+/// How far the pose at the end of a range of frames is from that at its beginning, and how differently both go on; something
+/// above `most` where it is above.
+fn jump(poses: &[&[[f64; 3]]], bones: &[(f64, usize, f64)], frames: Range<usize>, most: f64) -> f64 {
+    let (first, second) = (poses[frames.start], poses[frames.start + 1]);
+    let (before, last) = (poses[frames.end - 1], poses[frames.end]);
+    let mut sum = 0.0;
+    for &(_, row, length) in bones {
+        let apart = std::array::from_fn(|axis| last[row][axis] - first[row][axis]);
+        let bend = std::array::from_fn(|axis| {
+            (last[row][axis] - before[row][axis]) - (second[row][axis] - first[row][axis])
+        });
+        sum += length * (squared(apart) + squared(bend));
+        if sum > most {
+            break;
+        }
+    }
+    sum
+}
+
+fn squared([x, y, z]: [f64; 3]) -> f64 {
+    x * x + y * y + z * z
 }
 
 /// A leaf over the loop, corrected as the bones are.

@@ -7,12 +7,14 @@
 #[cfg(test)]
 mod tests;
 
+use std::f64::consts::PI;
+
 use honami_model::skeleton::Skeleton;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use crate::StructureError;
-use crate::turn::{Made, Turn, angle, axis, made};
+use crate::turn::{Made, Turn, angle, axis, made_by_all};
 use crate::von_mises::{Truncated, VonMises};
 
 /// Angles are drawn from this level on, where there are as many: so the main structure stays (Zeng 5.4.2, step 6).
@@ -49,10 +51,17 @@ pub struct Level {
 }
 
 impl Level {
-    /// How far the angles that are drawn go from that which they scatter about, radians.
+    /// The least and the largest angle that are drawn, radians: 0 and π at most, where a bone would turn to the other side.
     #[must_use]
-    pub fn half_width(&self) -> f64 {
-        self.drawn.half_width()
+    pub fn range(&self) -> [f64; 2] {
+        let (mu, half) = (self.angles.mu, self.drawn.half_width());
+        [(mu - half).max(0.0), (mu + half).min(PI)]
+    }
+
+    /// The angle of a share of those that are drawn, 0 to 1.
+    fn angle(&self, share: f64) -> f64 {
+        let [low, high] = [0.0, PI].map(|end| self.drawn.share_below(end));
+        self.drawn.quantile(low + share * (high - low)).abs().min(PI)
     }
 }
 
@@ -125,12 +134,12 @@ impl<'a> Siblings<'a> {
             let level = level.filter(|_| joint.parent.is_some());
             let turn = level.map_or(before, |level| {
                 let (from, to) = ends(self.skeleton, of);
-                let by = level.drawn.quantile(rng.random()) - angle(from, to);
+                let by = level.angle(rng.random()) - angle(from, to);
                 before.after(&Turn::about(axis(from, to), by))
             });
             bones.push(Made { of, parent: joint.parent, length: joint.length, turn, push: None });
         }
-        made(self.skeleton, &bones)
+        made_by_all(self.skeleton, &bones)
     }
 }
 

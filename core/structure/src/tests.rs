@@ -53,12 +53,13 @@ fn what_can_grow_has_bones_of_constant_length_and_no_nan() {
     let sway = |k: u32, t: u32| 4.0 * (f64::from(t) * 0.5 + f64::from(k)).sin();
     let spread =
         |k: u32, t: u32| Some([100.0 + 37.0 * f64::from(k % 5) + sway(k, t), 80.0 + 31.0 * f64::from(k % 7)]);
-    let cases: [(&str, Vec<Path>, u32, u32); 9] = [
+    let cases: [(&str, Vec<Path>, u32, u32); 10] = [
         ("two tracks", paths(2, 20, spread), 2, 20),
         ("all static", paths(12, 20, |k, _| spread(k, 0)), 4, 20),
         ("one point a group", paths(12, 20, spread), 12, 20),
         ("on an upright line", paths(8, 20, |k, t| Some([50.0, 10.0 * f64::from(k) + sway(k, t)])), 4, 20),
         ("on a level line", paths(8, 20, |k, t| Some([10.0 * f64::from(k) + sway(k, t), 50.0])), 4, 20),
+        ("on a sloping line", sloping(), 4, 100),
         ("two frames", paths(12, 2, spread), 5, 2),
         ("one frame", paths(12, 1, spread), 5, 1),
         ("with gaps", paths(12, 20, |k, t| spread(k, t).filter(|_| (k + t) % 3 > 0)), 5, 20),
@@ -84,6 +85,24 @@ fn what_can_grow_has_bones_of_constant_length_and_no_nan() {
             }
         }
     }
+}
+
+/// Tracks along a line that goes up by a third, in places of single precision, which lie beside it.
+fn sloping() -> Vec<Path> {
+    paths(20, 100, |k, t| {
+        let along = 500.0 + 9.7 * f64::from(k) + 0.3 * (f64::from(t) * 0.5 + f64::from(k)).sin();
+        Some([along, 40.0 + along / 3.0].map(|v| f64::from(v as f32)))
+    })
+}
+
+#[test]
+fn what_is_on_a_line_has_no_mirror_image() {
+    let found: Vec<usize> = grown(&sloping(), 4, 100)
+        .into_iter()
+        .filter(|(how, _)| how.starts_with("diener"))
+        .map(|(_, grown)| grown.unwrap().skeleton.joints().len())
+        .collect();
+    assert_eq!(found[0], found[1], "flat and in depth");
 }
 
 #[test]

@@ -23,6 +23,31 @@ pub(crate) struct Made {
 
 /// A skeleton made of another's bones, with the leaves that these carry: beside how it is at rest, a bone moves as it did.
 pub(crate) fn made(skeleton: &Skeleton, bones: &[Made]) -> Result<Skeleton, StructureError> {
+    let carried = carried(skeleton, bones);
+    posed(skeleton, bones, skeleton.leaves().iter().flat_map(carried).collect())
+}
+
+/// The same on all cores, for whoever may take them: thousands of leaves over thousands of frames are most of the work.
+pub(crate) fn made_by_all(skeleton: &Skeleton, bones: &[Made]) -> Result<Skeleton, StructureError> {
+    let carried = carried(skeleton, bones);
+    posed(skeleton, bones, skeleton.leaves().par_iter().flat_map_iter(carried).collect())
+}
+
+/// What becomes of a leaf: one on every bone that is made of its own.
+fn carried(skeleton: &Skeleton, bones: &[Made]) -> impl Fn(&Leaf) -> Vec<Leaf> + Sync {
+    let mut turns_of = vec![Vec::new(); skeleton.joints().len()];
+    (0..).zip(bones).for_each(|(row, bone)| turns_of[bone.of].push((row, bone.turn)));
+    move |leaf| {
+        let on = |&(joint, turn): &(u32, Turn)| Leaf {
+            track: leaf.track,
+            joint,
+            offsets: leaf.offsets.iter().map(|&by| turn.apply(by)).collect(),
+        };
+        turns_of[leaf.joint as usize].iter().map(on).collect()
+    }
+}
+
+fn posed(skeleton: &Skeleton, bones: &[Made], leaves: Vec<Leaf>) -> Result<Skeleton, StructureError> {
     let frames = 0..skeleton.times().len();
     let directions = frames.flat_map(|frame| {
         let directions = skeleton.directions(frame);
@@ -40,17 +65,7 @@ pub(crate) fn made(skeleton: &Skeleton, bones: &[Made]) -> Result<Skeleton, Stru
         length: bone.length,
         ..skeleton.joints()[bone.of].clone()
     };
-    let mut rows_of = vec![Vec::new(); skeleton.joints().len()];
-    bones.iter().enumerate().for_each(|(row, bone)| rows_of[bone.of].push(row));
-    // Thousands of leaves over thousands of frames are most of the work, and of the memory.
-    let leaves = skeleton.leaves().par_iter().flat_map_iter(|leaf| {
-        rows_of[leaf.joint as usize].iter().map(|&row| Leaf {
-            track: leaf.track,
-            joint: row as u32,
-            offsets: leaf.offsets.iter().map(|&by| bones[row].turn.apply(by)).collect(),
-        })
-    });
     let joints = bones.iter().map(joint).collect();
     let made = Skeleton::new(skeleton.root(), joints, directions.collect(), skeleton.times().clone())?;
-    Ok(made.with_leaves(leaves.collect())?)
+    Ok(made.with_leaves(leaves)?)
 }

@@ -23,6 +23,9 @@ pub const COPIES: u32 = 3;
 /// How far joints are shifted without a wish; Zeng gives no number.
 pub const SHIFT: f64 = 0.5;
 
+/// Offsets of leaves, a frame each, that copies may carry: 6 GB of them.
+const MAX_OFFSETS: u64 = 1 << 28;
+
 /// How to grow.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
@@ -50,8 +53,8 @@ impl Default for Settings {
 ///
 /// # Errors
 /// [`StructureError::NothingSeen`] also where one group alone is never seen, [`StructureError::NoExtent`],
-/// [`StructureError::Root`], [`StructureError::Path`], [`StructureError::Shift`], [`StructureError::Copies`];
-/// [`StructureError::NoWhite`] and [`StructureError::AllCut`] of an envelope that leaves nothing.
+/// [`StructureError::Root`], [`StructureError::Path`], [`StructureError::Shift`], [`StructureError::Copies`],
+/// [`StructureError::TooManyLeaves`]; [`StructureError::NoWhite`] and [`StructureError::AllCut`] of an envelope that leaves nothing.
 pub fn grow(
     paths: &[Path],
     groups: &[Group],
@@ -63,6 +66,14 @@ pub fn grow(
     }
     if settings.copies == 0 {
         return Err(StructureError::Copies);
+    }
+    let n_copies = if settings.is_flat { 1 } else { settings.copies };
+    let n_offsets = paths.len() as u64 * u64::from(times.len()) * u64::from(n_copies);
+    if n_copies > 1 && n_offsets > MAX_OFFSETS {
+        return Err(StructureError::TooManyLeaves {
+            copies: n_copies,
+            gigabytes: n_offsets * 24 / 1_000_000_000,
+        });
     }
     let filmed = Filmed::of(paths, groups, times, settings.root)?;
     let at = shifted(&filmed, settings.shift);
@@ -86,7 +97,6 @@ pub fn grow(
     if trunk.contains(&false) && kept == trunk {
         return Err(StructureError::AllCut);
     }
-    let n_copies = if settings.is_flat { 1 } else { settings.copies };
     let mut copies = Copies::of(&flat, &trunk, &kept, axis, n_copies);
     if !settings.is_flat {
         let (low, high) = crown

@@ -12,6 +12,11 @@ const N_FRAMES: u32 = 12;
 /// A plant that forks in two `n_levels` times, every fork about 0.5 rad to both sides, swinging; `depth` bends it out of the
 /// picture.
 fn plant(n_levels: u32, depth: f64) -> Skeleton {
+    forked(n_levels, depth, |k| 0.5 + 0.15 * (k as f64 * 1.7).sin())
+}
+
+/// The same with forks of other angles, radians.
+fn forked(n_levels: u32, depth: f64, angle_of: impl Fn(usize) -> f64) -> Skeleton {
     let n = 1_usize << n_levels;
     let of_heap = |k: usize| (k > 1).then_some(k as u32 / 2);
     let joint = |k: usize| Joint {
@@ -25,7 +30,7 @@ fn plant(n_levels: u32, depth: f64) -> Skeleton {
         directions.push(UP);
         for k in 1..n {
             let side = if k % 2 == 0 { -1.0 } else { 1.0 };
-            let turn = if k == 1 { 0.1 } else { side * (0.5 + 0.15 * (k as f64 * 1.7).sin()) };
+            let turn = if k == 1 { 0.1 } else { side * angle_of(k) };
             let swing = 0.05 * (f64::from(t) * 0.6 + k as f64).sin();
             angles[k] = angles[k / 2] + turn + swing;
             let y = depth * (k as f64).cos();
@@ -82,6 +87,25 @@ fn bones_turn_otherwise_and_swing_alike() {
         assert_eq!(sibling.joints()[row], source.joints()[row]);
     }
     assert_eq!(n_moved, 28);
+}
+
+/// Where some bones go nearly straight on, the density that is fitted reaches over to the other side.
+#[test]
+fn bones_that_hardly_turn_off_keep_to_their_side() {
+    let source = forked(5, 0.0, |k| [0.06, 0.1, 0.6, 0.7][k % 4]);
+    let siblings = Siblings::of(&source, Settings { level: Some(2), threshold: None }).unwrap();
+    let level = &siblings.levels()[0];
+    assert!(level.angles.mu - level.drawn.half_width() < -0.05 && level.range()[0] == 0.0, "{level:?}");
+    let (mut least, mut n_drawn) = (f64::INFINITY, 0);
+    for number in 0..40 {
+        let sibling = siblings.draw(5, number).unwrap();
+        for row in 4..32_usize {
+            let rest = |skeleton: &Skeleton| turn_in_picture(skeleton, skeleton.rest(), row);
+            assert!(rest(&source) * rest(&sibling) > 0.0, "sibling {number}, bone {row}");
+            (least, n_drawn) = (least.min(rest(&sibling).abs()), n_drawn + 1);
+        }
+    }
+    assert!(least < 0.02, "and come near to straight on: {least} of {n_drawn}");
 }
 
 /// What a rigid turn keeps: how far a bone is from its rest, and how leaves lie beside it.

@@ -137,5 +137,11 @@ proptest! {
             prop_assert!(angle.abs() <= cut.half_width() + 1e-12);
             prop_assert!(of.density(angle) >= threshold * (1.0 - 1e-9));
         }
+        // Shares are counted back from where they are not too close to tell.
+        for share in [a, b] {
+            let found = cut.share_below(cut.quantile(share));
+            prop_assert!(of_peak > 0.999 || (found - share).abs() < 1e-9, "{share}: {found}");
+        }
+        prop_assert!(cut.share_below(-4.0) <= 0.0 && cut.share_below(4.0) >= 1.0);
     }
 }

@@ -81,6 +81,20 @@ impl Truncated {
         wrapped(self.of.mu + f64::midpoint(low, high).copysign(from_middle))
     }
 
+    /// The share of those left that is below an angle, radians, less than a turn away from μ; what
+    /// [`quantile`](Self::quantile) takes back.
+    #[must_use]
+    pub fn share_below(&self, angle_rad: f64) -> f64 {
+        let apart = angle_rad - self.of.mu;
+        let far = apart.abs().min(self.half_width).min(self.step * PARTS as f64);
+        let part = ((far / self.step) as usize).min(PARTS - 1);
+        let before = part.checked_sub(1).map_or(0.0, |part| self.sums[part]);
+        let reached = before + self.between(part as f64 * self.step, far);
+        // Where only μ is left, all of it is on one side.
+        let of_half = if self.total() > 0.0 { (reached / self.total()).min(1.0) } else { 1.0 };
+        f64::midpoint(1.0, of_half.copysign(apart))
+    }
+
     fn total(&self) -> f64 {
         self.sums.last().copied().unwrap_or_default()
     }

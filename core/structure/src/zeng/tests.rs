@@ -183,9 +183,23 @@ fn a_joint_takes_the_place_of_the_highest_probability() {
     }
 }
 
+/// Beside every attractor is a joint that stays, so that no place is nearer to any: errata Z9.
 #[test]
 fn where_nothing_is_gained_angles_decide() {
-    // Straight on, and all of the envelope is one place that a joint is at: errata Z9.
+    let envelope = Envelope::around(&[[-60.0, -60.0], [60.0, -60.0], [60.0, 60.0], [-60.0, 60.0]], 0.0);
+    // One bone goes straight on, one turns off by a right angle: half of that is expected of either.
+    let mut at = vec![[0.0; 3], [0.0, 0.0, 10.0], [10.0, 0.0, 0.0]];
+    let first = at.len();
+    at.extend(envelope.attractors().iter().map(|[x, y, z]| [*x, *y, z + 0.1]));
+    let still: Vec<usize> = (first..at.len()).collect();
+    let joint = |row| push::Pushed { row, parent: 0, before: None, level: 0, along: [0.0, 1.0, 0.0] };
+    let by = push::push(&[joint(1), joint(2)], &mut at, &still, &envelope, 100.0);
+    // Whatever the second is pushed by, its angle stays; of equals the nearest is taken.
+    assert_eq!((by[1], by[2], at[1]), (10.0, 0.0, [0.0, 10.0, 10.0]));
+}
+
+#[test]
+fn a_joint_where_all_attractors_are_stays() {
     let envelope = Envelope::around(&[[0.0, 0.0]], 0.0);
     let joint = push::Pushed { row: 1, parent: 0, before: None, level: 0, along: [0.0, 1.0, 0.0] };
     let mut at = vec![[0.0; 3], [0.0; 3]];
@@ -274,4 +288,8 @@ fn what_is_out_of_range_says_so() {
     }
     assert!(matches!(with(Settings { shift: f64::NAN, ..flat() }), StructureError::Shift(_)));
     assert_eq!(with(Settings { copies: 0, ..flat() }), StructureError::Copies);
+    let copies = u32::MAX;
+    let error = with(Settings { copies, is_flat: false, ..flat() });
+    let gigabytes = 24 * paths.len() as u64 * u64::from(times().len()) * u64::from(copies) / 1_000_000_000;
+    assert_eq!(error, StructureError::TooManyLeaves { copies, gigabytes });
 }

@@ -39,14 +39,10 @@ pub(super) fn draw(
     let mean_s = drawing.as_secs_f64() / f64::from(n);
     answer.text += &format!("\nsiblings: {n} of seed {}, {mean_s:.4} s each", args.seed);
     for level in siblings.levels() {
-        let (mu, half) = (level.angles.mu.to_degrees(), level.half_width().to_degrees());
+        let [mu, least, most] = [level.angles.mu, level.range()[0], level.range()[1]].map(f64::to_degrees);
         answer.text += &format!(
-            "\nlevel {}: {} bones turn off by {mu:.1} degrees (κ {:.2}), siblings' by {:.1} to {:.1}",
-            level.level,
-            level.n_bones,
-            level.angles.kappa,
-            mu - half,
-            mu + half
+            "\nlevel {}: {} bones turn off by {mu:.1} degrees (κ {:.2}), siblings' by {least:.1} to {most:.1}",
+            level.level, level.n_bones, level.angles.kappa,
         );
     }
     if let (Some(first), Some(last)) = (written.first(), written.last()) {
@@ -62,7 +58,7 @@ pub(super) fn draw(
                 "mu": level.angles.mu,
                 "kappa": level.angles.kappa,
                 "threshold": level.threshold,
-                "half_width": level.half_width(),
+                "range": level.range(),
             })
         })
         .collect();
