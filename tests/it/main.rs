@@ -30,6 +30,7 @@ mod rigs;
 mod schema;
 mod sdk;
 mod settings;
+mod shaped;
 mod simulated;
 mod stopped;
 mod tidy;

@@ -17,6 +17,7 @@ mod project;
 mod replay;
 mod report;
 mod review;
+mod shape;
 mod simulate;
 mod spectrum;
 mod synth;
@@ -188,6 +189,7 @@ fn run(command: Command, common: &Common) -> anyhow::Result<Outcome> {
         Command::Track(args) => track::track(&args, common)?,
         Command::Cluster(args) => groups::cluster(&args, common)?,
         Command::Grow(args) => grow::grow(&args, common)?,
+        Command::Shape(args) => shape::shape(&args)?,
         Command::Edit(args) => {
             return edit::edit(&args.project, common).map(|()| Outcome::Exit(ExitCode::SUCCESS));
         }

@@ -33,6 +33,7 @@ pub fn seen(filmed: &Filmed<'_>) -> Result<Seen> {
         children: filmed.groups.parts(row).collect(),
         number: row as u32,
         leaves: filmed.groups.tracks(row).collect(),
+        ..Group::default()
     };
     Ok(Seen { paths, groups: (0..filmed.groups.len()).map(group).collect(), times })
 }

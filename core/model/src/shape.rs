@@ -98,6 +98,8 @@ pub struct Bone {
     pub node: u32,
     /// What it is called: `group 3 bud-left`, `fork 3,4`.
     pub name: String,
+    /// The groups that it ends at, or that the fork bears that it ends at: numbers from 0, rising.
+    pub groups: Vec<u32>,
 }
 
 /// What a person does to the skeleton of the shown groups.
@@ -158,7 +160,7 @@ fn shape_bone(
     bone: &Bone,
     shape: Shape,
 ) -> Result<Transaction, Refused> {
-    let Bone { node, name } = bone;
+    let Bone { node, name, .. } = bone;
     let was = document.shape(clustering, *node).unwrap_or_default();
     let label = |told: String| match shape.is_grown() {
         true => format!("{name}: as it grows"),

@@ -10,6 +10,7 @@ pub mod ellipse;
 mod filmed;
 pub mod follow;
 pub mod repeat;
+pub mod shape;
 pub mod siblings;
 pub mod tree;
 mod turn;

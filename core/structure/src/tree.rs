@@ -14,6 +14,8 @@ pub struct Group {
     pub children: Vec<usize>,
     /// Of a terminal group, its number.
     pub number: u32,
+    /// The cluster of the dendrogram that it is; of a terminal group that was made by hand its largest.
+    pub node: u32,
     /// Of a terminal group, leaves of the dendrogram that are in it, those without a path left out.
     pub leaves: Vec<usize>,
 }
@@ -62,9 +64,10 @@ pub fn tree_of(dendrogram: &Dendrogram, shown: &Groups, is_seen: &[bool]) -> Vec
             continue;
         }
         let row = groups.len();
-        let mut group = Group { parent, ..Group::default() };
+        let mut group = Group { parent, node: cluster as u32, ..Group::default() };
         if let Some(number) = end {
             group.number = u32::try_from(number).unwrap_or(u32::MAX);
+            group.node = shown.nodes[number][0];
             let is_in = |&leaf: &usize| is_seen[leaf] && numbers[leaf] == group.number;
             group.leaves = (0..n).filter(is_in).collect();
         } else {

@@ -234,8 +234,8 @@ pub enum WorkbenchError {
     },
     /// A root far off the picture.
     #[error(
-        "a root lies in the picture ({width}x{height} pixels) or up to {} pixels off it, not at {},{}: --root takes X,Y, right \
-         and down from its upper left corner", width.max(height), Brief(*x), Brief(*y)
+        "a root lies in the picture ({width}x{height} pixels) or up to {} pixels off it, not at {},{}: X,Y are right and \
+         down from its upper left corner", width.max(height), Brief(*x), Brief(*y)
     )]
     FarRoot {
         /// Pixels, right.
@@ -329,6 +329,17 @@ pub enum WorkbenchError {
     /// Groups stay as they are.
     #[error(transparent)]
     Regroup(#[from] honami_model::regroup::Refused),
+    /// A skeleton stays as it is.
+    #[error(transparent)]
+    Shape(#[from] honami_model::shape::Refused),
+    /// No bone bears these groups and no others.
+    #[error("no bone bears {wanted} and nothing else: there are {names}")]
+    NoBone {
+        /// The groups asked for.
+        wanted: String,
+        /// The bones there are.
+        names: String,
+    },
     /// A file of a plant or of a wind could not be read.
     #[error(transparent)]
     PlantFile(#[from] honami_exchange::plant::PlantFileError),

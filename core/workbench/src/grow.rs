@@ -3,6 +3,7 @@
 mod body;
 mod bound;
 mod gather;
+mod hand;
 mod judge;
 mod outs;
 
@@ -13,19 +14,22 @@ pub use honami_exchange::mesh::{MeshFormat, Up};
 pub use honami_exchange::skeleton::SkeletonFormat;
 use honami_host::{CallContext, Filmed, Grown, Host, HostError, PluginInfo, Values};
 use honami_model::clip::Clip;
+use honami_model::document::Document;
 use honami_model::picture::Gray;
-use honami_model::provenance::Provenance;
+use honami_model::provenance::{Provenance, Value};
 use honami_model::skeleton::Skeleton;
 use honami_model::track::TrackId;
 use honami_store::Project;
 pub use honami_structure::blend::Blend;
-use honami_structure::diener;
 use honami_structure::repeat::repeat;
 pub use honami_structure::siblings::{self, Siblings};
 use honami_structure::tree::Group;
 
 pub use self::bound::{Bound, Onto, UNIT};
-use self::gather::{Gathered, gather};
+use self::gather::gather;
+pub use self::hand::{Bones, Hand, shape};
+use self::hand::{Laid, lay};
+pub(crate) use self::hand::{Usual, named_bones, usual};
 pub use self::judge::{Judged, judge};
 pub use self::outs::{Carried, Out, write};
 use crate::ear::Ear;
@@ -46,8 +50,11 @@ pub struct GrowRequest {
     pub params: Values,
     /// An image as large as the clip, white where branches may be; `None`: as the structure builder thinks.
     pub envelope: Option<PathBuf>,
-    /// Where the plant leaves the ground, pixels (right, down); else as the structure builder thinks.
+    /// Where the plant leaves the ground, pixels (right, down); else where it was placed by hand, else as the structure
+    /// builder thinks.
     pub root: Option<[f64; 2]>,
+    /// Leave hand work on the skeleton out.
+    pub as_grown: bool,
     /// Groups to cut the hierarchy into; `None`: as it is cut.
     pub groups: Option<u32>,
     /// Only the frames of the best loop, without a jump.
@@ -57,8 +64,12 @@ pub struct GrowRequest {
 /// What has grown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Growth {
-    /// The skeleton, with a leaf for every track that it carries.
+    /// The skeleton, with a leaf for every track that it carries, and with hand work.
     pub skeleton: Skeleton,
+    /// Its bones, as hands know them.
+    pub bones: Bones,
+    /// What of it is hand work.
+    pub hand: Hand,
     /// The tracks of every group.
     pub groups: Vec<Vec<TrackId>>,
     /// Joints that a group has become, at most: the one in the picture, and its copies.
@@ -93,7 +104,10 @@ pub fn grow(
 ) -> Result<Growth, WorkbenchError> {
     let gathered = gather(project, request.groups)?;
     let clip = &project.clip().clip;
-    if let Some(root) = request.root {
+    let hands = (!request.as_grown).then(|| project.document());
+    let placed = hands.and_then(Document::root).filter(|_| request.root.is_none());
+    let root = request.root.or(placed);
+    if let Some(root) = root {
         check_root(root, clip)?;
     }
     let envelope = request.envelope.as_ref().map(|image| white(image, clip)).transpose()?;
@@ -102,7 +116,7 @@ pub fn grow(
     let filmed = Filmed {
         tracks: &gathered.tracks,
         groups: &tree,
-        root: request.root,
+        root,
         mask: envelope.as_ref().map(|pixels| Gray::packed(pixels, clip.width, clip.height)),
     };
     let (mut structure, origin) = host.structure(plugin, &request.params, &CallContext::silent())?;
@@ -111,6 +125,8 @@ pub fn grow(
         Err(HostError::Cancelled { .. }) => return Err(WorkbenchError::Stopped),
         other => other?,
     };
+    let Laid { skeleton, bones, hand, notes: of_hands } =
+        lay(skeleton, &bears, (gathered.clustering, &gathered.bones), hands, placed)?;
     let (skeleton, frames) = match request.is_loop {
         true => {
             let (repeated, of) = repeat(&skeleton, gathered.unbroken.clone())?;
@@ -129,43 +145,34 @@ pub fn grow(
     };
     let n_collapsed = gathered.groups.iter().enumerate().filter(is_collapsed).count();
     let mut notes = gathered.notes.clone();
+    notes.extend(of_hands);
     notes.extend(ear.warnings());
     if envelope.is_some() && n_left_out == 0 {
         notes.push("no group is outside what is white in the envelope: none was cut".to_owned());
     }
+    let mut provenance = stamp(project.revision(), "grow", plugin, &request.params, origin);
+    // What is not the plugin's to know is beside its parameters, unless one has that name.
+    let beside = root.map(|root| ("root", Value::List(root.to_vec()))).into_iter().chain(hand.told());
+    for (id, value) in beside {
+        provenance.params.entry(id.to_owned()).or_insert(value);
+    }
     Ok(Growth {
         skeleton,
+        bones,
+        hand,
         groups: gathered.members(),
         n_copies: ends.iter().map(|&row| joints_of(row).count()).max().unwrap_or_default(),
         n_collapsed,
         n_left_out,
         frames,
-        provenance: stamp(project.revision(), "grow", plugin, &request.params, origin),
+        provenance,
         notes,
         seconds: begun.elapsed().as_secs_f64(),
     })
 }
 
-/// What stands for a project where a plant is wanted.
-pub(crate) struct Usual {
-    pub(crate) skeleton: Skeleton,
-    pub(crate) n_groups: usize,
-    pub(crate) notes: Vec<String>,
-}
-
-/// As the plugin that is used unless another is named grows it, here: whoever wants a plant has no plugins at hand.
-///
-/// # Errors
-/// As [`grow`].
-pub(crate) fn usual(project: &Project) -> Result<Usual, WorkbenchError> {
-    let gathered = gather(project, None)?;
-    let Gathered { paths, groups, times, .. } = &gathered;
-    let grown = diener::grow(paths, groups, times, diener::Settings::default())?;
-    Ok(Usual { skeleton: grown.skeleton, n_groups: gathered.members().len(), notes: gathered.notes })
-}
-
 /// Refuses a root that is farther from the picture than its larger side.
-fn check_root([x, y]: [f64; 2], clip: &Clip) -> Result<(), WorkbenchError> {
+pub(crate) fn check_root([x, y]: [f64; 2], clip: &Clip) -> Result<(), WorkbenchError> {
     let (width, height) = (clip.width, clip.height);
     let most = f64::from(width.max(height));
     let is_near = |v: f64, size: u32| (-most..=f64::from(size) + most).contains(&v);

@@ -26,6 +26,7 @@ pub mod retrack;
 pub mod review;
 pub mod script;
 pub mod session;
+pub mod shape;
 pub mod simulate;
 pub mod spectra;
 mod stamp;

@@ -59,6 +59,9 @@ pub(super) enum Command {
     Cluster(Cluster),
     /// Grow the branches behind the tracks: a skeleton that moves as filmed.
     Grow(grow::Grow),
+    /// Shape the skeleton by hand: place its root, turn bones out of the picture, have them lean or swing otherwise. Without
+    /// options, say what was done to which bone.
+    Shape(grow::Shape),
     /// Correct tracks from a script: one edit a line on standard input, one answer a line.
     ///
     /// An edit is answered once it is in the project file, with its number in the undo tree. The first edit that

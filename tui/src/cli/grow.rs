@@ -34,6 +34,7 @@ pub(super) fn grow(args: &Grow, common: &Common) -> anyhow::Result<Answer> {
         params,
         envelope: args.envelope.clone(),
         root: args.root.map(|place| place.0),
+        as_grown: args.as_grown,
         groups: args.groups,
         is_loop: args.is_loop,
     };
@@ -160,6 +161,8 @@ fn describe(args: &Grow, growth: &Growth) -> Answer {
     let notes: Vec<&str> =
         growth.notes.iter().map(String::as_str).chain(is_uneven.then_some(uneven)).collect();
     notes.iter().for_each(|note| text += &format!("\nnote: {note}"));
+    let hands =
+        growth.hand.bones.iter().map(|(bone, shape)| super::shape::row(bone, shape)).collect::<Vec<_>>();
     let json = json!({
         "groups": n_groups,
         "tracks": n_tracks,
@@ -168,6 +171,7 @@ fn describe(args: &Grow, growth: &Growth) -> Answer {
         "left_out": growth.n_left_out,
         "copies": growth.n_copies,
         "root": [x, y],
+        "hand": {"root": growth.hand.root, "bones": hands},
         "frames": [frames.start, frames.end],
         "seconds": growth.seconds,
         "provenance": growth.provenance,

@@ -12,7 +12,7 @@ fn grouped() -> Document {
 }
 
 fn bud() -> Bone {
-    Bone { node: 7, name: "group 3 bud-left".to_owned() }
+    Bone { node: 7, name: "group 3 bud-left".to_owned(), groups: vec![2] }
 }
 
 fn degrees_of(plane: f64, lean: f64, gain: f64) -> Shape {
@@ -28,7 +28,7 @@ fn seen(document: &Document) -> String {
 
 #[test]
 fn steps_say_what_they_did_and_are_taken_back() {
-    let fork = || Bone { node: 2, name: "fork 1,2".to_owned() };
+    let fork = || Bone { node: 2, name: "fork 1,2".to_owned(), groups: vec![0, 1] };
     let mut document = grouped();
     let mut undo = Vec::new();
     for (step, label, wanted) in [

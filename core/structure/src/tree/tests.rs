@@ -72,6 +72,28 @@ fn a_group_of_several_clusters_stands_where_most_of_it_is() {
 }
 
 #[test]
+fn groups_know_their_nodes() {
+    let nodes = |k, held: &[Vec<u32>], is_seen: [bool; 5]| -> Vec<u32> {
+        tree_of(&five(), &five().groups(k, held), &is_seen).iter().map(|group| group.node).collect()
+    };
+    let all = [true; 5];
+    assert_eq!(nodes(2, &[], all), [8, 5, 7]);
+    assert_eq!(nodes(3, &[], all), [8, 5, 7, 6, 4], "a fork is the same whatever it is cut into");
+    assert_eq!(
+        nodes(5, &[], [false, false, true, false, true]),
+        [7, 2, 4],
+        "what is not seen leaves no fork"
+    );
+    let held = [vec![5, 4]];
+    assert_eq!(nodes(2, &held, all), [8, 5, 6]);
+    assert_eq!(
+        nodes(2, &held, [false, false, true, true, true]),
+        [7, 6, 5],
+        "its largest, wherever it stands"
+    );
+}
+
+#[test]
 fn one_leaf_is_one_group_and_none_is_none() {
     let one = Dendrogram::new(1, vec![]).unwrap();
     assert_eq!(shape(&tree(&one, 1, &[true]), 0), "0:[0]");

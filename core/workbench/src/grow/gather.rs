@@ -7,12 +7,15 @@ use std::ops::Range;
 
 use honami_host::{GroupTree, Tracks};
 use honami_model::clip::FrameTimes;
+use honami_model::document::ClusteringId;
+use honami_model::shape::Bone;
 use honami_model::track::{Span, TrackId};
 use honami_store::Project;
 use honami_structure::StructureError;
 use honami_structure::follow::Path;
 use honami_structure::tree::{Group, tree_of};
 
+use super::hand::named;
 use crate::error::WorkbenchError;
 use crate::stamp::SEED;
 use crate::track::threads;
@@ -31,6 +34,10 @@ pub(super) struct Gathered {
     pub(super) paths: Vec<Path>,
     /// The tree of their groups, as the hierarchy is cut and as hands have changed it.
     pub(super) groups: Vec<Group>,
+    /// What these are groups of.
+    pub(super) clustering: ClusteringId,
+    /// The bones that they are known by, a group each.
+    pub(super) bones: Vec<Bone>,
     /// What whoever uses it should know, a sentence each.
     pub(super) notes: Vec<String>,
 }
@@ -76,13 +83,15 @@ pub(super) fn gather(project: &Project, groups: Option<u32>) -> Result<Gathered,
         notes.push(format!("{n_lost} of {n_tracks} tracks are seen in no frame now and are left out"));
     }
     notes.extend(blind(within, frames.start));
-    let shown = dendrogram.groups(k, project.document().held_groups(shown.id));
-    let groups = tree_of(dendrogram, &shown, &is_seen);
+    let document = project.document();
+    let groups = dendrogram.groups(k, document.held_groups(shown.id));
+    let groups = tree_of(dendrogram, &groups, &is_seen);
     if groups.is_empty() {
         return Err(StructureError::NothingSeen.into());
     }
     let (unbroken, times) = (unbroken(within), FrameTimes::new(times).map_err(StructureError::from)?);
-    Ok(Gathered { tracks, frames, times, unbroken, paths, groups, notes })
+    let bones = named(&groups, |node| document.group_name(shown.id, node));
+    Ok(Gathered { tracks, frames, times, unbroken, paths, groups, clustering: shown.id, bones, notes })
 }
 
 /// Whether anything is seen, a frame of the clip each.

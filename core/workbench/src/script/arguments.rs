@@ -6,6 +6,7 @@ use honami_model::track::{TrackId, TrackSet};
 
 use super::{ScriptError, Word};
 use crate::session::Session;
+use crate::shape::parse_groups;
 
 /// The words after the first, as many as the word takes.
 pub(super) struct Arguments<'a> {
@@ -60,6 +61,17 @@ impl<'a> Arguments<'a> {
     pub(super) fn group(&self, at: usize) -> Result<u32, ScriptError> {
         let number = self.whole(at, "group")?.checked_sub(1);
         number.ok_or_else(|| self.wrong(at, "the group as a whole number from 1 on"))
+    }
+
+    /// Groups, which count from 1; returned from 0.
+    pub(super) fn groups(&self, at: usize) -> Result<Vec<u32>, ScriptError> {
+        parse_groups(self.text(at)).ok_or_else(|| self.wrong(at, "groups as 3, 3,4 or 1-4"))
+    }
+
+    /// Where a root is, which need not be in the clip.
+    pub(super) fn root(&self, at: usize) -> Result<[f64; 2], ScriptError> {
+        let wanted = "a position in pixels";
+        Ok([self.number(at, wanted)?, self.number(at + 1, wanted)?])
     }
 
     /// The tracks from a place on.

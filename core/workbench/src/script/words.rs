@@ -15,6 +15,7 @@ use crate::ground::Ground;
 use crate::regroup;
 use crate::retrack::{self, RetrackRequest, Way};
 use crate::session::Session;
+use crate::shape::{self, Listed, Shape};
 
 type Outcome = Result<Act, ScriptError>;
 
@@ -160,6 +161,24 @@ pub const WORDS: &[Word] = &[
         takes: "",
         does: "forget groups made by hand: they are those of the cut again",
         act: |session, _| regrouped(session, &regroup::Step::Release),
+    },
+    Word {
+        name: "shape-root",
+        takes: "X Y",
+        does: "place the root of skeletons",
+        act: |session, given| shaped(session, &shape::Step::Root(Some(given.root(0)?))),
+    },
+    Word {
+        name: "shape-bone",
+        takes: "GROUPS PLANE LEAN GAIN",
+        does: "shape the bone that bears these groups (3, 3,4, 1-4): degrees, degrees, times",
+        act: shape_bone,
+    },
+    Word {
+        name: "shape-release",
+        takes: "[root|GROUPS]",
+        does: "leave the root, a bone, or all of the skeleton as it grows",
+        act: shape_release,
     },
     Word { name: "undo", takes: "", does: "take the last edit back", act: |_, _| Ok(Act::Undo) },
     Word { name: "redo", takes: "", does: "do again what was undone", act: |_, _| Ok(Act::Redo) },
@@ -340,6 +359,32 @@ fn group_name(session: &mut Session, given: &Arguments<'_>) -> Outcome {
 
 fn regrouped(session: &Session, step: &regroup::Step) -> Outcome {
     Ok(Act::Commit(regroup::prepare(&session.project, step)?))
+}
+
+fn shape_bone(session: &mut Session, given: &Arguments<'_>) -> Outcome {
+    let Listed { bone, .. } = shape::bone(&session.project, &given.groups(0)?)?;
+    let shape = Shape {
+        plane_rad: given.number(1, "the turn of its plane in degrees")?.to_radians(),
+        lean_rad: given.number(2, "how it leans, in degrees")?.to_radians(),
+        gain: given.number(3, "a gain, 1 for as it was seen")?,
+    };
+    shaped(session, &shape::Step::Bone(bone, shape))
+}
+
+fn shape_release(session: &mut Session, given: &Arguments<'_>) -> Outcome {
+    let step = match given.text(0) {
+        "" => shape::Step::Release,
+        "root" => shape::Step::Root(None),
+        _ => {
+            let bone = shape::bone(&session.project, &given.groups(0)?)?.bone;
+            shape::Step::Bone(bone, Shape::default())
+        }
+    };
+    shaped(session, &step)
+}
+
+fn shaped(session: &Session, step: &shape::Step) -> Outcome {
+    Ok(Act::Commit(shape::prepare(&session.project, step)?))
 }
 
 /// The number of a new track.

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use honami_workbench::shape::parse_groups;
 
 use super::WithPlugin;
 
@@ -32,10 +33,13 @@ pub(in crate::cli) struct Grow {
     /// (zeng's; default: the convex hull of the tracks).
     #[arg(long, value_name = "IMAGE")]
     pub(in crate::cli) envelope: Option<PathBuf>,
-    /// Where the plant leaves the ground, pixels of the picture (default: under the mean of all features, as low as the
-    /// lowest usually is).
+    /// Where the plant leaves the ground, pixels of the picture (default: where it was placed by hand, else under the mean of
+    /// all features, as low as the lowest usually is).
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
     pub(in crate::cli) root: Option<Place>,
+    /// Leave hand work on the skeleton out: the root that was placed, and bones that were shaped (see honami shape).
+    #[arg(long)]
+    pub(in crate::cli) as_grown: bool,
     /// Number of groups to cut the hierarchy into (default: as it is cut).
     #[arg(long, value_name = "K")]
     pub(in crate::cli) groups: Option<u32>,
@@ -86,6 +90,65 @@ pub(in crate::cli) struct Grow {
     /// True positions of a generated clip, a table `track,frame,x,y,visible,branch`: say how far joints are from them.
     #[arg(long, value_name = "FILE")]
     pub(in crate::cli) truth: Option<PathBuf>,
+}
+
+/// Hand work on the skeleton of the shown groups. The project keeps it; `honami grow` and `honami simulate` lay it over what
+/// grows, and `honami edit` undoes it. Degrees and factors are of the bone as it grows, so that the same twice is the same.
+///
+/// A bone is named by the groups that it bears: 3, or 3,4 or 1-4 of a fork. All that it bears goes along.
+#[derive(Args, Debug)]
+pub(in crate::cli) struct Shape {
+    /// Project file (.honami).
+    pub(in crate::cli) project: PathBuf,
+    /// Where the plant leaves the ground, pixels of the picture.
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    pub(in crate::cli) root: Option<Place>,
+    /// The bone that bears these groups and no others.
+    #[arg(long, visible_alias = "groups", value_name = "GROUPS")]
+    pub(in crate::cli) group: Option<Groups>,
+    /// Turn the plane that the bone moves in, so that it points away from the camera (-: towards it): -180 to 180 degrees.
+    #[arg(long, value_name = "DEG", requires = "group", allow_negative_numbers = true)]
+    pub(in crate::cli) plane: Option<f64>,
+    /// Have the bone lean otherwise at rest, clockwise in the picture: -180 to 180 degrees.
+    #[arg(long, value_name = "DEG", requires = "group", allow_negative_numbers = true)]
+    pub(in crate::cli) lean: Option<f64>,
+    /// Have the bone swing so many times as far beside what bears it: 0 (stiff) to 10.
+    #[arg(long, value_name = "G", requires = "group", allow_negative_numbers = true)]
+    pub(in crate::cli) gain: Option<f64>,
+    /// Leave it as it grows: the root, the bone that bears these groups, or, without a word, all.
+    #[arg(long, value_name = "root|GROUPS", num_args = 0..=1, default_missing_value = "all", conflicts_with_all = ["root", "group"])]
+    pub(in crate::cli) release: Option<Released>,
+}
+
+/// Groups as people count them, kept from 0: `3`, `1-4,7`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(in crate::cli) struct Groups(pub(in crate::cli) Vec<u32>);
+
+impl std::str::FromStr for Groups {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wanted = || format!("wanted groups as 3, 3,4 or 1-4, got {text}");
+        parse_groups(text).map(Self).ok_or_else(wanted)
+    }
+}
+
+/// What is to be as it grows.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(in crate::cli) enum Released {
+    All,
+    Root,
+    Bone(Groups),
+}
+
+impl std::str::FromStr for Released {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "all" => Ok(Self::All),
+            "root" => Ok(Self::Root),
+            groups => groups.parse().map(Self::Bone).map_err(|why: String| format!("{why}, nor root")),
+        }
+    }
 }
 
 /// Axes.
