@@ -255,9 +255,10 @@ fn spread(places: &[[f64; 2]]) -> f64 {
     (squares.sum::<f64>() / n).sqrt()
 }
 
-/// What is left of the motion of a group beside its joint's: published methods shift joints half of the way to what bears
-/// them, so that they move half as far.
-const LEFT: f64 = 0.9;
+/// What may be left of the motion of a group beside its joint's: published methods shift joints half of the way to what bears
+/// them, so that they move half as far (zeng leaves .49, diener .29 at most of 24 seeds), and a tenth is theirs to lose. A
+/// joint that follows a third of the motion, or none, is beyond it.
+const LEFT: f64 = 0.6;
 
 fn follows(subject: &Subject) -> Result<Verdict, Fault> {
     let mut most = 0.0_f64;
@@ -271,7 +272,8 @@ fn follows(subject: &Subject) -> Result<Verdict, Fault> {
             let beside: Vec<[f64; 2]> =
                 joint.iter().zip(&centre).map(|(a, b)| [a[0] - b[0], a[1] - b[1]]).collect();
             let left = spread(&beside) / spread(&centre);
-            if left > LEFT {
+            let is_followed = left <= LEFT;
+            if !is_followed {
                 return Err(Fault(format!(
                     "of {n_groups} groups, {left:.2} of the motion of group {row} is not that of its joint"
                 )));
@@ -282,8 +284,10 @@ fn follows(subject: &Subject) -> Result<Verdict, Fault> {
     Ok(Verdict::Holds(format!("{most:.2} of the motion left at most")))
 }
 
-/// Samples are f32.
-const SAME_PX: f64 = 1e-3;
+/// Whether places so far apart are one: samples are f32. What is no number is not.
+fn is_one(off_px: f64) -> bool {
+    off_px <= 1e-3
+}
 
 fn leaves(subject: &Subject) -> Result<Verdict, Fault> {
     let all = planted(&mut subject.chance("structure.leaves"), 3, 12);
@@ -298,7 +302,7 @@ fn leaves(subject: &Subject) -> Result<Verdict, Fault> {
             let from = skeleton.places(skeleton.directions(frame))[leaf.joint as usize];
             let place = seen(std::array::from_fn(|axis| from[axis] + offset[axis]));
             let off = (place[0] - f64::from(sample.0)).hypot(place[1] - f64::from(sample.1));
-            if off > SAME_PX {
+            if !is_one(off) {
                 return Err(Fault(format!("in frame {frame} the leaf of track {id} is {off} px from it")));
             }
         }
@@ -323,8 +327,8 @@ fn order(subject: &Subject) -> Result<Verdict, Fault> {
     let (a, b) = (a?, b?);
     for row in rows {
         let (was, is) = (joint_of(&a, row)?, joint_of(&b, row)?);
-        let off = was.iter().zip(&is).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1])).fold(0.0, f64::max);
-        if off > SAME_PX {
+        let mut off = was.iter().zip(&is).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]));
+        if let Some(off) = off.find(|off| !is_one(*off)) {
             return Err(Fault(format!("in another order the joint of group {row} is {off} px away")));
         }
     }
@@ -336,7 +340,7 @@ fn root(subject: &Subject) -> Result<Verdict, Fault> {
     for root in [ROOT, [131.5, 239.25]] {
         let grown = run(subject, &Filmed { root: Some(root), ..bare(&tracks, &groups) })?;
         let stands = seen(grown.skeleton.root());
-        if (stands[0] - root[0]).hypot(stands[1] - root[1]) > SAME_PX {
+        if !is_one((stands[0] - root[0]).hypot(stands[1] - root[1])) {
             return Err(Fault(format!("told that the root is at {root:?} px, it stands at {stands:?}")));
         }
     }

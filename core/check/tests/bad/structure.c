@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum fault { NONE, DIES_OF_ONE, DIES_OF_LOST, STILL, LEAVES_ONE_OUT, BARE_LEAVES, BY_ORDER, OWN_ROOT };
+enum fault { NONE, DIES_OF_ONE, DIES_OF_LOST, STILL, FIFTH, LEAVES_ONE_OUT, BARE_LEAVES, BY_ORDER, OWN_ROOT };
 
 #define MANIFEST                                                                                                    \
   "{\"honami\":1,\"abi\":[1,1],"                                                                                    \
@@ -128,7 +128,9 @@ static honami_code grow(const honami_call *call, const honami_structure_input *i
     }
     if (!(length > 1e-9)) return call->fail(call, HONAMI_E_DATA, "a group is where the root is");
     for (uint64_t t = 0; t < n_frames; t++) {
-      const double *at = in->centre[k * n_frames + (FAULT == STILL ? 0 : t)], x = at[0] - base[0], z = base[1] - at[1];
+      const double *first = in->centre[k * n_frames], *at = in->centre[k * n_frames + t];
+      const double part = FAULT == STILL ? 0 : FAULT == FIFTH ? 0.2 : 1;
+      const double x = first[0] + part * (at[0] - first[0]) - base[0], z = base[1] - first[1] - part * (at[1] - first[1]);
       double *d = (double *)pose.data + 3 * (t * n + k), *place = in->places[t * n + k], far = hypot(x, z);
       d[0] = far > 0 ? x / far : 0, d[2] = far > 0 ? z / far : 1;
       place[0] = base[0] + length * d[0], place[2] = -base[1] + length * d[2];

@@ -328,6 +328,7 @@ const GROWING: &[Bad] = &[
     growing("DIES_OF_ONE", "structure.few", "SIGSEGV"),
     growing("DIES_OF_LOST", "structure.hard", "SIGSEGV"),
     growing("STILL", "structure.follows", "is not that of its joint"),
+    growing("FIFTH", "structure.follows", "0.80 of the motion"),
     growing("LEAVES_ONE_OUT", "structure.follows", "has no joint"),
     growing("BARE_LEAVES", "structure.leaves", "px from it"),
     growing("BY_ORDER", "structure.order", "in another order"),
