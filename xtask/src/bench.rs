@@ -10,7 +10,7 @@ use crate::{BUILD, accuracy, forest};
 /// Name, what it measures, and how to run it.
 type Bench = (&'static str, &'static str, fn(&[&str]) -> anyhow::Result<()>);
 
-const BENCHES: [Bench; 16] = [
+const BENCHES: [Bench; 17] = [
     ("encode", "the encoder's time, bytes and likeness: `bench encode [BYTES] [CLIP…]`", encode),
     ("trackers", "KLT against OpenCV's calcOpticalFlowPyrLK, same frames, alternating", trackers),
     ("box", "box matching against OpenCV's matchTemplate: `bench box [CLIP…]`", box_matching),
@@ -35,6 +35,7 @@ const BENCHES: [Bench; 16] = [
         "groups of branches that are known, by every method: `bench grouping [--trees N] [--large] [--development]`",
         grouping,
     ),
+    ("skeleton", "from 2,000 tracks over 500 frames to a skeleton and its siblings, step by step", skeleton),
     ("media", "decoding, seeking, stepping back: `bench media CLIP`", media),
     ("store", "opening, editing and appending to a project of 10,000 tracks", store),
     (
@@ -94,6 +95,10 @@ fn cluster(args: &[&str]) -> anyhow::Result<()> {
 
 fn grouping(args: &[&str]) -> anyhow::Result<()> {
     example("honami-motion", "grouping_bench", args).run()
+}
+
+fn skeleton(args: &[&str]) -> anyhow::Result<()> {
+    example("honami-workbench", "skeleton_bench", args).run()
 }
 
 fn media(args: &[&str]) -> anyhow::Result<()> {
