@@ -11,6 +11,8 @@ pub enum Context {
     Review,
     /// Choosing where a new feature goes.
     Place,
+    /// Shaping a bone of the skeleton.
+    Shape,
     /// Moving a sample.
     Move,
     /// Sliding a sample along its path.
@@ -35,9 +37,10 @@ pub enum Context {
 
 impl Context {
     /// All of them.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Review,
         Self::Place,
+        Self::Shape,
         Self::Move,
         Self::Slide,
         Self::Sketch,
@@ -56,6 +59,7 @@ impl Context {
         match self {
             Self::Review => "review",
             Self::Place => "place",
+            Self::Shape => "shape",
             Self::Move => "move",
             Self::Slide => "slide",
             Self::Sketch => "sketch",
@@ -114,37 +118,37 @@ macro_rules! table {
 
 table! {
     // Moving about: hjkl and the arrows.
-    Left "left" ["h" "Left"] [Review "" Place "1 px" Move "1 px" Form "change" Dial "turn" Slide "1 frame" Sketch "steer"]
-        "left: the previous frame, one pixel, or a smaller value"
-    Down "down" ["j" "Down"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "narrower" History "" Start "" Sketch "steer"]
-        "down: the next track, one pixel, or the next row; in the prints, the next line"
-    Up "up" ["k" "Up"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "wider" History "" Start "" Sketch "steer"]
-        "up: the previous track, one pixel, or the previous row; in the prints, the line before"
-    Right "right" ["l" "Right"] [Review "" Place "1 px" Move "1 px" Form "change" Dial "turn" Slide "1 frame" Sketch "steer"]
-        "right: the next frame, one pixel, or a larger value"
-    FineLeft "fine-left" ["H" "Shift-Left"] [Place ".25" Move ".25" Form "" Slide ".25" Sketch ""] "a quarter of a pixel left, or a tenth of a value's range down"
-    FineDown "fine-down" ["J" "Shift-Down"] [Place ".25" Move ".25" Sketch ""] "a quarter of a pixel down"
-    FineUp "fine-up" ["K" "Shift-Up"] [Place ".25" Move ".25" Sketch ""] "a quarter of a pixel up"
-    FineRight "fine-right" ["L" "Shift-Right"] [Place ".25" Move ".25" Form "" Slide ".25" Sketch ""] "a quarter of a pixel right, or a tenth of a value's range up"
-    Accept "accept" ["Enter"] [Place "place" Move "keep" Form "run" Menu "choose" Prompt "done" Review "accept" Dial "keep" History "go there" Slide "keep" Start "open" Sketch "keep"]
-        "accept: keep, place, run or go; reviewing: the open item, else open the track's, or make a key-frame; in the prints, go to the line's frame"
-    Back "back" ["Esc" "Ctrl-c"] [Place "back" Move "back" Form "back" Menu "back" Prompt "back" Label "back" Review "" Dial "back" History "back" Slide "back" Start "" Sketch "back"]
+    Left "left" ["h" "Left"] [Review "" Place "1 px" Move "1 px" Form "change" Dial "turn" Slide "1 frame" Sketch "steer" Shape "plane"]
+        "left: the previous frame, one pixel, or a smaller value; at a bone, its plane 5° back"
+    Down "down" ["j" "Down"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "narrower" History "" Start "" Sketch "steer" Shape "lean"]
+        "down: the next track, one pixel, or the next row; in the queue, the prints and the skeleton, their next row"
+    Up "up" ["k" "Up"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "wider" History "" Start "" Sketch "steer" Shape "lean"]
+        "up: the previous track, one pixel, or the previous row; in the queue, the prints and the skeleton, the row before"
+    Right "right" ["l" "Right"] [Review "" Place "1 px" Move "1 px" Form "change" Dial "turn" Slide "1 frame" Sketch "steer" Shape "plane"]
+        "right: the next frame, one pixel, or a larger value; at a bone, its plane 5° on"
+    FineLeft "fine-left" ["H" "Shift-Left"] [Place ".25" Move ".25" Form "" Slide ".25" Sketch "" Shape ".5°"] "a quarter of a pixel left, or a tenth of a value's range down"
+    FineDown "fine-down" ["J" "Shift-Down"] [Place ".25" Move ".25" Sketch "" Shape ".5°"] "a quarter of a pixel down"
+    FineUp "fine-up" ["K" "Shift-Up"] [Place ".25" Move ".25" Sketch "" Shape ".5°"] "a quarter of a pixel up"
+    FineRight "fine-right" ["L" "Shift-Right"] [Place ".25" Move ".25" Form "" Slide ".25" Sketch "" Shape ".5°"] "a quarter of a pixel right, or a tenth of a value's range up"
+    Accept "accept" ["Enter"] [Place "place" Move "keep" Form "run" Menu "choose" Prompt "done" Review "accept" Dial "keep" History "go there" Slide "keep" Start "open" Sketch "keep" Shape "keep"]
+        "accept: keep, place, run or go; reviewing: the open item, else open the track's, or make a key-frame; in the prints, go to the line's frame; in the skeleton, shape the bone"
+    Back "back" ["Esc" "Ctrl-c"] [Place "back" Move "back" Form "back" Menu "back" Prompt "back" Label "back" Review "" Dial "back" History "back" Slide "back" Start "" Sketch "back" Shape "back"]
         "back: leave what is open, undone; while reviewing, stop the clip or the job, give up the range, then the picks, then the two runs"
     // Time.
-    PlayPause "play" ["space"] [Review "play" Sketch ""] "play or pause; 200 space: at 200 %, from now on"
+    PlayPause "play" ["space"] [Review "play" Sketch "" Shape "play"] "play or pause; 200 space: at 200 %, from now on"
     PlayBackwards "play-backwards" ["B"] [Review "" Sketch ""] "play backwards, or pause"
     SlowForward "play-slow" [";"] [Review "" Sketch "play, draw"] "play slowly or pause; 25 ; : at 25 %, from now on"
     SlowBackward "play-slow-backwards" ["'"] [Review "" Sketch ""] "play slowly backwards, or pause"
     Loop "loop" ["b"] [Review ""] "loop round this frame, or stop; 12 b: 12 frames to both sides"
     NextItem "next-item" ["n"] [Review "next"] "open the next item of the queue, at its worst frame; of two runs, go to the next disagreement"
     PreviousItem "previous-item" ["p"] [Review ""] "open the previous item of the queue, or go to the disagreement before"
-    WorstFrame "worst-frame" ["w"] [Review "open"]
+    WorstFrame "worst-frame" ["w"] [Review ""]
         "open the selected track's item at its worst frame; again, the track's next"
     Bisect "bisect" ["|"] [Review ""] "go half-way between the key-frames around"
     Reject "reject" ["R"] [Review ""] "the open item's track is of no use; on to the next item"
     Later "later" ["E"] [Review ""] "put the open item off; on to the next item"
-    StepForward "step" ["."] [Review "" Move "" Slide "" Sketch "put, next"] "one frame forward, or so many; while drawing, the point is put down here first"
-    StepBack "step-back" [","] [Review "" Move "" Slide "" Sketch ""] "one frame back"
+    StepForward "step" ["."] [Review "" Move "" Slide "" Sketch "put, next" Shape ""] "one frame forward, or so many; while drawing, the point is put down here first"
+    StepBack "step-back" [","] [Review "" Move "" Slide "" Sketch "" Shape ""] "one frame back"
     LeapForward "leap" [">"] [Review ""] "ten frames forward"
     LeapBack "leap-back" ["<"] [Review ""] "ten frames back"
     NextKey "next-key-frame" ["]"] [Review "" Move "" Slide "" Sketch ""] "go to the next key-frame of the selected track"
@@ -193,8 +197,8 @@ table! {
     WaitOn "wait-on" ["W"] [Review ""] "wait for a plugin that gives no sign of life"
     EndPlugin "end-plugin" ["I"] [Review ""] "end the process of a plugin that gives no sign of life; another goes on where it was"
     RunClusterer "cluster" ["c"] [Review "cluster"] "group the tracks by their movement"
-    MoreGroups "more-groups" ["+" "="] [Review "" Dial "gain" Sketch "step"] "one group more; at the dial, more gain; while drawing, a step twice as large"
-    FewerGroups "fewer-groups" ["-"] [Review "" Dial "gain" Sketch "step"] "one group fewer; at the dial, less gain; while drawing, a step half as large"
+    MoreGroups "more-groups" ["+" "="] [Review "" Dial "gain" Sketch "step" Shape "gain"] "one group more; at the dial, more gain; while drawing, a step twice as large"
+    FewerGroups "fewer-groups" ["-"] [Review "" Dial "gain" Sketch "step" Shape "gain"] "one group fewer; at the dial, less gain; while drawing, a step half as large"
     MergeGroups "merge-groups" ["G m"] [Review ""] "merge the selected track's group with another: they stay one wherever the cut is"
     SplitGroup "split-group" ["G s"] [Review ""] "split the selected track's group in two, as it was merged"
     TakeIntoGroup "take-into-group" ["G t"] [Review ""] "take the picked tracks, else the selected one, into another group"
@@ -203,15 +207,19 @@ table! {
     Skeleton "skeleton" ["v k" "G g"] [Review ""] "grow the skeleton of the groups and show it over the picture, or not"
     PlaceRoot "place-root" ["G p"] [Review ""] "place the root of the skeleton by hand: where the plant leaves the ground"
     ReleaseSkeleton "release-skeleton" ["G R"] [Review ""] "forget what was done to the skeleton by hand: it is as it grows again"
+    ShapeBone "shape-bone" ["G b"] [Review ""] "shape the chosen bone of the skeleton by hand: its plane, how it leans, how far it swings"
+    OrbitLeft "orbit-left" ["{"] [Review "" Shape "go round"] "see the skeleton from 15° further round the plant, clockwise from above; the picture is left out"
+    OrbitRight "orbit-right" ["}"] [Review "" Shape "go round"] "see the skeleton from 15° further round the plant, counterclockwise from above; the picture is left out"
+    Front "front-view" ["V"] [Review "" Shape ""] "see the skeleton from the front again, over the picture"
     Undo "undo" ["u"] [Review ""] "undo: take the last edit back"
     Redo "redo" ["Ctrl-r"] [Review ""] "redo: do again what was undone"
     // Looking.
-    ZoomIn "zoom-in" ["z"] [Review "" Place "" Move "" Slide "" Sketch ""] "look closer, at the selected track or the cursor"
-    ZoomOut "zoom-out" ["Z"] [Review "" Place "" Move "" Slide "" Sketch ""] "look from farther away"
-    PanLeft "pan-left" ["Ctrl-Left"] [Review "" Place "" Move ""] "look a quarter of the view further left; a tenth of a pixel while placing or moving"
-    PanDown "pan-down" ["Ctrl-Down"] [Review "" Place "" Move ""] "look a quarter of the view further down; a tenth of a pixel while placing or moving"
-    PanUp "pan-up" ["Ctrl-Up"] [Review "" Place "" Move ""] "look a quarter of the view further up; a tenth of a pixel while placing or moving"
-    PanRight "pan-right" ["Ctrl-Right"] [Review "" Place "" Move ""] "look a quarter of the view further right; a tenth of a pixel while placing or moving"
+    ZoomIn "zoom-in" ["z"] [Review "" Place "" Move "" Slide "" Sketch "" Shape ""] "look closer, at the selected track or the cursor"
+    ZoomOut "zoom-out" ["Z"] [Review "" Place "" Move "" Slide "" Sketch "" Shape ""] "look from farther away"
+    PanLeft "pan-left" ["Ctrl-Left"] [Review "" Place "" Move "" Shape ""] "look a quarter of the view further left; a tenth of a pixel while placing or moving"
+    PanDown "pan-down" ["Ctrl-Down"] [Review "" Place "" Move "" Shape ""] "look a quarter of the view further down; a tenth of a pixel while placing or moving"
+    PanUp "pan-up" ["Ctrl-Up"] [Review "" Place "" Move "" Shape ""] "look a quarter of the view further up; a tenth of a pixel while placing or moving"
+    PanRight "pan-right" ["Ctrl-Right"] [Review "" Place "" Move "" Shape ""] "look a quarter of the view further right; a tenth of a pixel while placing or moving"
     Centre "centre" ["C"] [Review ""] "bring the selected track to the middle"
     Follow "follow" ["f"] [Review ""] "keep the selected track in the middle, or not"
     MotionColours "motion" ["v v"] [Review ""] "show motion in colours: hue is direction, strength is speed; or not"
@@ -227,6 +235,7 @@ table! {
     PanelQueue "panel-queue" ["P q"] [Review ""] "show or hide the queue of doubtful segments"
     PanelTracks "panel-tracks" ["P t"] [Review ""] "show or hide the tracks"
     PanelGroups "panel-groups" ["P g"] [Review ""] "show or hide the groups"
+    PanelSkeleton "panel-skeleton" ["P s"] [Review ""] "show or hide the bones of the skeleton; j and k choose one, Enter shapes it"
     PanelKeyFrames "panel-key-frames" ["P k"] [Review ""] "show or hide the key-frames of the selected track"
     PanelPlots "panel-plots" ["P p"] [Review ""] "show or hide curves: position, speed, quality, sway"
     PlotGroup "plot-group" ["P G"] [Review ""] "plot the selected track's group, or the track"
@@ -240,13 +249,13 @@ table! {
     NextTheme "next-theme" ["v t"] [Review ""] "change the colours: the next theme"
     Mouse "mouse" ["v m"] [Review ""] "leave the mouse to the terminal, for selecting text, or take it back"
     History "history" ["U" "P u"] [Review "" History ""] "show the undo tree; j and k choose an edit there, Enter goes to it"
-    Palette "palette" [":"] [Review "" Place "" Move "" Form "" Dial "" History "" Slide "" Sketch ""] "find any action by name, key or what it does"
-    Help "help" ["?"] [Review "help" Place "" Move "" Form "help" Dial "help" History "help" Slide "" Sketch "help"] "list what works here; Enter does it"
+    Palette "palette" [":"] [Review "" Place "" Move "" Form "" Dial "" History "" Slide "" Sketch "" Shape ""] "find any action by name, key or what it does"
+    Help "help" ["?"] [Review "help" Place "" Move "" Form "help" Dial "help" History "help" Slide "" Sketch "help" Shape "help"] "list what works here; Enter does it"
     Tutorial "tutorial" ["g ?"] [Review ""] "five minutes on a generated clip: what to press, one step at a time"
-    Redraw "redraw" ["Ctrl-l"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label "" History "" Slide "" Start "" Sketch ""] "paint the screen anew"
-    Suspend "suspend" ["Ctrl-z"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label "" History "" Slide "" Start "" Sketch ""] "stop honami until `fg`"
-    Quit "quit" ["q"] [Review "leave" Place "" Move "" Form "" Dial "" History "" Slide "" Start "leave" Sketch ""] "back; while reviewing, leave honami"
-    Leave "leave" ["Q"] [Review "" Place "" Move "" Form "" Dial "" History "" Slide "" Start "" Sketch ""] "leave honami (everything is kept; what is open is asked about first)"
+    Redraw "redraw" ["Ctrl-l"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label "" History "" Slide "" Start "" Sketch "" Shape ""] "paint the screen anew"
+    Suspend "suspend" ["Ctrl-z"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label "" History "" Slide "" Start "" Sketch "" Shape ""] "stop honami until `fg`"
+    Quit "quit" ["q"] [Review "leave" Place "" Move "" Form "" Dial "" History "" Slide "" Start "leave" Sketch "" Shape ""] "back; while reviewing, leave honami"
+    Leave "leave" ["Q"] [Review "" Place "" Move "" Form "" Dial "" History "" Slide "" Start "" Sketch "" Shape ""] "leave honami (everything is kept; what is open is asked about first)"
 }
 
 impl Action {

@@ -13,7 +13,6 @@ use honami_model::document::RunId;
 use honami_model::edit::Transaction;
 use honami_model::history::{Entry, EntryId, Step};
 use honami_model::judgement::Judgement;
-use honami_model::shape;
 use honami_model::track::TrackId;
 use honami_workbench::WorkbenchError;
 use honami_workbench::cluster::{self, ClusterRequest};
@@ -23,7 +22,7 @@ use honami_workbench::session::Session;
 use honami_workbench::store::{Project, StoreError};
 use honami_workbench::track::{self, TrackRequest};
 use honami_workbench::used::Used;
-use honami_workbench::{correct, dense, regroup, versus};
+use honami_workbench::{correct, dense, regroup, shape, versus};
 
 use super::command_log::{self, Origin};
 use super::correcting::{Answer, Ask};
@@ -202,7 +201,8 @@ impl World {
             Effect::Correct(step, hint) => self.correct(&step, hint),
             Effect::Regroup(step, hint) => regroup::prepare(&self.session.project, &step)
                 .and_then(|transaction| self.commit(transaction, hint)),
-            Effect::Shape(step, hint) => self.shape(&step, hint),
+            Effect::Shape(step, hint) => shape::prepare(&self.session.project, &step)
+                .and_then(|transaction| self.commit(transaction, hint)),
             Effect::Study(track) => {
                 self.studied = Some(track);
                 self.layers().map(|fact| fact.into_iter().collect())
@@ -266,13 +266,6 @@ impl World {
         let mut facts = self.commit(transaction, hint)?;
         facts.push(Fact::Corrected(made));
         Ok(facts)
-    }
-
-    fn shape(&mut self, step: &shape::Step, hint: Hint) -> Facts {
-        match shape::transaction(self.session.project.document(), step) {
-            Ok(transaction) => self.commit(transaction, hint),
-            Err(why) => Ok(vec![said_wrong(why.to_string()), Fact::Refused]),
-        }
     }
 
     fn judge(&mut self, found: Judge) -> Facts {

@@ -81,7 +81,9 @@ impl Grower {
     fn grow(&self, progress: &dyn Progress) -> Result<Arc<Bones>, String> {
         let grown = Project::open(&self.project, Access::Read).map_err(WorkbenchError::from);
         let grown = grown.and_then(|project| {
-            let request = GrowRequest { root: project.document().root(), ..GrowRequest::default() };
+            // Hand work on bones is laid over what has grown when that is drawn.
+            let request =
+                GrowRequest { root: project.document().root(), as_grown: true, ..GrowRequest::default() };
             grow(&project, &self.host, &self.plugin, &request, progress)
         });
         grown.map(|growth| Arc::new(Bones::of(growth))).map_err(|error| error.to_string())

@@ -9,6 +9,8 @@ pub enum Panel {
     Tracks,
     /// The groups of the shown clustering.
     Groups,
+    /// The bones of the skeleton.
+    Skeleton,
     /// The key-frames of the selected track.
     KeyFrames,
     /// The undo tree.
@@ -29,6 +31,7 @@ impl Panel {
         Self::Queue,
         Self::Tracks,
         Self::Groups,
+        Self::Skeleton,
         Self::KeyFrames,
         Self::History,
         Self::Plots,
@@ -44,6 +47,7 @@ impl Panel {
             Self::Queue => "queue",
             Self::Tracks => "tracks",
             Self::Groups => "groups",
+            Self::Skeleton => "skeleton",
             Self::KeyFrames => "key-frames",
             Self::History => "history",
             Self::Plots => "plots",

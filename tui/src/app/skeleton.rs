@@ -1,11 +1,19 @@
-//! The skeleton over the picture: what has grown behind the screen, and where its joints are seen.
+//! The skeleton over the picture: what has grown behind the screen, how hands have shaped it, and where its joints are seen.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use honami_model::document::Document;
-use honami_workbench::grow::Growth;
+use honami_model::skeleton::Skeleton;
+use honami_model::turn::angle;
+use honami_workbench::WorkbenchError;
+use honami_workbench::grow::{self, Growth};
+use honami_workbench::shape::{Bone, Shape};
 
 use super::state::State;
+
+/// A step of the view round the plant, degrees.
+pub const ORBIT: i32 = 15;
 
 /// What is known of the skeleton of the shown groups.
 #[derive(Clone, Debug, Default)]
@@ -18,6 +26,12 @@ pub struct Skeletal {
     pub hand: Hand,
     /// What has grown; what was before, until another has.
     pub bones: Option<Arc<Bones>>,
+    /// Where its joints are, as hands have shaped it.
+    pub pose: Option<Arc<Pose>>,
+    /// The node of the bone that is chosen; without one, that of the selected track's group is.
+    pub chosen: Option<u32>,
+    /// From where it is seen: degrees about the upright, counterclockwise from above; 0 from the front.
+    pub azimuth: i32,
     /// What is awaited of the growth that goes on; `None` while none does.
     pub awaited: Option<Awaited>,
     /// The revision that was asked for last.
@@ -25,18 +39,38 @@ pub struct Skeletal {
 }
 
 /// What a person has done to it.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Hand {
     /// Where its root was placed, pixels (right, down).
     pub root: Option<[f64; 2]>,
+    /// How bones are shaped, by their nodes.
+    pub shapes: BTreeMap<u32, Shape>,
 }
 
 impl Hand {
     /// What a document has of it.
     #[must_use]
     pub fn of(document: &Document) -> Self {
-        Self { root: document.root() }
+        let shapes = document.clustering().map(|shown| document.shapes(shown.id).collect());
+        Self { root: document.root(), shapes: shapes.unwrap_or_default() }
     }
+
+    /// How a bone is shaped.
+    #[must_use]
+    pub fn shape(&self, node: u32) -> Shape {
+        self.shapes.get(&node).copied().unwrap_or_default()
+    }
+}
+
+/// A bone that is being shaped.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shaping {
+    /// The bone.
+    pub bone: Bone,
+    /// How it is to be.
+    pub shape: Shape,
+    /// All joints as they will be then.
+    pub pose: Arc<Pose>,
 }
 
 /// What is awaited of a growth.
@@ -48,44 +82,80 @@ pub enum Awaited {
     Bones,
 }
 
-/// A skeleton as the screen draws it.
+/// A skeleton as it grew, without hand work on its bones.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bones {
-    /// What has grown.
+    /// What has grown; what its joints carry is not drawn, and left out.
     pub growth: Growth,
-    /// The bones that are seen from the front, copies of these apart.
-    pub n_seen: usize,
+    /// Rows of the bones, copies apart.
+    pub own: Vec<usize>,
+}
+
+/// Where all joints are, and what is to be said of their bones.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pose {
     /// Joint after joint in frame after frame: right, away, up, pixels.
     places: Vec<[f32; 3]>,
+    n_joints: usize,
+    first: u32,
+    /// Half-way between the outermost places, right and away: what the view goes round.
+    pub middle: [f32; 2],
+    /// How far each bone turns about how it is at rest, root mean square, degrees.
+    pub swing_deg: Vec<f64>,
 }
 
 impl Bones {
-    /// Works out where all joints are.
+    /// What has grown, without what it carries.
     #[must_use]
     pub fn of(growth: Growth) -> Self {
-        let skeleton = &growth.skeleton;
-        let place = |frame: u32| skeleton.places(skeleton.directions(frame));
-        let places = (0..skeleton.times().len()).flat_map(place).map(|at| at.map(|v| v as f32)).collect();
-        // Copies come after what they are copies of, and from the front they are seen in its place.
-        let n_seen = (skeleton.joints().len() - 1) / growth.n_copies.max(1);
-        Self { growth, n_seen, places }
+        let copy_of = |row: usize| growth.bones.copy_of.get(row).copied().flatten();
+        let own = (1..growth.skeleton.joints().len()).filter(|row| copy_of(*row).is_none()).collect();
+        // A skeleton without leaves is one as well.
+        let bare = growth.skeleton.clone().with_leaves(Vec::new());
+        let growth = match bare {
+            Ok(skeleton) => Growth { skeleton, ..growth },
+            Err(_) => growth,
+        };
+        Self { growth, own }
     }
 
-    /// Where all joints are in a frame of the clip; `None` where it has none.
+    /// The bone that ends at a joint; `None` where the structure builder has not told what it is of.
     #[must_use]
-    pub fn at(&self, frame: u32) -> Option<&[[f32; 3]]> {
-        let nth = frame.checked_sub(self.growth.frames.start)? as usize;
-        self.places.chunks(self.growth.skeleton.joints().len()).nth(nth)
+    pub fn known(&self, row: usize) -> Option<&Bone> {
+        self.growth.bones.known.get(row)?.as_ref()
+    }
+
+    /// The row of the bone with a node.
+    #[must_use]
+    pub fn row_of(&self, node: u32) -> Option<usize> {
+        self.own.iter().copied().find(|row| self.known(*row).is_some_and(|bone| bone.node == node))
+    }
+
+    /// Where all joints are when bones are shaped so.
+    ///
+    /// # Errors
+    /// What cannot be shaped.
+    pub fn pose(&self, shape_of: impl Fn(u32) -> Shape) -> Result<Arc<Pose>, WorkbenchError> {
+        let shaped = grow::shape(&self.growth, |bone| shape_of(bone.node))?;
+        Ok(Arc::new(Pose::of(&shaped, self.growth.frames.start)))
     }
 
     /// What it is and what it took: `skeleton: 9 bones of 4 groups, diener, 0.2 s`.
     #[must_use]
-    pub fn words(&self) -> String {
+    pub fn words(&self, hand: &Hand) -> String {
         let counted = |n: usize, one: &str| if n == 1 { format!("1 {one}") } else { format!("{n} {one}s") };
         let id = &self.growth.provenance.plugin_id;
+        let n_shaped = hand.shapes.keys().filter(|node| self.row_of(**node).is_some()).count();
+        let root = hand.root.map(|_| "the root".to_owned());
+        let by_hand: Vec<String> =
+            root.into_iter().chain((n_shaped > 0).then(|| counted(n_shaped, "bone"))).collect();
+        let by_hand = match by_hand.is_empty() {
+            true => String::new(),
+            false => format!(", {} by hand", by_hand.join(" and ")),
+        };
         let mut words = format!(
-            "skeleton: {} of {}, {}, {:.1} s",
-            counted(self.n_seen, "bone"),
+            "skeleton: {} of {}{by_hand}, {}, {:.1} s",
+            counted(self.own.len(), "bone"),
             counted(self.growth.groups.len(), "group"),
             id.rsplit('.').next().unwrap_or(id),
             self.growth.seconds
@@ -97,6 +167,40 @@ impl Bones {
     }
 }
 
+impl Pose {
+    fn of(skeleton: &Skeleton, first: u32) -> Self {
+        let frames = 0..skeleton.times().len();
+        let place = |frame: u32| skeleton.places(skeleton.directions(frame));
+        let places: Vec<[f32; 3]> = frames.clone().flat_map(place).map(|at| at.map(|v| v as f32)).collect();
+        let middle = [0, 1].map(|axis| {
+            let along = || places.iter().map(|at| at[axis]);
+            f32::midpoint(along().fold(f32::INFINITY, f32::min), along().fold(f32::NEG_INFINITY, f32::max))
+        });
+        let swing = |row: usize| {
+            let squares = frames.clone().map(|frame| {
+                angle(skeleton.rest()[row], skeleton.directions(frame)[row]).to_degrees().powi(2)
+            });
+            (squares.sum::<f64>() / f64::from(frames.end.max(1))).sqrt()
+        };
+        let n_joints = skeleton.joints().len();
+        Self { places, n_joints, first, middle, swing_deg: (0..n_joints).map(swing).collect() }
+    }
+
+    /// Where all joints are in a frame of the clip; `None` where it has none.
+    #[must_use]
+    pub fn at(&self, frame: u32) -> Option<&[[f32; 3]]> {
+        self.places.chunks(self.n_joints).nth(frame.checked_sub(self.first)? as usize)
+    }
+
+    /// Where a place is seen from an azimuth, pixels (right, down), and how far behind the middle it is then.
+    #[must_use]
+    pub fn seen(&self, [x, y, z]: [f32; 3], azimuth: i32) -> ([f32; 2], f32) {
+        let (sin, cos) = (azimuth as f32).to_radians().sin_cos();
+        let (right, away) = (x - self.middle[0], y - self.middle[1]);
+        ([self.middle[0] + cos * right + sin * away, -z], cos * away - sin * right)
+    }
+}
+
 impl Skeletal {
     /// What it grows from is another now.
     pub fn outdate(&mut self) {
@@ -105,15 +209,15 @@ impl Skeletal {
 
     /// There is nothing to grow from.
     pub fn wither(&mut self) {
-        (self.bones, self.awaited, self.asked) = (None, None, None);
+        (self.bones, self.pose, self.awaited, self.asked, self.azimuth) = (None, None, None, None, 0);
     }
 
-    /// What was done to it by hand is this now.
+    /// What was done to it by hand is this now: roots change what grows.
     pub fn take(&mut self, hand: Hand) {
-        if self.hand != hand {
-            self.hand = hand;
+        if self.hand.root != hand.root {
             self.outdate();
         }
+        self.hand = hand;
     }
 
     /// Shows it, from its growth on.
@@ -127,6 +231,24 @@ impl Skeletal {
         self.is_on = false;
         // What was asked for before is not what is asked for from now on.
         self.outdate();
+    }
+
+    /// Whether it is seen from elsewhere than the camera: then the picture is not behind it.
+    #[must_use]
+    pub fn is_turned(&self) -> bool {
+        self.azimuth != 0 && self.pose.is_some()
+    }
+
+    /// The row of the bone that is chosen, else of that of the selected track's group.
+    #[must_use]
+    pub fn current(state: &State) -> Option<usize> {
+        let bones = state.skeleton.bones.as_deref()?;
+        let chosen = state.skeleton.chosen.and_then(|node| bones.row_of(node));
+        chosen.or_else(|| {
+            let group = state.groups.as_ref()?.of(state.selected?)?;
+            let is_its = |row: &usize| bones.growth.skeleton.joints()[*row].groups.contains(&group);
+            bones.own.iter().copied().find(is_its)
+        })
     }
 
     /// The revision that is to grow now, once.

@@ -26,7 +26,7 @@ use super::prints::Prints;
 use super::queue::{Looked, Opened};
 use super::ranging::Ranging;
 use super::recovery::Recovery;
-use super::skeleton::Skeletal;
+use super::skeleton::{Shaping, Skeletal};
 use super::sketching::Sketching;
 use super::tracks::TrackRow;
 use super::versus::Versus;
@@ -170,6 +170,8 @@ pub enum Mode {
     Place([f32; 2]),
     /// Choosing where the root of the skeleton is; image pixels.
     Root([f32; 2]),
+    /// Shaping a bone of the skeleton.
+    Shape(Box<Shaping>),
     /// Moving a sample of the selected track.
     Move(Box<Moving>),
     /// Drawing the selected track.
@@ -204,6 +206,7 @@ impl Mode {
         match self {
             Self::Review => Context::Review,
             Self::Place(_) | Self::Root(_) => Context::Place,
+            Self::Shape(_) => Context::Shape,
             Self::Move(moving) => match moving.tool {
                 Tool::Place { .. } => Context::Move,
                 Tool::Slide(_) => Context::Slide,

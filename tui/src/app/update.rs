@@ -15,6 +15,7 @@ mod pick;
 mod queue;
 mod ranges;
 mod recovery;
+mod shaping;
 mod skeleton;
 mod sketch;
 mod time;
@@ -27,7 +28,6 @@ use std::time::Duration;
 use honami_model::document::RunId;
 use honami_model::edit::Transaction;
 use honami_model::history::EntryId;
-use honami_model::shape;
 use honami_model::track::TrackId;
 use honami_workbench::cluster::ClusterRequest;
 use honami_workbench::correct::Step;
@@ -35,6 +35,7 @@ use honami_workbench::offer::Wish;
 use honami_workbench::progress::Patience;
 use honami_workbench::regroup;
 use honami_workbench::retrack;
+use honami_workbench::shape;
 use honami_workbench::track::TrackRequest;
 
 use super::action::{Action, Context};
@@ -260,6 +261,7 @@ fn on_text(state: &mut State, text: &str) {
         Mode::Review
         | Mode::Place(_)
         | Mode::Root(_)
+        | Mode::Shape(_)
         | Mode::Move(_)
         | Mode::Sketch(_)
         | Mode::Dial(_)

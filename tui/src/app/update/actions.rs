@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use super::{
     Action, Effect, Mode, State, choose, complain, edit, groups, history, look, motion, mouse, moving,
-    open_menu, pick, queue, ranges, recovery, say, skeleton, sketch, time, tracks, versus,
+    open_menu, pick, queue, ranges, recovery, say, shaping, skeleton, sketch, time, tracks, versus,
 };
 use honami_model::judgement::Verdict;
 use honami_model::track::{Status, TrackSet};
@@ -120,12 +120,16 @@ fn look_about(state: &mut State, action: Action) -> Vec<Effect> {
         Action::VersusRuns => return vec![Effect::Entrants(None)],
         Action::PanelVersus => show_panel(state, Panel::Versus),
         Action::Skeleton => skeleton::toggle(state),
+        Action::OrbitLeft => shaping::orbit(state, -count(state)),
+        Action::OrbitRight => shaping::orbit(state, count(state)),
+        Action::Front => shaping::front(state),
         Action::Marks => state.marks_all = !state.marks_all,
         Action::Column if matches!(state.mode, Mode::Move(_)) => moving::next_model(state),
         Action::Column => state.panel = Panel::after(state.panel),
         Action::PanelQueue => show_panel(state, Panel::Queue),
         Action::PanelTracks => show_panel(state, Panel::Tracks),
         Action::PanelGroups => show_panel(state, Panel::Groups),
+        Action::PanelSkeleton => skeleton::show_bones(state),
         Action::PanelKeyFrames => show_panel(state, Panel::KeyFrames),
         Action::PanelPlots => show_panel(state, Panel::Plots),
         Action::PlotGroup => look::plot_group(state),
@@ -162,6 +166,7 @@ fn more(state: &mut State, by: i64) -> Vec<Effect> {
     match state.mode {
         Mode::Dial(_) => motion::gain(state, by),
         Mode::Sketch(_) => sketch::scale_step(state, by),
+        Mode::Shape(_) => shaping::gain(state, by),
         _ => return edit::cut(state, by),
     }
     Vec::new()
@@ -206,6 +211,7 @@ fn correct(state: &mut State, action: Action) -> Vec<Effect> {
         Action::TakeIntoGroup => groups::choose_other(state, "take into", Choice::TakeInto),
         Action::NameGroup => groups::begin_name(state),
         Action::PlaceRoot => skeleton::begin_root(state),
+        Action::ShapeBone => return shaping::begin(state),
         Action::ReleaseSkeleton => return skeleton::release(state),
         Action::ReleaseGroups => return groups::release(state),
         Action::GoOn => return recovery::go_on(state),
@@ -228,13 +234,16 @@ fn steer(state: &mut State, dx: f32, dy: f32, px: f32) -> Vec<Effect> {
     let by = [dx, dy].map(|d| d * px * n as f32);
     match &mut state.mode {
         Mode::Review if columns != 0 => time::step(state, columns),
-        // Nothing else goes through its lines.
-        Mode::Review if state.panel == Some(Panel::Prints) => mouse::step_list(state, rows),
+        // Rows that are no tracks.
+        Mode::Review if matches!(state.panel, Some(Panel::Prints | Panel::Skeleton)) => {
+            mouse::step_list(state, rows)
+        }
         Mode::Review => time::step_track(state, rows),
         Mode::Place(at) | Mode::Root(at) => {
             let px = nudge_px(state.zoom);
             *at = edit::within(&state.clip, [at[0] + by[0] * px, at[1] + by[1] * px]);
         }
+        Mode::Shape(_) => shaping::steer(state, [dx, dy].map(f64::from), px.into()),
         Mode::Move(_) => moving::nudge(state, by),
         Mode::Sketch(_) => sketch::steer(state, by),
         Mode::Form(form) if columns != 0 => form.change(columns, px < 1.0),
@@ -256,6 +265,7 @@ fn accept(state: &mut State) -> Vec<Effect> {
         },
         Mode::Place(_) => edit::place(state),
         Mode::Root(_) => skeleton::place_root(state),
+        Mode::Shape(_) => shaping::keep(state),
         Mode::Move(_) => moving::keep(state),
         Mode::Sketch(_) => sketch::keep(state),
         Mode::Menu(_) => choose(state),
@@ -322,6 +332,7 @@ fn leave(state: &mut State) -> Vec<Effect> {
     let open = match &state.mode {
         Mode::Move(moving) if moving.has_moved() => "a move is not kept: Enter keeps",
         Mode::Sketch(sketching) if !sketching.strokes.is_empty() => "a sketch is not kept: Enter keeps",
+        Mode::Shape(_) => "a bone's shape is not kept: Enter keeps",
         Mode::Form(_) => "a form has not been run: Enter runs",
         _ => return vec![Effect::Leave],
     };
@@ -384,6 +395,7 @@ fn erase(state: &mut State) -> Vec<Effect> {
         Mode::Review
         | Mode::Place(_)
         | Mode::Root(_)
+        | Mode::Shape(_)
         | Mode::Move(_)
         | Mode::Dial(_)
         | Mode::Label(_)
@@ -496,7 +508,7 @@ fn likely_frames(state: &State) -> Range<u32> {
 }
 
 /// Shows a panel; the one that is shown goes.
-fn show_panel(state: &mut State, panel: Panel) {
+pub(super) fn show_panel(state: &mut State, panel: Panel) {
     state.panel = Some(panel).filter(|panel| state.panel != Some(*panel));
 }
 

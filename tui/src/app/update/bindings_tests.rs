@@ -5,13 +5,14 @@ use std::path::Path;
 
 use super::tests::{line, start};
 use super::*;
-use crate::app::fixture::{press, send};
+use crate::app::fixture::{self, press, send};
 use crate::app::keymap::{Binding, KeyMap, shown};
 
 /// How keys come to be read in a place. The start screen has tests of its own.
-const REACH: [(Context, &str); 11] = [
+const REACH: [(Context, &str); 12] = [
     (Context::Review, ""),
     (Context::Place, "a"),
+    (Context::Shape, "grown G b"),
     (Context::Move, "m l"),
     (Context::Slide, "T"),
     (Context::Sketch, "s"),
@@ -22,6 +23,17 @@ const REACH: [(Context, &str); 11] = [
     (Context::Label, "C g l"),
     (Context::History, "U j"),
 ];
+
+/// Presses keys; where the word is `grown`, a skeleton has.
+fn reach(state: &mut State, way: &str) {
+    match way.strip_prefix("grown") {
+        Some(way) => {
+            fixture::skeleton::show(state);
+            press(state, way);
+        }
+        None => drop(press(state, way)),
+    }
+}
 
 /// Keys that give an action something to do.
 fn prepared(context: Context, action: Action) -> &'static str {
@@ -61,6 +73,8 @@ fn looks(state: &State) -> Vec<String> {
         on("follow", state.follow),
         on("marks", state.marks_all),
         on("motion", state.motion.is_on),
+        on("skeleton", state.skeleton.is_on),
+        format!("seen from {}°", state.skeleton.azimuth),
         format!("full colour at {:.0} px/s", state.motion.full_px_s()),
         format!("panel {:?}", state.panel),
         on("wide", state.panel_is_wide),
@@ -80,7 +94,7 @@ fn every_binding_has_a_way_back() {
     for (binding, way) in bindings() {
         for from in ["frame=20", "frame=20 empty", "frame=20 job playing", "locked", "bare zoom=2"] {
             let mut state = start(from);
-            press(&mut state, way);
+            reach(&mut state, way);
             binding.keys.iter().for_each(|key| drop(update(&mut state, Msg::Key(*key))));
             assert!(state.pending.is_empty(), "{binding:?} from {from}");
             press(&mut state, "Esc Esc Esc Esc");
@@ -96,7 +110,7 @@ fn every_binding_answers() {
     let (mut rows, mut silent) = (String::new(), Vec::new());
     for (binding, way) in bindings() {
         let mut state = start("frame=20 zoom=2");
-        press(&mut state, way);
+        reach(&mut state, way);
         assert_eq!(state.mode.context(), binding.context, "by `{way}`");
         press(&mut state, prepared(binding.context, binding.action));
         state.notice = None;

@@ -133,7 +133,8 @@ pub(super) fn cut(state: &mut State, by: i64) -> Vec<Effect> {
     let cut = groups.at(u32::try_from(wanted).unwrap_or(1));
     if cut.of == groups.shown.of {
         let by_hand = if groups.held.is_empty() { "" } else { ": those made by hand stay" };
-        let line = format!("{n_groups} groups is as far as it goes{by_hand}");
+        let counted = if n_groups == 1 { "1 group".to_owned() } else { format!("{n_groups} groups") };
+        let line = format!("{counted} is as far as it goes{by_hand}");
         say(state, line);
         return Vec::new();
     }

@@ -115,7 +115,7 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
         }
         Fact::Groups(groups) => on_groups(state, groups.map(|groups| *groups)),
         Fact::Plots(subject, plots) => state.plotted.plots = Some((subject, plots)),
-        Fact::Hand(hand) => state.skeleton.take(hand),
+        Fact::Hand(hand) => skeleton::on_hand(state, hand),
         Fact::Tracker(tracker) => state.tracker = tracker,
         Fact::Placed(track) => {
             state.selected = Some(track);
@@ -158,6 +158,7 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
         Fact::Refused => {
             if let Some(before) = state.before.take() {
                 before.put_back(state);
+                skeleton::pose(state);
             }
         }
         Fact::Files(listing) => state.mode = Mode::Menu(Box::new(Menu::of_files(listing))),

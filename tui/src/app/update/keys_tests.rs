@@ -7,6 +7,9 @@ use crate::app::fixture;
 /// A state in which keys are read in a place.
 fn in_place(context: Context) -> State {
     let mut state = fixture::state();
+    if context == Context::Shape {
+        fixture::skeleton::show(&mut state);
+    }
     let mut press = |keys: &str| {
         for key in keys.split(' ') {
             update(&mut state, Msg::Key(key.parse().unwrap()));
@@ -15,6 +18,7 @@ fn in_place(context: Context) -> State {
     match context {
         Context::Review => press("g f 4 0 Enter z"),
         Context::Place => press("z a"),
+        Context::Shape => press("G b"),
         Context::Move => press("g f 4 0 Enter m"),
         Context::Slide => press("g f 4 0 Enter T"),
         Context::Sketch => press("g f 4 0 Enter s ."),
@@ -81,7 +85,13 @@ fn drawn_hints(state: &State) -> Vec<(String, String)> {
     // Keys are a sequence as in `t t re-track`, or `space play`: whichever the key map calls so.
     let keys = state.keys.hints(state.mode.context());
     let of = |hint: &str| {
-        let known = keys.iter().find(|(keys, word)| hint == format!("{keys} {word}"));
+        // What Enter does is said in the words of what is open.
+        let is_accept = |(keys, word): &(String, &str)| {
+            let words = ["accept", "open", "shape", "key-frame"].map(|word| format!("{keys} {word}"));
+            *word == "accept" && words.iter().any(|words| words == hint)
+        };
+        let is_it = |known: &&(String, &str)| hint == format!("{} {}", known.0, known.1) || is_accept(known);
+        let known = keys.iter().find(is_it);
         known.map(|(keys, word)| (keys.clone(), (*word).to_owned()))
     };
     hints.map(|hint| of(hint).unwrap_or_else(|| panic!("{hint} is in no key map: {keys:?}"))).collect()

@@ -21,7 +21,12 @@ pub(super) fn on_mouse(state: &mut State, mouse: Mouse) -> Vec<Effect> {
                 Mode::Form(form) => form.step(by),
                 Mode::Review if layout.column.contains(here) => step_list(state, by),
                 Mode::Review if layout.time.contains(here) => time::step(state, by),
-                Mode::Review | Mode::Place(_) | Mode::Root(_) | Mode::Move(_) | Mode::Sketch(_) => {
+                Mode::Review
+                | Mode::Place(_)
+                | Mode::Root(_)
+                | Mode::Shape(_)
+                | Mode::Move(_)
+                | Mode::Sketch(_) => {
                     if let Some(point) = lens.point_of(mouse.column, mouse.row) {
                         look::zoom_at(state, -by, point);
                     }
@@ -57,7 +62,11 @@ pub(super) fn on_mouse(state: &mut State, mouse: Mouse) -> Vec<Effect> {
                 match &mut state.mode {
                     Mode::Place(at) | Mode::Root(at) => *at = point,
                     Mode::Move(_) => moving::point(state, point),
-                    Mode::Review if matches!(mouse.kind, MouseKind::Press(_)) => nearest(state, &lens, point),
+                    Mode::Review
+                        if matches!(mouse.kind, MouseKind::Press(_)) && !state.skeleton.is_turned() =>
+                    {
+                        nearest(state, &lens, point)
+                    }
                     _ => {}
                 }
             }
@@ -83,6 +92,7 @@ fn pick(state: &mut State, picked: Option<Pick>) {
                 *at = row;
             }
         }
+        Some(Pick::Bone(node)) => state.skeleton.chosen = Some(node),
         Some(Pick::Print(line)) => state.prints.look_at(line),
         None => {}
     }

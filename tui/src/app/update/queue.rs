@@ -71,8 +71,23 @@ pub(super) fn open_rank(state: &mut State, rank: Rank) {
 }
 
 /// What an action means: to accept on a doubtful track whose item is not open is to open that, but for the lines of the
-/// prints, to which it goes.
+/// prints, to which it goes; among bones to shape the chosen one. Up and down in the queue go to its items.
 pub(super) fn meant(state: &State, action: Action) -> Action {
+    let panel = state.panel.filter(|_| matches!(state.mode, Mode::Review));
+    match (panel, action) {
+        (Some(Panel::Skeleton), Action::Accept) => return Action::ShapeBone,
+        // Rows of the queue are its items; the current one is opened before one goes on.
+        (Some(Panel::Queue), _) if state.versus.is_some() || state.review.queue.is_empty() => {}
+        (Some(Panel::Queue), Action::Down | Action::Up)
+            if state.opened().is_none() && state.current_item().is_some() =>
+        {
+            return Action::WorstFrame;
+        }
+        (Some(Panel::Queue), Action::Down) => return Action::NextItem,
+        (Some(Panel::Queue), Action::Up) => return Action::PreviousItem,
+        (Some(Panel::Queue), Action::Accept) if state.current_item().is_none() => return Action::NextItem,
+        _ => {}
+    }
     let is_over_prints = state.panel == Some(Panel::Prints);
     let opens = action == Action::Accept && matches!(state.mode, Mode::Review) && !is_over_prints;
     let is_closed = opens && state.opened().is_none() && state.current_item().is_some();

@@ -272,3 +272,60 @@ fn a_click_in_a_loop_selects_what_is_seen() {
     update(&mut state, Msg::Mouse(Mouse { kind: MouseKind::Press(0), column: 26, row: 10 }));
     assert_eq!(state.selected, Some(TrackId(2)));
 }
+
+/// Up and down in the queue go to its items, and Enter accepts what they open; it makes no key-frame there.
+#[test]
+fn the_rows_of_the_queue_are_its_items() {
+    let rank = |state: &State| state.opened().map(|opened| opened.item.rank());
+    let ranks: Vec<_> = start("").review.queue.iter().map(|item| item.rank()).collect();
+    for (keys, at) in
+        [("P q n j", 1), ("P q n j j", 2), ("P q n 2 j k", 1), ("P q n j n", 2), ("P q n 9 j", 3)]
+    {
+        let mut state = start("");
+        press(&mut state, keys);
+        assert_eq!(rank(&state), Some(ranks[at]), "by `{keys}`");
+        let effects = press(&mut state, "Enter");
+        assert!(matches!(effects[..], [Effect::Judge(_)]), "by `{keys}`: {effects:?}");
+    }
+    // A track without doubt: Enter goes to the first item.
+    let mut state = start("track=2 frame=5");
+    state.review.queue.set(TrackId(2), Vec::new());
+    let effects = press(&mut state, "P q Enter");
+    assert_eq!((rank(&state), effects), (state.review.queue.first().map(|item| item.rank()), Vec::new()));
+}
+
+#[test]
+fn the_last_line_says_what_enter_does() {
+    for (from, keys, word) in [
+        ("frame=20", "", "open"),
+        ("frame=20", "n", "accept"),
+        ("frame=20", "P q", "open"),
+        ("frame=20", "P q j", "accept"),
+        ("frame=20 bare", "v k", "open"),
+        ("frame=20 locked", "", ""),
+        ("frame=20 locked", "n", ""),
+        ("frame=20 empty", "", ""),
+    ] {
+        let mut state = start(from);
+        press(&mut state, keys);
+        assert_eq!(enter(&state), word, "from `{from}` by `{keys}`");
+    }
+    let mut state = start("frame=20");
+    state.review = Default::default();
+    assert_eq!(enter(&state), "key-frame");
+    state.frame = 10;
+    assert_eq!(enter(&state), "", "it is one already");
+    state.frame = 75;
+    assert_eq!(enter(&state), "", "it is lost there");
+    crate::app::fixture::skeleton::show(&mut state);
+    press(&mut state, "P s");
+    assert_eq!(enter(&state), "shape");
+}
+
+/// The word beside Enter in the last line.
+fn enter(state: &State) -> String {
+    let frame = crate::app::view::draw(&State { size: (300, 24), ..state.clone() }, None);
+    let row: String = (0..300).map(|x| frame.cells[(x, 23)].symbol().to_owned()).collect();
+    row.split_once('⏎')
+        .map_or_else(String::new, |(_, rest)| rest.split("  ").next().unwrap().trim().to_owned())
+}

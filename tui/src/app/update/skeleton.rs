@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
-use honami_model::shape::Step;
 use honami_model::skeleton::seen;
+use honami_workbench::shape::Step;
 
 use super::facts::happened;
-use super::{Effect, Mode, State, UNDO, complain, edit, say, time};
-use crate::app::skeleton::{Awaited, Bones};
+use super::{Effect, Mode, State, UNDO, actions, complain, edit, say, time};
+use crate::app::panel::Panel;
+use crate::app::skeleton::{Awaited, Bones, Hand};
 
 /// Grows the skeleton of the shown groups and shows it, or shows it no longer.
 pub(super) fn toggle(state: &mut State) {
@@ -42,10 +43,49 @@ pub(super) fn on_grown(state: &mut State, revision: u64, grown: Result<Arc<Bones
     }
     let awaited = skeleton.awaited.take();
     skeleton.bones = grown.as_ref().ok().cloned();
+    skeleton.pose = None;
+    pose(state);
     match grown {
-        Ok(bones) if awaited == Some(Awaited::Line) => happened(state, bones.words(), false),
+        Ok(bones) if awaited == Some(Awaited::Line) => {
+            happened(state, bones.words(&state.skeleton.hand), false);
+        }
         Ok(_) => {}
         Err(why) => happened(state, format!("no skeleton: {why}"), true),
+    }
+}
+
+/// This was done by hand now.
+pub(super) fn on_hand(state: &mut State, hand: Hand) {
+    if state.skeleton.hand != hand {
+        state.skeleton.take(hand);
+        pose(state);
+    }
+}
+
+/// Works out where all joints are, as bones are shaped; and as they will be, where one is being shaped.
+pub(super) fn pose(state: &mut State) {
+    let Some(bones) = state.skeleton.bones.clone() else { return };
+    let hand = &state.skeleton.hand;
+    let kept = bones.pose(|node| hand.shape(node));
+    let open = match &mut state.mode {
+        Mode::Shape(shaping) => {
+            let (open, shape) = (shaping.bone.node, shaping.shape);
+            let pose = bones.pose(|node| if node == open { shape } else { hand.shape(node) });
+            pose.map(|pose| shaping.pose = pose)
+        }
+        _ => Ok(()),
+    };
+    match kept.and_then(|kept| open.map(|()| kept)) {
+        Ok(kept) => state.skeleton.pose = Some(kept),
+        Err(why) => happened(state, format!("the skeleton cannot be shaped so: {why}"), true),
+    }
+}
+
+/// Lists the bones, or no longer; where no skeleton is shown it grows.
+pub(super) fn show_bones(state: &mut State) {
+    actions::show_panel(state, Panel::Skeleton);
+    if state.panel == Some(Panel::Skeleton) && !state.skeleton.is_on && state.groups.is_some() {
+        state.skeleton.show();
     }
 }
 

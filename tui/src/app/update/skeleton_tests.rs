@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use super::tests::{check, line, start};
-use honami_model::shape::Step;
+use honami_workbench::shape::{Shape, Step};
 
-use super::{Effect, Fact, Msg, State, update};
+use super::{Effect, Fact, Mode, Msg, State, update};
 use crate::app::fixture::{self, press};
 use crate::app::layout::Lens;
-use crate::app::skeleton::{Awaited, Bones, Hand, Skeletal};
+use crate::app::skeleton::{Awaited, Bones, Hand, Pose, Skeletal};
 use crate::app::tracks::TrackRow;
 
 const LOCKED: &str =
@@ -60,7 +60,7 @@ fn what_has_grown_is_said_once_and_what_changes_grows_anew() {
     grown(&mut state, first, Ok(()));
     let said = "review | frame 0 track 1 | said skeleton: 3 bones of 2 groups, diener, 0.2 s";
     assert_eq!(line(&state, &[]), said);
-    assert!(state.skeleton.bones.is_some() && state.skeleton.awaited.is_none());
+    assert!(state.skeleton.pose.is_some() && state.skeleton.awaited.is_none());
     // The same tracks and groups once more: nothing to grow.
     let (tracks, groups) = (state.tracks.clone(), state.groups.clone());
     let tell = |state: &mut State, tracks: Vec<TrackRow>, groups| {
@@ -114,12 +114,12 @@ fn a_root_is_placed_from_where_it_is() {
     assert!(line(&state, &[]).starts_with("root 161 210"), "{}", line(&state, &[]));
     // The project has it elsewhere: it grows anew, from there.
     press(&mut state, "Esc");
-    let hand = Hand { root: Some([12.0, 34.0]) };
-    drop(update(&mut state, Msg::Fact(Fact::Hand(hand))));
+    let hand = Hand { root: Some([12.0, 34.0]), ..Hand::default() };
+    drop(update(&mut state, Msg::Fact(Fact::Hand(hand.clone()))));
     assert!(Skeletal::request(&mut state).is_some());
     press(&mut state, "G p");
     assert!(line(&state, &[]).starts_with("root 12 34"), "{}", line(&state, &[]));
-    drop(update(&mut state, Msg::Fact(Fact::Hand(hand))));
+    drop(update(&mut state, Msg::Fact(Fact::Hand(hand.clone()))));
     assert_eq!(Skeletal::request(&mut state), None, "the same once more");
     // The mouse puts it where it is clicked, and takes it along.
     let words = ["press:13,1", "drag:40,12", "Enter"];
@@ -154,12 +154,115 @@ fn what_was_hidden_does_not_come_back() {
 fn joints_are_in_frames_of_the_clip() {
     let mut growth = fixture::skeleton::growth();
     growth.frames = 12..92;
-    let bones = Bones::of(growth);
-    assert_eq!((bones.at(11), bones.at(92)), (None, None));
-    let [root, fork, .., tip] = bones.at(12).unwrap() else { panic!("four joints") };
+    let pose = Bones::of(growth).pose(|_| Shape::default()).unwrap();
+    assert_eq!((pose.at(11), pose.at(92)), (None, None));
+    let [root, fork, .., tip] = pose.at(12).unwrap() else { panic!("four joints") };
     assert_eq!((*root, *fork), ([160.0, 0.0, -210.0], [160.0, 0.0, -150.0]));
     // 120 px from the fork, at 0.8, 0.6: at rest, as the sway of frame 0 of the growth is none.
     assert!((tip[0] - 256.0).abs() < 1e-3 && (tip[2] + 78.0).abs() < 1e-3, "{tip:?}");
-    let swung = bones.at(20).unwrap()[3];
+    let swung = pose.at(20).unwrap()[3];
     assert!((swung[0] - tip[0]).hypot(swung[2] - tip[2]) > 20.0, "{swung:?}");
+}
+
+/// The state after some keys, with a skeleton that has grown; and what was asked for.
+fn shaped(keys: &str) -> (State, Vec<Effect>) {
+    let mut state = start("");
+    fixture::skeleton::show(&mut state);
+    let effects = press(&mut state, keys);
+    (state, effects)
+}
+
+#[test]
+fn bones_are_shaped_by_keys() {
+    for (keys, expect) in [
+        // The bone of the selected track's group, or the one that is chosen among the bones.
+        ("G b", "shape group 1 bud "),
+        ("j j G b", "shape group 2 "),
+        ("P s Enter", "shape group 1 bud "),
+        ("P s k Enter", "shape fork 1,2 "),
+        ("P s j Enter", "shape group 2 "),
+        ("P s 9 j Enter Esc P s j G b", "shape group 2 "),
+        ("G b 6 l", "shape group 1 bud plane 30°"),
+        ("G b L H H k", "shape group 1 bud plane -0.5°, lean -5°"),
+        ("G b 3 J 2 + -", "shape group 1 bud lean 1.5°, gain 1.1"),
+        // There and back is nowhere; a plane turned on comes round, and a gain ends.
+        ("G b l j + h k -", "shape group 1 bud "),
+        ("G b 3 6 l", "shape group 1 bud plane 180°"),
+        ("G b 3 7 l", "shape group 1 bud plane -175°"),
+        ("G b 2 0 -", "shape group 1 bud gain 0"),
+        ("G b 9 9 9 +", "shape group 1 bud gain 10"),
+        ("G b 5 . space", "shape group 1 bud  | frame 5 track 1 | play 1"),
+        ("G b l Esc", "review"),
+        ("G b l Q", "shape group 1 bud plane 5° | frame 0 track 1 | error a bone's shape is not kept"),
+        ("G b Enter", "review | frame 0 track 1 | said group 1 bud stays as it was"),
+        ("v k G b", "review | frame 0 track 1 | error no skeleton is shown: v k grows it"),
+    ] {
+        let (state, effects) = shaped(keys);
+        let line = line(&state, &effects);
+        let is_so = line.starts_with(expect) && (effects.is_empty() || keys.ends_with('Q'));
+        assert!(is_so, "by `{keys}`: {line}");
+    }
+    check(
+        "",
+        "G b",
+        "review | frame 0 track 1 | error no skeleton is shown: v k grows it, and P s lists its bones",
+    );
+    check("locked", "G b", LOCKED);
+}
+
+/// What is seen while a bone is shaped is what is kept, and until then nothing is.
+#[test]
+fn a_shape_is_its_preview() {
+    let (mut state, _) = shaped("G b 6 l 2 j +");
+    let Mode::Shape(shaping) = &state.mode else { panic!("not shaping") };
+    let (seen, kept) = (shaping.pose.clone(), state.skeleton.pose.clone().unwrap());
+    let bits = |pose: &Pose, row: usize| pose.at(7).unwrap()[row].map(f32::to_bits);
+    assert_ne!(bits(&seen, 2), bits(&kept, 2));
+    assert_eq!(bits(&seen, 3), bits(&kept, 3), "of what it does not bear nothing moves");
+    let asked = press(&mut state, "Enter");
+    let [Effect::Shape(Step::Bone(bone, shape), "u undoes")] = &asked[..] else { panic!("{asked:?}") };
+    let wanted = Shape { plane_rad: 30_f64.to_radians(), lean_rad: 10_f64.to_radians(), gain: 1.1 };
+    assert_eq!((bone.node, shape.to_string()), (3, wanted.to_string()));
+    // Refused, it is open again as it was; kept, it is drawn so, without growing anew.
+    drop(update(&mut state, Msg::Fact(Fact::Refused)));
+    assert!(line(&state, &[]).starts_with("shape group 1 bud plane 30°, lean 10°, gain 1.1"));
+    press(&mut state, "Esc");
+    let hand = Hand { root: None, shapes: [(bone.node, *shape)].into() };
+    drop(update(&mut state, Msg::Fact(Fact::Hand(hand))));
+    assert_eq!(Skeletal::request(&mut state), None);
+    assert_eq!(state.skeleton.pose, Some(seen));
+    drop(update(&mut state, Msg::Fact(Fact::Hand(Hand::default()))));
+    assert_eq!(state.skeleton.pose, Some(kept));
+}
+
+#[test]
+fn a_skeleton_is_gone_round() {
+    for (keys, azimuth) in [
+        ("}", 15),
+        ("3 {", -45),
+        ("1 2 }", 180),
+        ("1 3 }", -165),
+        ("2 4 }", 0),
+        ("} V", 0),
+        ("} v k v k", 0),
+        ("G b } }", 30),
+    ] {
+        let (state, _) = shaped(keys);
+        assert_eq!(state.skeleton.azimuth, azimuth, "by `{keys}`");
+    }
+    check("", "}", "review | frame 0 track 1 | error there is no skeleton to go round: v k grows it");
+    // From the right, what is far away is to the right; what is up stays up.
+    let (state, _) = shaped("");
+    let pose = state.skeleton.pose.unwrap();
+    let [x, y] = pose.middle;
+    for (azimuth, seen, behind) in [
+        (0, [x + 3.0, 7.0], 5.0),
+        (90, [x + 5.0, 7.0], -3.0),
+        (180, [x - 3.0, 7.0], -5.0),
+        (-90, [x - 5.0, 7.0], 3.0),
+    ] {
+        let (at, far) = pose.seen([x + 3.0, y + 5.0, -7.0], azimuth);
+        let off = [at[0] - seen[0], at[1] - seen[1], far - behind];
+        assert!(off.iter().all(|v| v.abs() < 1e-4), "{azimuth}: {at:?} {far}");
+    }
 }

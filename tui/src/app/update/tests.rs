@@ -61,6 +61,7 @@ pub(super) fn line(state: &State, effects: &[Effect]) -> String {
     let mut words = vec![match &state.mode {
         Mode::Review => "review".to_owned(),
         Mode::Place([x, y]) => format!("place {x} {y}"),
+        Mode::Shape(shaping) => format!("shape {} {}", shaping.bone.name, shaping.shape),
         Mode::Root([x, y]) => format!("root {x} {y}"),
         Mode::Move(moving) => {
             let (from, to) = (moving.from, moving.to());

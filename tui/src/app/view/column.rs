@@ -10,6 +10,7 @@ mod log;
 mod plots;
 mod prints;
 mod queue;
+mod skeleton;
 mod tracks;
 mod versus;
 
@@ -40,6 +41,8 @@ pub enum Pick {
     Frame(u32),
     /// A row of the undo tree.
     Entry(usize),
+    /// The bone of a node.
+    Bone(u32),
     /// A line that a plugin printed.
     Print(usize),
 }
@@ -62,6 +65,10 @@ trait List {
     fn len(&self) -> usize;
     /// The current row.
     fn current(&self) -> Option<usize>;
+    /// Whether it says how many rows there are beside those that are seen.
+    fn tells_rest(&self) -> bool {
+        false
+    }
     /// The row that stays in sight.
     fn middle(&self) -> Option<usize> {
         self.current()
@@ -78,6 +85,7 @@ fn list<'a>(state: &'a State, panel: Panel) -> Option<Box<dyn List + 'a>> {
         Panel::Queue => Box::new(queue::QueueList::of(state)),
         Panel::Tracks => Box::new(tracks::Tracks::of(state)),
         Panel::Groups => Box::new(groups::GroupList::of(state)),
+        Panel::Skeleton => Box::new(skeleton::BoneList::of(state)),
         Panel::KeyFrames => Box::new(key_frames::KeyFrames::of(state)),
         Panel::History => Box::new(history::History(state)),
         Panel::Versus => Box::new(versus::VersusList::of(state)),
@@ -112,6 +120,8 @@ fn inside(area: Rect) -> Rect {
 /// Rows of a list that begins under so many, and the first of them that is seen.
 fn window(list: &dyn List, area: Rect, top: usize) -> (usize, usize) {
     let n_rows = usize::from(area.height).saturating_sub(top);
+    let is_told = list.tells_rest() && list.len() > n_rows;
+    let n_rows = n_rows.saturating_sub(usize::from(is_told));
     let at = list.middle().unwrap_or(0);
     (n_rows, at.saturating_sub(n_rows / 2).min(list.len().saturating_sub(n_rows)))
 }
@@ -150,6 +160,19 @@ pub(super) fn draw(state: &State, area: Rect, frame: &mut Frame) {
         let mut line = list.row(i);
         line.spans.insert(0, mark);
         put(frame, inside, y, &if is_current { line.style(style::BOLD) } else { line });
+    }
+    let rest = [first, list.len().saturating_sub(first + n_rows)];
+    if list.tells_rest() && rest != [0, 0] {
+        put(frame, inside, foot.saturating_sub(1), &Line::styled(rest_words(rest), style::DIM));
+    }
+}
+
+/// How many rows are not seen, before and after those that are.
+fn rest_words([before, after]: [usize; 2]) -> String {
+    match (before, after) {
+        (0, n) => format!("  … {n} more"),
+        (n, 0) => format!("  … {n} before"),
+        (before, after) => format!("  … {before} before, {after} more"),
     }
 }
 

@@ -19,6 +19,7 @@ use crate::app::keymap::shown;
 use crate::app::layout::{Lens, bar, column_of, frame_at};
 use crate::app::panel::Panel;
 use crate::app::recovery::Recovery;
+use crate::app::skeleton::Shaping;
 use crate::app::sketching::Sketching;
 use crate::app::state::{Job, Mode, Quiet, State};
 use crate::app::tracks::TrackRow;
@@ -35,6 +36,9 @@ fn facts(state: &State, nth: usize) -> Vec<(u8, String)> {
     {
         return ways_of_moving(state, to);
     }
+    if let Mode::Shape(_) = state.mode {
+        return ways_of_shaping(state);
+    }
     let counted = |n: usize, one: &str| if n == 1 { format!("1 {one}") } else { format!("{n} {one}s") };
     let mut facts = vec![(0, counted(state.tracks.len(), "track"))];
     match &state.versus {
@@ -48,6 +52,7 @@ fn facts(state: &State, nth: usize) -> Vec<(u8, String)> {
     facts.extend(state.groups.as_ref().map(|groups| (4, counted(groups.shown.len(), "group"))));
     let lens = Lens::shown(state);
     facts.extend((state.marks_all && nth > 1).then(|| (3, format!("1 in {nth} marked"))));
+    facts.extend(state.skeleton.is_turned().then(|| (0, format!("seen from {}°", state.skeleton.azimuth))));
     facts.extend(state.read_only.is_some().then(|| (0, "read only".to_owned())));
     if state.zoom > 0 {
         let times = lens.magnification();
@@ -86,6 +91,18 @@ fn ways_of_moving(state: &State, [x, y]: [f32; 2]) -> Vec<(u8, String)> {
     ways.extend(state.mouse.then(|| (2, "click places".to_owned())));
     let closer = state.keys.keys_of(Context::Move, Action::ZoomIn);
     ways.extend(closer.map(|key| (3, format!("{key} closer"))));
+    ways
+}
+
+/// By what a bone is shaped, and from where it is seen.
+fn ways_of_shaping(state: &State) -> Vec<(u8, String)> {
+    let hints = state.keys.hints(Context::Shape);
+    let keys = |word: &str| Some(format!("{} {word}", hints.iter().find(|(_, other)| *other == word)?.0));
+    let mut ways: Vec<(u8, String)> = (0..)
+        .zip(["plane", "lean", "gain", "go round", ".5°", "play"])
+        .filter_map(|(nth, word)| Some((nth, keys(word)?)))
+        .collect();
+    ways.extend(state.skeleton.is_turned().then(|| (0, format!("seen from {}°", state.skeleton.azimuth))));
     ways
 }
 
@@ -339,6 +356,7 @@ pub(super) fn hints(state: &State, area: Rect, frame: &mut Frame) {
     match state.mode {
         Mode::Place([x, y]) => left.push_str(&format!("  new feature at {x:.1}, {y:.1}")),
         Mode::Root([x, y]) => left.push_str(&format!("  root at {x:.1}, {y:.1}")),
+        Mode::Shape(ref shaping) => left = shaping_words(shaping),
         _ => {}
     }
     if state.count.is_some() || !state.pending.is_empty() {
@@ -354,8 +372,11 @@ pub(super) fn hints(state: &State, area: Rect, frame: &mut Frame) {
 /// As many of its parts as have room, where something is open beside the hint that keeps it; of what is being typed
 /// its end.
 fn narrowed(left: String, context: Context, columns: u16) -> String {
-    let kept =
-        if matches!(context, Context::Place | Context::Move | Context::Slide) { "  ⏎ keep" } else { "" };
+    let kept = if matches!(context, Context::Place | Context::Move | Context::Slide | Context::Shape) {
+        "  ⏎ keep"
+    } else {
+        ""
+    };
     let room = usize::from(columns).saturating_sub(width(kept));
     if width(&left) <= room {
         return left;
@@ -377,6 +398,12 @@ fn play_words(state: &State) -> String {
     words.extend(play.around.map(|around| format!("  loop ±{around}")));
     words.extend(state.dropped.map(|[shown, due]| format!("  {shown} of {due} pictures/s")));
     words.concat()
+}
+
+/// Which bone is shaped, and how it is to be: `group 3 bud  plane 30°, gain 1.5`.
+fn shaping_words(shaping: &Shaping) -> String {
+    let shape = if shaping.shape.is_grown() { "as it grows".to_owned() } else { shaping.shape.to_string() };
+    format!("{}  {shape}", shaping.bone.name)
 }
 
 /// What is moved, how far, by which model, and which frames that affects.
@@ -447,15 +474,19 @@ fn hint_line(state: &State, room: usize) -> Line<'static> {
         .hints(context)
         .into_iter()
         .filter(|(_, word)| useful.contains(word))
-        .map(|(keys, word)| (keys, scaled(word, context, state.zoom)))
+        .map(|(keys, word)| match accept_word(state).filter(|_| word == "accept") {
+            Some(word) => (keys, word.to_owned()),
+            None => (keys, scaled(word, context, state.zoom)),
+        })
         .collect();
     // What is open can be kept, and what is marked worked on: that must be seen on the narrowest screen.
     hints.sort_by_key(|(_, word)| match word.as_str() {
         "keep" | "go on" => 0,
         "model" if context == Context::Move => 1,
-        "back" if context == Context::Move => 2,
+        "back" if matches!(context, Context::Move | Context::Shape) => 2,
         "end" | "lost" | "occluded" | "take away" | "average" => 1,
         "flick" | "take A" | "take B" => 2,
+        "key-frame" => 4,
         _ => 3,
     });
     let cells = |(keys, word): &(String, String)| width(keys) + 1 + width(word) + 2;
@@ -480,15 +511,34 @@ fn hint_line(state: &State, room: usize) -> Line<'static> {
     Line::from(spans)
 }
 
+/// What Enter does while reviewing; `None` where it does nothing that has room to be said.
+fn accept_word(state: &State) -> Option<&'static str> {
+    if !matches!(state.mode, Mode::Review) || state.read_only.is_some() {
+        return None;
+    }
+    let is_confirmed = || {
+        let row = state.selected_row()?;
+        let sample = row.span.get(state.frame)?;
+        Some(sample.source != Source::Key && sample.status.is_seen())
+    };
+    match state.panel {
+        // Frames of lines are seen beside them.
+        Some(Panel::Prints) => None,
+        Some(Panel::Skeleton) => state.skeleton.pose.as_ref().map(|_| "shape"),
+        _ if state.opened().is_some() => Some("accept"),
+        Some(Panel::Queue) if state.versus.is_none() && !state.review.queue.is_empty() => Some("open"),
+        _ if state.current_item().is_some() => Some("open"),
+        _ => is_confirmed()?.then_some("key-frame"),
+    }
+}
+
 /// Whether a hint makes sense now.
 fn is_useful(state: &State, action: Action) -> bool {
     if !matches!(state.mode, Mode::Review) {
         return true;
     }
     match action {
-        // In the prints it goes to the line's frame.
-        Action::Accept if state.panel == Some(Panel::Prints) => false,
-        Action::Accept => state.opened().is_some() && state.read_only.is_none(),
+        Action::Accept => accept_word(state).is_some(),
         Action::NextItem => state.versus.is_some() || !state.review.queue.is_empty(),
         Action::VersusFlick => state.versus.is_some(),
         Action::TakeA | Action::TakeB => {
@@ -497,9 +547,8 @@ fn is_useful(state: &State, action: Action) -> bool {
             shows && state.read_only.is_none()
         }
         // Beside two runs there is no room for what has nothing to do with them.
-        Action::AddFeature | Action::RunClusterer | Action::WorstFrame if state.versus.is_some() => false,
+        Action::AddFeature | Action::RunClusterer if state.versus.is_some() => false,
         Action::MoveSample => !state.tracks.is_empty() && state.read_only.is_none(),
-        Action::WorstFrame => state.opened().is_none() && state.doubt().is_some(),
         Action::RunTracker => state.tracks.is_empty() && state.job.is_none() && state.read_only.is_none(),
         Action::RetrackBoth => state.selected.is_some() && state.job.is_none() && state.read_only.is_none(),
         Action::RunClusterer => state.tracks.len() > 1 && state.job.is_none() && state.read_only.is_none(),

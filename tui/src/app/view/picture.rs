@@ -153,6 +153,11 @@ impl<'a> Canvas<'a> {
             letters: state.mono.then(Letters::default),
             scene,
         };
+        if state.skeleton.is_turned() {
+            canvas.clear();
+            canvas.skeleton(state, shot.frame);
+            return canvas;
+        }
         // Marks belong to the frame that is shown, which may be a moment behind.
         canvas.motion(state, shot.frame);
         canvas.skeleton(state, shot.frame);

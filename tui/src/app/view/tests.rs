@@ -8,11 +8,13 @@ use crate::app::correcting::Answer;
 use crate::app::fixture;
 use crate::app::groups::Groups;
 use crate::app::plotted::{Plotted, Subject};
+use crate::app::skeleton::Hand;
 use crate::app::state::{Job, Link, Notice};
 use crate::app::update::{Fact, Msg, update};
 use honami_model::track::TrackId;
 use honami_workbench::offer::{Errors, LeftOut, Model};
 use honami_workbench::overlay::VelocityField;
+use honami_workbench::shape::Shape;
 use ratatui::style::{Color, Modifier};
 
 mod plugins;
@@ -231,6 +233,24 @@ fn screens_of_skeletons() {
         shown(state);
         fixture::press(state, "G p 1 2 l");
     });
+    let bones = |keys: &'static str| {
+        move |state: &mut State| {
+            fixture::skeleton::show(state);
+            let shape = Shape { plane_rad: 0.5, ..Shape::default() };
+            let hand = Hand { root: Some([160.0, 210.0]), shapes: [(2, shape)].into() };
+            drop(update(state, Msg::Fact(Fact::Hand(hand))));
+            fixture::skeleton::grow(state);
+            state.notice = None;
+            fixture::press(state, keys);
+        }
+    };
+    check("bones_80x24", (80, 24), "", bones("P s"));
+    check("bones_120x36", (120, 36), "", bones("P s j"));
+    check("bones_40x12", (40, 12), "", bones("P s"));
+    check("shape_80x24", (80, 24), "", bones("G b 6 l 3 k + +"));
+    check("shape_120x36", (120, 36), "", bones("P s Enter 6 l"));
+    check("orbit_120x36", (120, 36), "", bones("P s 3 }"));
+    check("bones_none_80x24", (80, 24), "P s P s Tab Tab Tab Tab", |_| {});
     check("skeleton_mono_40x12", (40, 12), "", |state| {
         state.mono = true;
         shown(state);
@@ -458,8 +478,8 @@ fn bones_lie_where_the_joints_are() {
     fixture::press(&mut state, "v k");
     fixture::skeleton::grow(&mut state);
     let (after, lens) = (plain(&state), Lens::of(&state, layout.picture));
-    let bones = state.skeleton.bones.clone().unwrap();
-    let places = bones.at(40).unwrap();
+    let pose = state.skeleton.pose.clone().unwrap();
+    let places = pose.at(40).unwrap();
     for (row, group) in [(2, 0), (3, 1)] {
         let half = |axis: usize| f32::midpoint(places[1][axis], places[row][axis]);
         let (x, y) = lens.pixel_of([half(0), -half(2)]).unwrap();

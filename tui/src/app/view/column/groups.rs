@@ -8,6 +8,7 @@ use honami_workbench::plots::Sway;
 
 use super::plots::unit;
 use super::{List, Pick, style};
+use crate::app::action::{Action, Context};
 use crate::app::groups::Groups;
 use crate::app::layout::frame_at;
 use crate::app::plotted::Plotted;
@@ -85,7 +86,9 @@ impl List for GroupList<'_> {
             0 => String::new(),
             n => format!("   {n} by hand"),
         };
-        format!("  {}   - + cut{by_hand}", groups.what)
+        let plot = self.state.keys.keys_of(Context::Review, Action::PlotGroup);
+        let plot = plot.map_or_else(String::new, |keys| format!("   {keys} plot"));
+        format!("  {}   - + cut{by_hand}{plot}", groups.what)
     }
 
     fn nothing(&self) -> &'static str {
@@ -98,6 +101,10 @@ impl List for GroupList<'_> {
 
     fn current(&self) -> Option<usize> {
         self.groups?.of(self.state.selected?).map(|group| group as usize)
+    }
+
+    fn tells_rest(&self) -> bool {
+        true
     }
 
     fn row(&self, i: usize) -> Line<'static> {
