@@ -219,7 +219,7 @@ fn what_cannot_grow_says_why() {
         ("grow p.honami --with zeng --envelope none.png", 1, "none.png"),
         ("grow p.honami out.bvh --siblings 0", 2, "0 is not in 1..=9999"),
         ("grow p.honami --siblings 2", 2, "name its file, as out.bvh"),
-        ("grow p.honami out.bvh --seed 2", 2, "--siblings <N>"),
+        ("grow p.honami out.bvh --seed 2", 2, "--seed goes with --siblings or --branches"),
         ("grow p.honami out.bvh --siblings 2 --level 70", 1, "no two bones are of one level from 70 on"),
         ("grow p.honami out.bvh --siblings 2 --threshold 1e6", 1, "is as dense as 1000000 per radian"),
         ("grow p.honami clip.y4m.csv/out.bvh", 1, "there is no folder"),

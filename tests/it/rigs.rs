@@ -215,6 +215,58 @@ fn plants_of_every_format_are_carried() {
     }
 }
 
+/// A plant of branches from a mesh, a scene of several trees of nodes and a plant of nodes; where the validator is installed,
+/// glTF without an error.
+#[test]
+fn plants_are_put_together_of_branches() {
+    let node = |args: &[&str]| Command::new("node").args(args).current_dir(root()).output();
+    let is_there = node(&["-e", "require('gltf-validator')"]).is_ok_and(|output| output.status.success());
+    let bench = grouped();
+    std::fs::write(bench.path("shrub.obj"), shrub()).unwrap();
+    bench.json("simulate synth::tree:30,1 --forest 3 --wind wind --seconds 1 --glb grove.glb");
+    bench.json("grow p.honami rest.swc");
+    let joints = bench.json("grow p.honami j.csv --groups 9");
+    for (library, n_branches) in [
+        ("--branches shrub.obj", 1),
+        ("--branches grove.glb --branches shrub.obj", 4),
+        ("--branches rest.swc --weights", 0),
+    ] {
+        let line = format!("grow p.honami out.glb out.usda out/%d.ply --groups 9 --unit 0.01 {library}");
+        let answer = bench.json(&line);
+        let branches = &answer["branches"];
+        assert!(n_branches == 0 || branches["library"] == n_branches, "{library}: {answer}");
+        // 9 groups, and their mirror images.
+        assert_eq!((&branches["bones"], &answer["joints"]), (&18.into(), &joints["joints"]), "{answer}");
+        let scales = [0, 1].map(|k| branches["scales"][k].as_f64().unwrap());
+        assert!(0.0 < scales[0] && scales[0] < scales[1] && scales[1] < 10.0, "{answer}");
+        let frame = ply(&bench.path("out/39.ply"));
+        assert_eq!(
+            (frame.0.len() as u64, frame.1 as u64),
+            (branches["vertices"].as_u64().unwrap(), branches["triangles"].as_u64().unwrap())
+        );
+        let bytes = std::fs::read(bench.path("out.glb")).unwrap();
+        bench.json(&line);
+        assert!(std::fs::read(bench.path("out.glb")).unwrap() == bytes, "the same seed gives the same bytes");
+        if is_there {
+            let output =
+                node(&["tests/peers/glb_validator.cjs", bench.path("out.glb").to_str().unwrap()]).unwrap();
+            let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+            assert!(found["errors"] == 0 && found["warnings"] == 0, "{library}: {found}");
+        }
+    }
+    let told =
+        bench.text("grow p.honami out.glb --groups 9 --branches shrub.obj --siblings 1 --level 1 --seed 4");
+    assert!(
+        told.contains("branches: on 18 bones, 1 of the library's 1, ") && told.contains("seed 4;"),
+        "{told}"
+    );
+    let [own, sibling] = ["out.glb", "out-1.glb"].map(|name| std::fs::read(bench.path(name)).unwrap());
+    assert!(own.len().abs_diff(sibling.len()) < own.len() / 10 && own != sibling);
+    if !is_there {
+        missing("gltf-validator for node (cargo xtask peers)");
+    }
+}
+
 #[test]
 fn what_cannot_be_carried_says_why() {
     let bench = grouped();
@@ -225,6 +277,8 @@ fn what_cannot_be_carried_says_why() {
         ("flat.obj", "v 0 0 0\nv 1 0 0\nv 1 0 1\nf 1 2 3\n"),
         ("good.obj", "v 0 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\n"),
         ("one.swc", "1 1 0 0 0 .07 -1\n"),
+        ("stick.swc", "1 1 0 0 0 .2 -1\n2 1 0 0 1 .2 1\n"),
+        ("dot.obj", "v 1 1 1\nf 1 1 1\n"),
         ("no.glb", "glTF"),
         ("leaf.txt", "leaf"),
     ] {
@@ -255,6 +309,21 @@ fn what_cannot_be_carried_says_why() {
         ("out.glb --onto good.obj --turn nan", 2, "--turn takes degrees"),
         ("rig.glb --onto rig.glb", 2, "another name than the plant that is read"),
         ("no/such/%d.ply --onto good.obj", 1, "no/such"),
+        ("out.glb --branches good.obj --onto good.obj", 2, "--onto"),
+        ("out.glb --branches good.obj --turn 9", 2, "--onto"),
+        ("out.glb --branches none.obj", 1, "none.obj: "),
+        (
+            "out.glb --branches good.obj --branches points.obj",
+            1,
+            "points.obj: a plant to carry has a triangle at least",
+        ),
+        ("out.glb --branches stick.swc", 1, "stick.swc: the branches of a plant are what hangs on its forks"),
+        ("out.glb --branches dot.obj", 1, "dot.obj: a branch goes from its foot"),
+        ("out.glb --branches good.obj --unit 1e-12", 1, "is it the unit?"),
+        ("out.pc2 --branches good.obj", 2, "a .pc2 has the vertices of an .obj or .ply"),
+        ("out.bvh --branches good.obj", 2, "--branches goes with a .glb"),
+        ("rig.glb --branches rig.glb", 2, "another name than the plant that is read"),
+        ("out.glb --up z", 2, "--up goes with --onto or --branches"),
     ] {
         let ran = bench.line(&format!("grow p.honami {line}"));
         assert!(ran.code == Some(code) && ran.stderr.contains(wanted), "{line}: {ran:?}");

@@ -3,11 +3,13 @@
 //! Up is y there and z here: x right, y up, z towards the camera, so that what is at (x, y, z) here is at (x, z, -y) there.
 
 mod accessor;
+mod graft;
 mod own;
 mod scene;
 #[cfg(test)]
 pub(crate) mod tests;
 
+pub use graft::Grafting;
 pub use own::is_own;
 pub use scene::Piece;
 pub(crate) use scene::{Matrix, TRIANGLES, product};

@@ -77,7 +77,7 @@ fn reach(places: &[[f64; 3]], axis: usize) -> [f64; 2] {
 }
 
 /// The vertices that triangles use, each once.
-fn used(mesh: &Mesh) -> Vec<[f64; 3]> {
+pub(crate) fn used(mesh: &Mesh) -> Vec<[f64; 3]> {
     let mut is_used = vec![false; mesh.positions.len()];
     for &vertex in mesh.triangles.iter().flatten() {
         if let Some(is_used) = is_used.get_mut(vertex as usize) {
@@ -143,7 +143,8 @@ impl Bone {
     }
 }
 
-fn less(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+/// From `b` to `a`.
+pub(crate) fn less(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|axis| a[axis] - b[axis])
 }
 

@@ -2,6 +2,7 @@
 //!
 //! Lengths are pixels of the clip; the axes are those of [`honami_model::skeleton`]. The same input gives the same bits.
 
+pub mod assemble;
 pub mod bind;
 pub mod blend;
 mod bones;
@@ -20,6 +21,7 @@ pub mod zeng;
 #[cfg(test)]
 mod tests;
 
+use honami_model::brief::Brief;
 use honami_model::clip::TimesError;
 use honami_model::skeleton::{Skeleton, SkeletonError};
 use honami_model::track::TrackId;
@@ -144,6 +146,18 @@ pub enum StructureError {
         "a plant to carry has a triangle at least, this one has none: export its surface, not points alone"
     )]
     NoMesh,
+    /// A library without a branch.
+    #[error("a plant is put together of one branch at least, and the library has none")]
+    NoBranches,
+    /// A mesh that goes nowhere from its foot.
+    #[error(
+        "a branch goes from its foot (the mean of what of it is lowest) to its tip (the mean of what is farthest from there): \
+         in this one both are one place, {} from the farthest of it", Brief(*farthest)
+    )]
+    NoBranch {
+        /// From the foot to the farthest vertex.
+        farthest: f64,
+    },
     /// A vertex that is nowhere.
     #[error("vertex {vertex} lies at {place:?}: three numbers from -1e9 to 1e9 were wanted")]
     Vertex {

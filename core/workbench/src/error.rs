@@ -604,6 +604,26 @@ pub enum WorkbenchError {
         /// What was named.
         path: PathBuf,
     },
+    /// A plant of nodes without a branch.
+    #[error(
+        "{}: the branches of a plant are what hangs on its forks, and this one has none: a plant that forks is wanted, or a \
+         mesh, which is a branch itself", path.display()
+    )]
+    NoFork {
+        /// The plant.
+        path: PathBuf,
+    },
+    /// Branches for which there is no room.
+    #[error(
+        "the branches on all bones have {n_vertices} vertices, and {most} are carried at most: branches of fewer are wanted, \
+         or fewer groups"
+    )]
+    TooManyVertices {
+        /// On all bones.
+        n_vertices: usize,
+        /// At most.
+        most: usize,
+    },
     /// A point cache of what has no vertices of its own.
     #[error("a .pc2 moves the vertices of one mesh: --onto takes an .obj or a .ply then")]
     NoVertices,

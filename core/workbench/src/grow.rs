@@ -1,5 +1,6 @@
 //! Growing: the branches behind the shown tracks, from the groups that the shown clustering is cut into.
 
+mod assembled;
 mod body;
 mod bound;
 mod gather;
@@ -25,6 +26,7 @@ use honami_structure::repeat::repeat;
 pub use honami_structure::siblings::{self, Siblings};
 use honami_structure::tree::Group;
 
+pub use self::assembled::{Assembled, Library};
 pub use self::bound::{Bound, Onto, UNIT};
 use self::gather::gather;
 pub use self::hand::{Bones, Hand, shape};

@@ -68,6 +68,12 @@ pub(super) fn grow(args: &Grow, common: &Common) -> anyhow::Result<Answer> {
                 "joints and angles, radians, a row a joint and frame".to_owned()
             }
             Out::Skeleton(SkeletonFormat::Swc) => "the shape at rest, z up".to_owned(),
+            Out::Rig | Out::Usd if !args.branches.is_empty() => {
+                format!(
+                    "the plant of branches as a rig that moves, y up, a pixel taken as {} m",
+                    Brief(carried.unit)
+                )
+            }
             Out::Rig | Out::Usd if args.onto.is_some() => "the plant as a rig that moves, y up".to_owned(),
             Out::Rig | Out::Usd => {
                 format!("a rig that moves, y up, a pixel taken as {} m", Brief(carried.unit))

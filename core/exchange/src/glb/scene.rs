@@ -26,6 +26,8 @@ const MOST_NUMBERS: usize = 1 << 27;
 /// A mesh at its place in the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Piece {
+    /// Which of the trees of nodes that stand in the scene it is of, from 0.
+    pub(crate) tree: usize,
     pub(crate) node: usize,
     pub(crate) mesh: usize,
     /// From the mesh to the scene, y up.
@@ -34,6 +36,29 @@ pub struct Piece {
     pub(crate) counts: Vec<usize>,
     /// Where its place is a mirror, triangles of each of its primitives, counterclockwise there; else none.
     pub(crate) turned: Vec<Vec<[u32; 3]>>,
+}
+
+impl Piece {
+    /// Which of the trees of nodes that stand in the scene it is of, from 0.
+    #[must_use]
+    pub fn tree(&self) -> usize {
+        self.tree
+    }
+
+    /// How many vertices it has.
+    #[must_use]
+    pub fn n_vertices(&self) -> usize {
+        self.counts.iter().sum()
+    }
+}
+
+/// A mesh that a node bears.
+#[derive(Clone, Copy, Debug)]
+struct Stand {
+    tree: usize,
+    node: usize,
+    mesh: usize,
+    matrix: Matrix,
 }
 
 impl Document {
@@ -122,30 +147,31 @@ impl Document {
     }
 
     /// Nodes of the scene that bear a mesh, which, and where they stand.
-    fn stands(&self) -> Result<Vec<(usize, usize, Matrix)>, PlantFileError> {
+    fn stands(&self) -> Result<Vec<Stand>, PlantFileError> {
         let scene = whole(&self.words["scene"]).unwrap_or(0);
         let roots = indices(&self.words["scenes"][scene]["nodes"]);
         let n_nodes = self.words["nodes"].as_array().map_or(0, Vec::len);
-        let mut open: Vec<(usize, Matrix)> = roots.into_iter().rev().map(|node| (node, NONE)).collect();
+        let mut open: Vec<(usize, usize, Matrix)> =
+            roots.into_iter().enumerate().rev().map(|(tree, node)| (tree, node, NONE)).collect();
         let (mut stands, mut n_seen) = (Vec::new(), 0);
-        while let Some((node, before)) = open.pop() {
+        while let Some((tree, node, before)) = open.pop() {
             n_seen += 1;
             if node >= n_nodes || n_seen > n_nodes {
                 return Err(lacks("its nodes are no trees"));
             }
             let words = &self.words["nodes"][node];
             let matrix = product(&before, &own(words)?);
-            open.extend(indices(&words["children"]).into_iter().rev().map(|child| (child, matrix)));
-            stands.extend(whole(&words["mesh"]).map(|mesh| (node, mesh, matrix)));
+            open.extend(indices(&words["children"]).into_iter().rev().map(|child| (tree, child, matrix)));
+            stands.extend(whole(&words["mesh"]).map(|mesh| Stand { tree, node, mesh, matrix }));
         }
         Ok(stands)
     }
 
     /// Whether there is memory for all: a mesh is there as often as nodes bear it, so that small files may be large scenes.
-    fn check_size(&self, stands: &[(usize, usize, Matrix)]) -> Result<(), PlantFileError> {
+    fn check_size(&self, stands: &[Stand]) -> Result<(), PlantFileError> {
         let mut sizes = BTreeMap::new();
         let mut sum = 0_usize;
-        for &(_, mesh, _) in stands {
+        for &Stand { mesh, .. } in stands {
             let size = match sizes.get(&mesh) {
                 Some(size) => *size,
                 None => self.primitives(mesh)?.iter().map(Primitive::size).sum(),
@@ -180,11 +206,8 @@ impl Document {
     }
 
     /// Adds the primitives of a mesh where it stands.
-    fn take(
-        &self,
-        (node, mesh, matrix): (usize, usize, Matrix),
-        all: &mut Mesh,
-    ) -> Result<Piece, PlantFileError> {
+    fn take(&self, stand: Stand, all: &mut Mesh) -> Result<Piece, PlantFileError> {
+        let Stand { tree, node, mesh, matrix } = stand;
         let is_mirror = determinant(&matrix) < 0.0;
         let (mut counts, mut turned) = (Vec::new(), Vec::new());
         for primitive in self.primitives(mesh)? {
@@ -203,7 +226,7 @@ impl Document {
                 turned.push(triangles);
             }
         }
-        Ok(Piece { node, mesh, matrix, counts, turned })
+        Ok(Piece { tree, node, mesh, matrix, counts, turned })
     }
 }
 

@@ -21,16 +21,38 @@ const THICKEST: f64 = 0.02;
 /// # Errors
 /// [`StructureError::TooManyBones`] for more than 65535 joints, as bindings count them; [`WorkbenchError::Beams`].
 pub(super) fn body(skeleton: &Skeleton) -> Result<(Mesh, Vec<Binding>), WorkbenchError> {
+    about(skeleton, &vec![true; skeleton.joints().len()])
+}
+
+/// The same about those bones alone that bear others, as thick; nothing where none does.
+///
+/// # Errors
+/// As [`body`].
+pub(super) fn bearing(skeleton: &Skeleton) -> Result<(Mesh, Vec<Binding>), WorkbenchError> {
+    let are_bearing: Vec<bool> = skeleton.are_tips().iter().map(|is_tip| !is_tip).collect();
+    match are_bearing.iter().filter(|is_bearing| **is_bearing).count() {
+        0 | 1 => Ok((Mesh::default(), Vec::new())),
+        _ => about(skeleton, &are_bearing),
+    }
+}
+
+/// Of the bones that are wanted; what bears such a one is, too.
+fn about(skeleton: &Skeleton, are_wanted: &[bool]) -> Result<(Mesh, Vec<Binding>), WorkbenchError> {
     let n_joints = skeleton.joints().len();
     if u16::try_from(n_joints).is_err() {
         return Err(StructureError::TooManyBones(n_joints).into());
     }
     let places = skeleton.places(skeleton.rest());
-    let joints = skeleton.joints().iter().zip(&places).zip(radii(skeleton, &places));
-    let nodes = joints.map(|((joint, &position), radius)| Node { parent: joint.parent, position, radius });
-    let beams = Beams::new(&Plant::new(nodes.collect())?, &Options::default())?;
+    let radii = radii(skeleton, &places);
+    let rows: Vec<usize> = (0..n_joints).filter(|row| are_wanted[*row]).collect();
+    let node = |&row: &usize| {
+        let parent = skeleton.joints()[row].parent;
+        let parent = parent.map(|parent| rows.partition_point(|row| *row < parent as usize) as u32);
+        Node { parent, position: places[row], radius: radii[row] }
+    };
+    let beams = Beams::new(&Plant::new(rows.iter().map(node).collect())?, &Options::default())?;
     let mut bones = vec![0; beams.len()];
-    beams.of_plant().iter().zip(0_u16..).for_each(|(node, joint)| bones[*node as usize] = joint);
+    beams.of_plant().iter().zip(&rows).for_each(|(node, row)| bones[*node as usize] = *row as u16);
     let rings = Tubes::new(&beams);
     let bound = rings.rings().iter().flat_map(|ring| {
         let [before, after] = ring.tips().map(|tip| (bones[tip as usize], 0.5));

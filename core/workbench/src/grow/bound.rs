@@ -5,13 +5,14 @@ use std::path::{Path, PathBuf};
 
 use honami_exchange::glb::{Document, Piece};
 use honami_exchange::mesh::{MeshFormat, Up};
-use honami_exchange::plant::PlantFileError;
+use honami_exchange::plant::{Measured, PlantFileError};
 use honami_mechanics::{Beams, Options};
 use honami_model::brief::Brief;
 use honami_model::mesh::{Binding, Mesh};
 use honami_model::skeleton::Skeleton;
 use honami_structure::bind;
 
+use super::assembled::Assembled;
 use super::body::{body, tubes};
 use crate::error::WorkbenchError;
 use crate::plant::{self, Wish};
@@ -50,23 +51,25 @@ pub struct Bound {
     pub(super) pieces: Vec<Piece>,
     /// Whether vertices can be told one by one as the file has them.
     pub(super) is_one: bool,
-    foot: [f64; 3],
-    unit: f64,
-    turn_rad: f64,
+    pub(super) foot: [f64; 3],
+    pub(super) unit: f64,
+    pub(super) turn_rad: f64,
+    /// What it was put together of, if it was.
+    pub assembled: Option<Assembled>,
     /// What was left out or guessed, a sentence each.
     pub notes: Vec<String>,
 }
 
 /// A plant as it was read.
-struct Read {
-    mesh: Mesh,
+pub(super) struct Read {
+    pub(super) mesh: Mesh,
     up: Option<Up>,
-    document: Document,
-    pieces: Vec<Piece>,
+    pub(super) document: Document,
+    pub(super) pieces: Vec<Piece>,
     is_one: bool,
     /// Where it leaves the ground, if the file says so.
     foot: Option<[f64; 3]>,
-    notes: Vec<String>,
+    pub(super) notes: Vec<String>,
 }
 
 impl Bound {
@@ -75,12 +78,24 @@ impl Bound {
     /// # Errors
     /// [`WorkbenchError::Unit`], [`WorkbenchError::Beams`].
     pub fn own(skeleton: &Skeleton, unit: f64) -> Result<Self, WorkbenchError> {
-        let standing = skeleton.standing([0.0; 3], unit, 0.0);
-        let rest = standing.map_err(|source| WorkbenchError::Unit { unit, source })?;
+        let rest = in_origin(skeleton, unit)?;
         let (mesh, bindings) = body(&rest)?;
         let Read { mesh, up, document, pieces, is_one, notes, .. } = made(mesh, Vec::new())?;
         let (foot, turn_rad) = ([0.0; 3], 0.0);
-        Ok(Self { rest, mesh, bindings, up, document, pieces, is_one, foot, unit, turn_rad, notes })
+        Ok(Self {
+            rest,
+            mesh,
+            bindings,
+            up,
+            document,
+            pieces,
+            is_one,
+            foot,
+            unit,
+            turn_rad,
+            assembled: None,
+            notes,
+        })
     }
 
     /// A plant of others, bound to a skeleton that was fitted to it: root on foot, and as high.
@@ -88,14 +103,30 @@ impl Bound {
     /// # Errors
     /// What is wrong with the file; [`WorkbenchError::Structure`] for what cannot be bound.
     pub fn onto(skeleton: &Skeleton, onto: &Onto) -> Result<Self, WorkbenchError> {
-        let Read { mesh, up, document, pieces, is_one, foot, notes } = read(onto)?;
+        let Read { mesh, up, document, pieces, is_one, foot, notes } = match read(&onto.plant, onto.up)? {
+            Some(read) => read,
+            None => wood(&onto.plant)?,
+        };
         let within = |error| WorkbenchError::Onto { path: onto.plant.clone(), source: error };
         let foot = foot.map_or_else(|| bind::foot(&mesh), Ok).map_err(within)?;
         let turn_rad = onto.turn_rad;
         let rest = bind::fitted(skeleton, &mesh, foot, onto.unit, turn_rad).map_err(within)?;
         let bindings = bind::bind(&mesh, &rest).map_err(within)?;
         let unit = rest.joints()[1].length / skeleton.joints()[1].length;
-        Ok(Self { rest, mesh, bindings, up, document, pieces, is_one, foot, unit, turn_rad, notes })
+        Ok(Self {
+            rest,
+            mesh,
+            bindings,
+            up,
+            document,
+            pieces,
+            is_one,
+            foot,
+            unit,
+            turn_rad,
+            assembled: None,
+            notes,
+        })
     }
 
     /// So much of the mesh's length is a pixel.
@@ -155,17 +186,23 @@ fn hue(bone: usize) -> [f64; 3] {
     })
 }
 
+/// A skeleton with its root in the origin, a pixel so many metres.
+pub(super) fn in_origin(skeleton: &Skeleton, unit: f64) -> Result<Skeleton, WorkbenchError> {
+    let standing = skeleton.standing([0.0; 3], unit, 0.0);
+    standing.map_err(|source| WorkbenchError::Unit { unit, source })
+}
+
 fn made(mesh: Mesh, notes: Vec<String>) -> Result<Read, WorkbenchError> {
     let document = Document::of(&mesh);
     let (_, pieces) = document.pieces()?;
     Ok(Read { mesh, up: None, document, pieces, is_one: false, foot: None, notes })
 }
 
-fn read(onto: &Onto) -> Result<Read, WorkbenchError> {
-    let path = onto.plant.as_path();
+/// A mesh as it stands in a file, z up; `None` of a file that is none.
+pub(super) fn read(path: &Path, up: Option<Up>) -> Result<Option<Read>, WorkbenchError> {
     let is_glb = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("glb"));
     let format = MeshFormat::of(path);
-    if onto.up.is_some() && format.is_none() {
+    if up.is_some() && format.is_none() {
         return Err(WorkbenchError::NoMeaning {
             option: "--up",
             of: vec![".obj".to_owned(), ".ply".to_owned()],
@@ -175,33 +212,39 @@ fn read(onto: &Onto) -> Result<Read, WorkbenchError> {
     match format {
         Some(format) => {
             let (mut mesh, notes) = format.read(&bytes(path)?).map_err(|error| error.of(path))?;
-            let up = onto.up.unwrap_or(format.up());
+            let up = up.unwrap_or(format.up());
             mesh.positions.iter_mut().for_each(|place| *place = up.read(*place));
-            Ok(Read { up: Some(up), is_one: true, ..made(mesh, notes)? })
+            Ok(Some(Read { up: Some(up), is_one: true, ..made(mesh, notes)? }))
         }
         None if is_glb => {
             let document = Document::read(&bytes(path)?).map_err(|error| error.of(path))?;
             let (mesh, pieces) = document.pieces().map_err(|error| error.of(path))?;
             let notes = document.notes();
-            Ok(Read { mesh, up: Some(Up::Y), document, pieces, is_one: false, foot: None, notes })
+            Ok(Some(Read { mesh, up: Some(Up::Y), document, pieces, is_one: false, foot: None, notes }))
         }
-        None => wood(path),
+        None => Ok(None),
     }
 }
 
 /// Tubes along the branches of a plant.
 fn wood(path: &Path) -> Result<Read, WorkbenchError> {
-    let measured =
+    let Measured { plant, notes } = nodes(path)?;
+    let beams = Beams::new(&plant, &Options::default())?;
+    let foot = beams.position(0).into();
+    Ok(Read { foot: Some(foot), ..made(tubes(&beams), notes)? })
+}
+
+/// A plant of nodes.
+pub(super) fn nodes(path: &Path) -> Result<Measured, WorkbenchError> {
+    let mut measured =
         plant::read(&Wish::of(&path.display().to_string(), None)).map_err(|error| match error {
             WorkbenchError::NoPlant { .. } => WorkbenchError::NoCarried { path: path.to_owned() },
             error => error,
         })?;
-    let beams = Beams::new(&measured.plant, &Options::default())?;
-    let foot = beams.position(0).into();
     // What `--unit` is there it is not here.
     let note = |note: String| note.split("; --unit").next().unwrap_or_default().to_owned();
-    let notes = measured.notes.into_iter().map(note).collect();
-    Ok(Read { foot: Some(foot), ..made(tubes(&beams), notes)? })
+    measured.notes = measured.notes.into_iter().map(note).collect();
+    Ok(measured)
 }
 
 fn bytes(path: &Path) -> Result<Vec<u8>, WorkbenchError> {

@@ -1,5 +1,6 @@
 //! What skeletons, and what they carry, are written as.
 
+use std::borrow::Cow;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -9,6 +10,7 @@ use honami_exchange::skeleton::{SkeletonFormat, rigged, usda, write_usda};
 use honami_model::skeleton::Skeleton;
 use honami_structure::blend::{Blend, blended, carries};
 
+use super::assembled::Library;
 use super::bound::Bound;
 use crate::error::WorkbenchError;
 
@@ -32,12 +34,26 @@ pub enum Out {
 pub struct Carried {
     /// What it is; `None`: tubes along the skeleton's own bones.
     pub bound: Option<Bound>,
+    /// What siblings are put together of, and the seed that says how.
+    pub library: Option<(Library, u64)>,
     /// Metres of a pixel, of tubes.
     pub unit: f64,
     /// How vertices follow several bones, in frames and caches; a rig leaves that to whoever reads it.
     pub blend: Blend,
     /// Whether vertices are coloured by the bones that carry them.
     pub are_weights_shown: bool,
+}
+
+impl Carried {
+    /// What the `number`-th sibling carries: the same, or, of a library, branches of its own.
+    ///
+    /// # Errors
+    /// As [`Bound::assembled`].
+    pub fn of_sibling(&self, sibling: &Skeleton, number: u32) -> Result<Cow<'_, Self>, WorkbenchError> {
+        let Some((library, seed)) = &self.library else { return Ok(Cow::Borrowed(self)) };
+        let bound = Some(Bound::assembled(sibling, library, self.unit, *seed, number)?);
+        Ok(Cow::Owned(Self { bound, library: None, ..*self }))
+    }
 }
 
 impl Out {

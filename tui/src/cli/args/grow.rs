@@ -54,8 +54,12 @@ pub(in crate::cli) struct Grow {
     /// become tubes. It is written as a .glb, as frames (walk/%04d.ply, walk/%04d.obj) or as a point cache (.pc2).
     #[arg(long, value_name = "PLANT")]
     pub(in crate::cli) onto: Option<PathBuf>,
+    /// Branches to put a plant together of, which the skeleton carries instead of tubes: on every bone that bears no other a
+    /// copy of one, from a .glb, .obj or .ply, or of what hangs on the forks of a .mtg, .swc, .csv or .mat. May be repeated.
+    #[arg(long, value_name = "LIB", conflicts_with = "onto")]
+    pub(in crate::cli) branches: Vec<PathBuf>,
     /// Which axis of an .obj or .ply points up (default: y of .obj, z of .ply).
-    #[arg(long, value_enum, requires = "onto")]
+    #[arg(long, value_enum)]
     pub(in crate::cli) up: Option<Up>,
     /// Turn the skeleton in PLANT, counterclockwise from above, degrees.
     #[arg(long, value_name = "DEG", requires = "onto", allow_hyphen_values = true)]
@@ -76,9 +80,9 @@ pub(in crate::cli) struct Grow {
     /// swing as they did.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=9999))]
     pub(in crate::cli) siblings: Option<u32>,
-    /// The same seed gives the same siblings.
-    #[arg(long, default_value_t = 1, requires = "siblings")]
-    pub(in crate::cli) seed: u64,
+    /// The same seed gives the same siblings, and the same branches on the same bones (default: 1).
+    #[arg(long)]
+    pub(in crate::cli) seed: Option<u64>,
     /// First level of bones whose angles siblings draw; bones at the root are of level 0 (default: 3, or the last level of
     /// several bones where that comes before).
     #[arg(long, value_name = "L", requires = "siblings")]

@@ -3,23 +3,31 @@
 use std::path::PathBuf;
 
 use honami_model::brief::Brief;
-use honami_workbench::grow::{self, Blend, Bound, Carried, Growth, Onto, Out};
+use honami_workbench::grow::{self, Assembled, Blend, Bound, Carried, Growth, Library, Onto, Out};
 use serde_json::json;
 
 use super::super::args::grow::{self as typed, Grow};
 use super::super::{Answer, want};
 use super::Files;
-use super::siblings::numbered;
+use super::siblings::{SEED, numbered};
 
 /// Whether what is asked of it can be.
 pub(super) fn check(args: &Grow, files: &Files<'_>) -> anyhow::Result<()> {
     let is_number = |unit: f64| unit.is_finite() && unit > 0.0;
     want(args.unit.is_none_or(is_number), || "--unit takes metres of a pixel, more than 0".to_owned())?;
     want(args.turn.is_none_or(f64::is_finite), || "--turn takes degrees".to_owned())?;
+    let has_branches = !args.branches.is_empty();
+    for (option, is_typed, others, has_other) in [
+        ("--up", args.up.is_some(), "--onto or --branches", args.onto.is_some() || has_branches),
+        ("--seed", args.seed.is_some(), "--siblings or --branches", args.siblings.is_some() || has_branches),
+    ] {
+        want(!is_typed || has_other, || format!("{option} goes with {others}"))?;
+    }
     let has_carried = files.iter().any(|(kind, _)| !matches!(kind, Out::Skeleton(_)));
     let asked = [
         ("--unit", args.unit.is_some()),
         ("--onto", args.onto.is_some()),
+        ("--branches", has_branches),
         ("--weights", args.weights),
         ("--blend", args.blend.is_some()),
     ];
@@ -46,8 +54,10 @@ pub(super) fn check(args: &Grow, files: &Files<'_>) -> anyhow::Result<()> {
 
 /// Whether nothing that is written, in any frame and of any sibling, takes the place of the plant that is read.
 pub(super) fn check_names(args: &Grow, files: &Files<'_>, n_frames: u32) -> anyhow::Result<()> {
-    let Some(plant) = args.onto.as_ref().and_then(|plant| plant.canonicalize().ok()) else { return Ok(()) };
-    let is_it = |out: &PathBuf| out.canonicalize().is_ok_and(|place| place == plant);
+    let plants: Vec<PathBuf> =
+        args.onto.iter().chain(&args.branches).filter_map(|plant| plant.canonicalize().ok()).collect();
+    let is_it =
+        |out: &PathBuf| !plants.is_empty() && out.canonicalize().is_ok_and(|place| plants.contains(&place));
     let over = (0..=args.siblings.unwrap_or(0)).find_map(|number| {
         let named = |out: &PathBuf| if number == 0 { out.clone() } else { numbered(out, number) };
         let of_files = files.iter().flat_map(|(kind, out)| kind.names(&named(out), n_frames));
@@ -68,14 +78,25 @@ pub(super) fn carried(args: &Grow, growth: &Growth) -> anyhow::Result<Carried> {
         unit: args.unit,
         turn_rad: args.turn.unwrap_or(0.0).to_radians(),
     });
-    let bound = onto.map(|onto| Bound::onto(&growth.skeleton, &onto)).transpose()?;
+    let mut bound = onto.map(|onto| Bound::onto(&growth.skeleton, &onto)).transpose()?;
+    let (unit, seed) = (args.unit.unwrap_or(grow::UNIT), args.seed.unwrap_or(SEED));
+    let is_library = !args.branches.is_empty();
+    let library = is_library.then(|| Library::read(&args.branches, args.up.map(Into::into))).transpose()?;
+    if let Some(library) = &library {
+        bound = Some(Bound::assembled(&growth.skeleton, library, unit, seed, 0)?);
+    }
     let blend = args.blend.map_or(Blend::Linear, Into::into);
-    Ok(Carried { bound, unit: args.unit.unwrap_or(grow::UNIT), blend, are_weights_shown: args.weights })
+    let library = library.map(|library| (library, seed));
+    Ok(Carried { bound, library, unit, blend, are_weights_shown: args.weights })
 }
 
 /// Tells of a plant of others.
 pub(super) fn describe(args: &Grow, carried: &Carried, answer: &mut Answer) {
-    let (Some(bound), Some(plant)) = (&carried.bound, &args.onto) else { return };
+    let Some(bound) = &carried.bound else { return };
+    if let (Some(assembled), Some((library, seed))) = (&bound.assembled, &carried.library) {
+        tell(assembled, library, *seed, bound, answer);
+    }
+    let Some(plant) = &args.onto else { return };
     let [n_vertices, n_triangles] = bound.sizes();
     let unit = bound.unit();
     let [height, width] = bound.extent();
@@ -95,6 +116,33 @@ pub(super) fn describe(args: &Grow, carried: &Carried, answer: &mut Answer) {
         "height": height,
         "width": width,
         "unit": unit,
+        "notes": notes,
+    });
+}
+
+/// Tells of a plant that was put together.
+fn tell(assembled: &Assembled, library: &Library, seed: u64, bound: &Bound, answer: &mut Answer) {
+    let Assembled { n_branches, n_used, n_grafts, scales, n_bare } = assembled;
+    let [n_vertices, n_triangles] = bound.sizes();
+    let [least, most] = scales.map(|scale| Brief(rounded(scale)));
+    answer.text += &format!(
+        "\nbranches: on {n_grafts} bones, {n_used} of the library's {n_branches}, {least} to {most} times as large, seed {seed}; \
+         {n_vertices} vertices, {n_triangles} triangles"
+    );
+    let of_file = |(path, note): &(PathBuf, String)| format!("{}: {note}", path.display());
+    let mut notes: Vec<String> = library.notes.iter().map(of_file).collect();
+    if *n_bare > 0 {
+        notes.push(format!("groups in the middle of forks bear no branch: {n_bare}"));
+    }
+    notes.iter().for_each(|note| answer.text += &format!("\nnote: {note}"));
+    answer.json["branches"] = json!({
+        "library": n_branches,
+        "used": n_used,
+        "bones": n_grafts,
+        "scales": scales,
+        "seed": seed,
+        "vertices": n_vertices,
+        "triangles": n_triangles,
         "notes": notes,
     });
 }
@@ -137,12 +185,14 @@ mod tests {
             ("l-1.csv", "a.glb --leaves l.csv", false),
             ("l-1.csv", "a.glb --leaves l.csv --siblings 1", true),
             ("none.glb", "none.glb", false),
+            ("0039.ply", "%04d.ply --branches oak-1.glb", true),
         ] {
             let at = |word: &str| match word.contains('.') {
                 true => folder.path().join(word).display().to_string(),
                 false => word.to_owned(),
             };
-            let words = format!("grow p.honami --onto {plant} {line}");
+            let option = if line.contains("--branches") { "--branches" } else { "--onto" };
+            let words = format!("grow p.honami {option} {plant} {line}");
             let args = Line::parse_from(words.split(' ').map(at)).grow;
             let found = check_names(&args, &files(&args).unwrap(), 40).map_err(|error| error.to_string());
             assert_eq!(found.is_err(), is_over, "{words}");

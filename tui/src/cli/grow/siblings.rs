@@ -9,6 +9,9 @@ use serde_json::json;
 use super::super::Answer;
 use super::super::args::grow::Grow;
 
+/// Unless another is typed.
+pub(super) const SEED: u64 = 1;
+
 /// Draws `n` siblings, and writes each beside every file of the skeleton, frames numbered from `first` on; tells of it in the
 /// answer.
 pub(super) fn draw(
@@ -20,14 +23,16 @@ pub(super) fn draw(
     carried: &Carried,
     answer: &mut Answer,
 ) -> anyhow::Result<()> {
+    let seed = args.seed.unwrap_or(SEED);
     let (mut written, mut drawing) = (Vec::new(), Duration::ZERO);
     for number in 1..=n {
         let begun = Instant::now();
-        let sibling = grow::draw(siblings, args.seed, number)?;
+        let sibling = grow::draw(siblings, seed, number)?;
         drawing += begun.elapsed();
+        let carried = carried.of_sibling(&sibling, number)?;
         for (kind, out) in files {
             let out = numbered(out, number);
-            grow::write(&sibling, first, *kind, carried, &out)?;
+            grow::write(&sibling, first, *kind, &carried, &out)?;
             written.push(out);
         }
         if let Some(leaves) = &args.leaves {
@@ -37,7 +42,7 @@ pub(super) fn draw(
         }
     }
     let mean_s = drawing.as_secs_f64() / f64::from(n);
-    answer.text += &format!("\nsiblings: {n} of seed {}, {mean_s:.4} s each", args.seed);
+    answer.text += &format!("\nsiblings: {n} of seed {seed}, {mean_s:.4} s each");
     for level in siblings.levels() {
         let [mu, least, most] = [level.angles.mu, level.range()[0], level.range()[1]].map(f64::to_degrees);
         answer.text += &format!(
@@ -62,8 +67,7 @@ pub(super) fn draw(
             })
         })
         .collect();
-    answer.json["siblings"] =
-        json!({ "seed": args.seed, "levels": levels, "seconds": mean_s, "files": written });
+    answer.json["siblings"] = json!({ "seed": seed, "levels": levels, "seconds": mean_s, "files": written });
     Ok(())
 }
 
