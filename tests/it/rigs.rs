@@ -41,6 +41,7 @@ fn a_rig_is_as_the_standard_wants_it() {
         ("grow p.honami rig.glb --flat", "rig.glb"),
         ("grow p.honami rig.glb --groups 9 --siblings 1 --level 1", "rig-1.glb"),
         ("grow p.honami rig.glb --with zeng --loop", "rig.glb"),
+        ("grow p.honami rig.glb --groups 9 --joints 12 --weights", "rig.glb"),
     ] {
         bench.text(line);
         let output = node(&["tests/peers/glb_validator.cjs", bench.path(file).to_str().unwrap()]).unwrap();
@@ -58,6 +59,12 @@ fn what_is_no_rig_says_why() {
         ("grow p.honami rig.glb --unit nan", 2, "--unit takes metres of a pixel, more than 0"),
         ("grow p.honami rig.bvh --unit 0.01", 2, "--unit goes with a .glb, as out.glb, or with frames"),
         ("grow p.honami rig.glb --unit 1e-12", 1, "is it the unit?"),
+        (
+            "grow p.honami rig.glb --joints 2",
+            1,
+            "a rig has 3 joints at least, the root, a bone and its end, not 2",
+        ),
+        ("grow p.honami rig.bvh --joints 9", 2, "--joints goes with a .glb or .usda"),
         ("grow p.honami rig.glb --unit 1e12", 1, "is it the unit?"),
     ] {
         let ran = bench.line(line);
@@ -65,6 +72,45 @@ fn what_is_no_rig_says_why() {
         assert!(!bench.path("rig.glb").exists(), "{line}");
     }
     assert!(bench.text("grow p.honami rig.glb").contains("y up, a pixel taken as 0.001 m"));
+}
+
+/// As many joints as were asked for, each where the table has the bone that it is named after.
+#[test]
+fn a_rig_has_no_more_joints_than_an_engine_takes() {
+    let bench = grouped();
+    let words = |name: &str| -> Value {
+        let bytes = std::fs::read(bench.path(name)).unwrap();
+        let size = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
+        serde_json::from_slice(&bytes[20..20 + size]).unwrap()
+    };
+    let names = |words: &Value| -> Vec<(String, Value)> {
+        let joints = words["skins"][0]["joints"].as_array().unwrap();
+        let node = |joint: &Value| words["nodes"][joint.as_u64().unwrap() as usize].clone();
+        joints
+            .iter()
+            .map(node)
+            .map(|node| (node["name"].as_str().unwrap().to_owned(), node["translation"].clone()))
+            .collect()
+    };
+    bench.json("grow p.honami all.glb --groups 9");
+    let all = names(&words("all.glb"));
+    for most in [3, 12, 20, 21, 1000] {
+        let answer = bench.json(&format!("grow p.honami few.glb few.usda --groups 9 --joints {most}"));
+        let few = words("few.glb");
+        let few = names(&few);
+        assert_eq!(answer["rig"]["joints"], few.len());
+        assert!(few.len() <= most && few.len() + 2 > most.min(all.len()), "{most}: {}", few.len());
+        let n_bones =
+            |names: &[(String, Value)]| names.iter().filter(|(name, _)| name.starts_with("bone")).count();
+        assert_eq!(answer["rig"]["left_out"], n_bones(&all) - n_bones(&few));
+        assert!(
+            few.iter().filter(|(name, _)| name.starts_with("bone")).all(|joint| all.contains(joint)),
+            "{few:?}"
+        );
+        let text = std::fs::read_to_string(bench.path("few.usda")).unwrap();
+        let list = text.lines().find(|line| line.contains("token[] joints")).unwrap();
+        assert_eq!(list.matches("\"root").count(), few.len());
+    }
 }
 
 /// A stem and two branches of square section, y up, its foot beside the origin; `Wavefront`'s text.

@@ -8,6 +8,7 @@ pub mod blend;
 mod bones;
 pub mod diener;
 pub mod ellipse;
+pub mod fewer;
 mod filmed;
 pub mod follow;
 pub mod repeat;
@@ -180,6 +181,16 @@ pub enum StructureError {
     /// A pixel that is nothing, or all.
     #[error("a pixel is 1e-9 to 1e9 of the plant's length, not {0:e}")]
     Unit(f64),
+    /// Fewer joints than a rig has.
+    #[error(
+        "a rig has {least} joints at least, the root, a bone and its end, not {wanted}: --joints takes {least} or more"
+    )]
+    TooFewJoints {
+        /// As asked for.
+        wanted: usize,
+        /// Of any rig.
+        least: usize,
+    },
     /// More bones than bindings count.
     #[error("a plant is bound to 65535 joints at most, not {0}: fewer groups or copies are wanted")]
     TooManyBones(usize),

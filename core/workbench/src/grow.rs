@@ -22,6 +22,7 @@ use honami_model::skeleton::Skeleton;
 use honami_model::track::TrackId;
 use honami_store::Project;
 pub use honami_structure::blend::Blend;
+pub use honami_structure::fewer::Fewer;
 use honami_structure::repeat::repeat;
 pub use honami_structure::siblings::{self, Siblings};
 use honami_structure::tree::Group;

@@ -2,6 +2,7 @@
 //! the ends of tips are joints that carry nothing, so that programs know how long the last bones are. At rest none is
 //! turned. Up is y.
 
+use honami_model::mesh::{Binding, MOST_BONES};
 use honami_model::skeleton::{Skeleton, turns};
 
 use super::rig::RigError;
@@ -17,31 +18,49 @@ pub(super) struct Joints {
     pub(super) parents: Vec<Option<usize>>,
     /// Where each is at rest.
     pub(super) places: Vec<[f64; 3]>,
+    /// Rows of the root and the bones that there are; their joints are the first ones, in this order.
+    pub(super) rows: Vec<usize>,
 }
 
 impl Joints {
-    /// Of a skeleton at rest.
-    pub(super) fn of(rest: &Skeleton) -> Result<Self, RigError> {
+    /// Of a skeleton at rest; of some of its rows, the root and what bears them among them, if not of all.
+    pub(super) fn of(rest: &Skeleton, kept: Option<&[usize]>) -> Result<Self, RigError> {
         let n = rest.joints().len();
-        let are_tips = rest.are_tips();
-        let tips: Vec<usize> = (1..n).filter(|row| are_tips[*row]).collect();
-        if n + tips.len() > MOST_JOINTS {
-            return Err(RigError::TooMany(n + tips.len()));
+        let rows = kept.map_or_else(|| (0..n).collect(), <[usize]>::to_vec);
+        let mut are_tips = vec![true; n];
+        rows.iter()
+            .filter_map(|row| rest.joints()[*row].parent)
+            .for_each(|parent| are_tips[parent as usize] = false);
+        let tips: Vec<usize> = rows.iter().copied().skip(1).filter(|row| are_tips[*row]).collect();
+        if rows.len() + tips.len() > MOST_JOINTS {
+            return Err(RigError::TooMany(rows.len() + tips.len()));
         }
         let ends: Vec<[f64; 3]> = rest.places(rest.rest()).into_iter().map(upright).collect();
         let base = |row: usize| rest.joints()[row].parent.map(|parent| parent as usize);
-        let mut made = Self { names: vec!["root".to_owned()], parents: vec![None], places: vec![ends[0]] };
-        for row in 1..n {
+        let (names, parents, places) = (vec!["root".to_owned()], vec![None], vec![ends[0]]);
+        let mut made = Self { names, parents, places, rows };
+        for at in 1..made.rows.len() {
+            let row = made.rows[at];
             made.names.push(format!("bone_{row}"));
-            made.parents.push(base(row));
+            made.parents.push(base(row).and_then(|base| made.joint(base)));
             made.places.push(ends[base(row).unwrap_or(0)]);
         }
         for tip in tips {
             made.names.push(format!("tip_{tip}"));
-            made.parents.push(Some(tip));
+            made.parents.push(made.joint(tip));
             made.places.push(ends[tip]);
         }
         Ok(made)
+    }
+
+    /// The joint of a bone, by its row; `None` of one that there is not.
+    pub(super) fn joint(&self, row: usize) -> Option<usize> {
+        self.rows.binary_search(&row).ok()
+    }
+
+    /// The joints that carry a vertex.
+    pub(super) fn bones(&self, binding: &Binding) -> [u16; MOST_BONES] {
+        binding.bones().map(|row| self.joint(row.into()).unwrap_or(0) as u16)
     }
 
     /// From what a joint hangs on to it, at rest; of the root, where it is.

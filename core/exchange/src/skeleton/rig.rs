@@ -36,7 +36,8 @@ pub enum RigError {
 
 /// The pieces of a scene, bound to the bones of `rest`, where these are at rest, which turn as those of `motion` do; both are
 /// of the same bones. Bindings, and colours if there are any, are vertex by vertex, piece after piece. Lengths are those of
-/// the scene. What the scene's own animations were is left out.
+/// the scene. What the scene's own animations were is left out. `kept` are the rows of the bones that become joints, the root
+/// and what bears them among them, or `None` for all.
 ///
 /// # Errors
 /// [`RigError`].
@@ -47,9 +48,11 @@ pub fn rigged(
     colours: &[[u8; 3]],
     rest: &Skeleton,
     motion: &Skeleton,
+    kept: Option<&[usize]>,
 ) -> Result<Document, RigError> {
-    check(bindings, colours, rest, pieces.iter().flat_map(|piece| &piece.counts).sum())?;
-    let joints = Nodes::add(&mut document, rest)?;
+    let joints = Joints::of(rest, kept)?;
+    check(bindings, colours, &joints, pieces.iter().flat_map(|piece| &piece.counts).sum())?;
+    let joints = Nodes::add(&mut document, joints);
     joints.turn(&mut document, rest, motion)?;
     let coloured = (!colours.is_empty()).then(|| {
         let look = json!({ "metallicFactor": 0.0, "roughnessFactor": 1.0 });
@@ -62,7 +65,7 @@ pub fn rigged(
         let mut mesh = meshes[piece.mesh].clone();
         for (k, &n) in piece.counts.iter().enumerate() {
             let (primitive, own) = (&mut mesh["primitives"][k], first..first + n);
-            bind(&mut document, &mut primitive["attributes"], &bindings[own.clone()]);
+            bind(&mut document, &mut primitive["attributes"], &bindings[own.clone()], &joints.joints);
             if let Some(material) = coloured {
                 primitive["material"] = material.into();
                 colour(&mut document, &mut primitive["attributes"], &colours[own]);
@@ -93,10 +96,10 @@ pub fn rigged(
 pub(super) fn check(
     bindings: &[Binding],
     colours: &[[u8; 3]],
-    rest: &Skeleton,
+    joints: &Joints,
     wanted: usize,
 ) -> Result<(), RigError> {
-    let is_bound = |binding: &&Binding| binding.shares().all(|(bone, _)| bone < rest.joints().len());
+    let is_bound = |binding: &&Binding| binding.shares().all(|(bone, _)| joints.joint(bone).is_some());
     let came = bindings.iter().filter(is_bound).count();
     if came != wanted || bindings.len() != wanted || !(colours.is_empty() || colours.len() == wanted) {
         return Err(RigError::Bindings { came: came.min(wanted), wanted });
@@ -148,8 +151,7 @@ struct Nodes {
 }
 
 impl Nodes {
-    fn add(document: &mut Document, rest: &Skeleton) -> Result<Self, RigError> {
-        let joints = Joints::of(rest)?;
+    fn add(document: &mut Document, joints: Joints) -> Self {
         let n = joints.names.len();
         let first = document.words["nodes"].as_array().map_or(0, Vec::len);
         let mut children = vec![Vec::new(); n];
@@ -164,24 +166,24 @@ impl Nodes {
             }
             document.put("nodes", node);
         }
-        Ok(Self { nodes: (first..first + n).collect(), joints })
+        Self { nodes: (first..first + n).collect(), joints }
     }
 
     /// Lets them turn as bones do: every joint off the one before, by a quaternion a frame.
     fn turn(&self, document: &mut Document, rest: &Skeleton, motion: &Skeleton) -> Result<(), RigError> {
         let input = times(document, motion)?;
-        let (n, n_frames) = (rest.joints().len(), motion.times().len());
-        let mut tracks: Vec<Vec<u8>> = vec![Vec::with_capacity(16 * n_frames as usize); n];
+        let (rows, n_frames) = (&self.joints.rows, motion.times().len());
+        let mut tracks: Vec<Vec<u8>> = vec![Vec::with_capacity(16 * n_frames as usize); rows.len()];
         for turns in rotations(rest, motion) {
-            for (track, turn) in tracks.iter_mut().zip(turns) {
-                track.extend(turn.iter().flat_map(|v| (*v as f32).to_le_bytes()));
+            for (track, row) in tracks.iter_mut().zip(rows) {
+                track.extend(turns[*row].iter().flat_map(|v| (*v as f32).to_le_bytes()));
             }
         }
         let (mut samplers, mut channels) = (Vec::new(), Vec::new());
-        for (row, bytes) in tracks.iter().enumerate().skip(1) {
+        for (joint, bytes) in tracks.iter().enumerate().skip(1) {
             let what = json!({ "componentType": F32, "type": "VEC4", "count": n_frames });
             let output = document.add(OTHER, bytes, what);
-            let target = json!({ "node": self.nodes[row], "path": "rotation" });
+            let target = json!({ "node": self.nodes[joint], "path": "rotation" });
             channels.push(json!({ "sampler": samplers.len(), "target": target }));
             samplers.push(json!({ "input": input, "output": output, "interpolation": "LINEAR" }));
         }
@@ -223,9 +225,10 @@ fn times(document: &mut Document, motion: &Skeleton) -> Result<usize, RigError> 
 }
 
 /// Says of every vertex which joints carry it.
-fn bind(document: &mut Document, attributes: &mut Value, bindings: &[Binding]) {
+fn bind(document: &mut Document, attributes: &mut Value, bindings: &[Binding], joints: &Joints) {
     let count = bindings.len();
-    let bones: Vec<u8> = bindings.iter().flat_map(Binding::bones).flat_map(u16::to_le_bytes).collect();
+    let bones = bindings.iter().flat_map(|binding| joints.bones(binding));
+    let bones: Vec<u8> = bones.flat_map(u16::to_le_bytes).collect();
     let what = json!({ "componentType": U16, "type": "VEC4", "count": count });
     attributes["JOINTS_0"] = document.add(ARRAY, &bones, what).into();
     let weights: Vec<u8> = bindings.iter().flat_map(Binding::weights).flat_map(f32::to_le_bytes).collect();

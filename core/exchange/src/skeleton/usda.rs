@@ -27,7 +27,8 @@ const DOC: &str = "doc = \"a plant moved by honami\"";
 const TICKS: f64 = 1e6;
 
 /// The text of a mesh bound to the bones of `rest`, where these are at rest, which turn as those of `motion` do; both are of
-/// the same bones. Bindings, and colours if there are any, are vertex by vertex.
+/// the same bones. Bindings, and colours if there are any, are vertex by vertex. `kept` are the rows of the bones that become
+/// joints, the root and what bears them among them, or `None` for all.
 ///
 /// # Errors
 /// [`RigError`].
@@ -37,9 +38,10 @@ pub fn usda(
     colours: &[[u8; 3]],
     rest: &Skeleton,
     motion: &Skeleton,
+    kept: Option<&[usize]>,
 ) -> Result<String, RigError> {
-    check(bindings, colours, rest, mesh.positions.len())?;
-    let joints = Joints::of(rest)?;
+    let joints = Joints::of(rest, kept)?;
+    check(bindings, colours, &joints, mesh.positions.len())?;
     let fps = motion.times().nominal_fps().unwrap_or(FPS);
     let codes = codes(motion, fps)?;
     let mut text = format!(
@@ -51,7 +53,7 @@ pub fn usda(
     skeleton(&mut text, &joints);
     animation(&mut text, &joints, &codes, rotations(rest, motion));
     text += "    }\n\n";
-    skin(&mut text, mesh, bindings, colours);
+    skin(&mut text, mesh, &joints, bindings, colours);
     text += "}\n";
     Ok(text)
 }
@@ -134,14 +136,15 @@ fn animation(text: &mut String, joints: &Joints, codes: &[f64], frames: impl Ite
     *text += "            quatf[] rotations.timeSamples = {\n";
     for (code, turns) in codes.iter().zip(frames) {
         // Ends of tips have no bone, and do not turn.
-        let still = std::iter::repeat_n([0.0, 0.0, 0.0, 1.0], n - turns.len());
-        let turns = turns.into_iter().chain(still).map(|[x, y, z, w]| tuple([w, x, y, z]));
+        let still = std::iter::repeat_n([0.0, 0.0, 0.0, 1.0], n - joints.rows.len());
+        let turns =
+            joints.rows.iter().map(|row| turns[*row]).chain(still).map(|[x, y, z, w]| tuple([w, x, y, z]));
         put(text, format_args!("                {code}: [{}],\n", turns.collect::<Vec<_>>().join(", ")));
     }
     *text += "            }\n        }\n";
 }
 
-fn skin(text: &mut String, mesh: &Mesh, bindings: &[Binding], colours: &[[u8; 3]]) {
+fn skin(text: &mut String, mesh: &Mesh, joints: &Joints, bindings: &[Binding], colours: &[[u8; 3]]) {
     let places: Vec<[f64; 3]> = mesh.positions.iter().map(|place| upright(*place)).collect();
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
     for (axis, v) in places.iter().flat_map(|place| place.iter().enumerate()) {
@@ -164,7 +167,12 @@ fn skin(text: &mut String, mesh: &Mesh, bindings: &[Binding], colours: &[[u8; 3]
         let colours = colours.iter().map(|colour| tuple(colour.map(|v| f64::from(v) / 255.0)));
         list(text, "color3f[] primvars:displayColor", colours, vertex);
     }
-    list(text, "int[] primvars:skel:jointIndices", bindings.iter().flat_map(Binding::bones), &four);
+    list(
+        text,
+        "int[] primvars:skel:jointIndices",
+        bindings.iter().flat_map(|binding| joints.bones(binding)),
+        &four,
+    );
     list(text, "float[] primvars:skel:jointWeights", bindings.iter().flat_map(Binding::weights), &four);
     *text += "        matrix4d primvars:skel:geomBindTransform = ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1))\n";
     *text += "        rel skel:skeleton = </plant/skeleton>\n        uniform token subdivisionScheme = \"none\"\n    }\n";

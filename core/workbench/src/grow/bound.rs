@@ -161,20 +161,20 @@ impl Bound {
     pub(super) fn standing(&self, skeleton: &Skeleton) -> Result<Skeleton, WorkbenchError> {
         Ok(skeleton.standing(self.foot, self.unit, self.turn_rad)?)
     }
+}
 
-    /// Vertices in colours of their bones, blended by their weights.
-    #[must_use]
-    pub(super) fn colours(&self) -> Vec<[u8; 3]> {
-        let of = |binding: &Binding| {
-            let mut sum = [0.0; 3];
-            for (bone, weight) in binding.shares() {
-                let hue = hue(bone);
-                (0..3).for_each(|k| sum[k] += weight * hue[k]);
-            }
-            sum.map(|v| (255.0 * v).round() as u8)
-        };
-        self.bindings.iter().map(of).collect()
-    }
+/// Vertices in colours of their bones, blended by their weights.
+#[must_use]
+pub(super) fn coloured(bindings: &[Binding]) -> Vec<[u8; 3]> {
+    let of = |binding: &Binding| {
+        let mut sum = [0.0; 3];
+        for (bone, weight) in binding.shares() {
+            let hue = hue(bone);
+            (0..3).for_each(|k| sum[k] += weight * hue[k]);
+        }
+        sum.map(|v| (255.0 * v).round() as u8)
+    };
+    bindings.iter().map(of).collect()
 }
 
 /// A colour for every bone, those of neighbouring rows far apart: hues a golden section of the circle on.

@@ -7,11 +7,13 @@ use std::path::{Path, PathBuf};
 use honami_exchange::mesh::{Frame, MeshFormat, Up, check_frame, write_frame};
 use honami_exchange::plant::PointCache;
 use honami_exchange::skeleton::{SkeletonFormat, rigged, usda, write_usda};
+use honami_model::mesh::Binding;
 use honami_model::skeleton::Skeleton;
 use honami_structure::blend::{Blend, blended, carries};
+use honami_structure::fewer::Fewer;
 
 use super::assembled::Library;
-use super::bound::Bound;
+use super::bound::{Bound, coloured};
 use crate::error::WorkbenchError;
 
 /// Kinds of files that a skeleton can be written as.
@@ -40,6 +42,8 @@ pub struct Carried {
     pub unit: f64,
     /// How vertices follow several bones, in frames and caches; a rig leaves that to whoever reads it.
     pub blend: Blend,
+    /// The bones that rigs have; `None`: all.
+    pub fewer: Option<Fewer>,
     /// Whether vertices are coloured by the bones that carry them.
     pub are_weights_shown: bool,
 }
@@ -52,7 +56,7 @@ impl Carried {
     pub fn of_sibling(&self, sibling: &Skeleton, number: u32) -> Result<Cow<'_, Self>, WorkbenchError> {
         let Some((library, seed)) = &self.library else { return Ok(Cow::Borrowed(self)) };
         let bound = Some(Bound::assembled(sibling, library, self.unit, *seed, number)?);
-        Ok(Cow::Owned(Self { bound, library: None, ..*self }))
+        Ok(Cow::Owned(Self { bound, library: None, fewer: self.fewer.clone(), ..*self }))
     }
 }
 
@@ -119,16 +123,25 @@ pub fn write(
         }
     };
     let motion = bound.standing(skeleton)?;
-    let colours = if carried.are_weights_shown { bound.colours() } else { Vec::new() };
+    let colours = |bindings: &[Binding]| match carried.are_weights_shown {
+        true => coloured(bindings),
+        false => Vec::new(),
+    };
+    let kept = carried.fewer.as_ref().map(Fewer::rows);
+    let of_rig = || match &carried.fewer {
+        Some(fewer) => Cow::Owned(bound.bindings.iter().map(|binding| fewer.binding(binding)).collect()),
+        None => Cow::Borrowed(&bound.bindings),
+    };
     match out {
         Out::Skeleton(_) => {}
         Out::Rig => {
-            let Bound { document, pieces, bindings, rest, .. } = bound;
-            rigged(document.clone(), pieces, bindings, &colours, rest, &motion)?.write(path)?;
+            let (Bound { document, pieces, rest, .. }, bindings) = (bound, of_rig());
+            let colours = colours(&bindings);
+            rigged(document.clone(), pieces, &bindings, &colours, rest, &motion, kept)?.write(path)?;
         }
         Out::Usd => {
-            let Bound { mesh, bindings, rest, .. } = bound;
-            write_usda(path, &usda(mesh, bindings, &colours, rest, &motion)?)?;
+            let (Bound { mesh, rest, .. }, bindings) = (bound, of_rig());
+            write_usda(path, &usda(mesh, &bindings, &colours(&bindings), rest, &motion, kept)?)?;
         }
         Out::Frames(format) => {
             let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.exists());
@@ -144,6 +157,7 @@ pub fn write(
             for name in out.names(path, motion.times().len()) {
                 check_frame(&name, format)?;
             }
+            let colours = colours(&bound.bindings);
             for frame in 0..motion.times().len() {
                 let Some(path) = numbered(path, frame) else { continue };
                 let positions = moved(bound, &motion, frame, carried.blend, bound.up.unwrap_or(format.up()));

@@ -62,7 +62,7 @@ pub(in crate::cli) struct Grow {
     #[arg(long, value_enum)]
     pub(in crate::cli) up: Option<Up>,
     /// Turn the skeleton in PLANT, counterclockwise from above, degrees.
-    #[arg(long, value_name = "DEG", requires = "onto", allow_hyphen_values = true)]
+    #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
     pub(in crate::cli) turn: Option<f64>,
     /// How vertices follow several bones, in frames and caches (default: linear, as who reads a .glb does).
     #[arg(long, value_enum)]
@@ -73,6 +73,10 @@ pub(in crate::cli) struct Grow {
     /// Metres of a pixel in what is carried (default: 0.001; with --onto, of PLANT's lengths: as makes both as high).
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub(in crate::cli) unit: Option<f64>,
+    /// Joints that a .glb or .usda has at most, ends of bones counted, as engines limit them: of the bones at the end those with
+    /// the fewest tracks go first, and what they carried goes with what bears them.
+    #[arg(long, value_name = "N")]
+    pub(in crate::cli) joints: Option<u32>,
     /// Write where every track is as a leaf of the skeleton: track,joint,frame,time_s,x_px,y_px,depth_px.
     #[arg(long, value_name = "FILE.csv")]
     pub(in crate::cli) leaves: Option<PathBuf>,

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use honami_model::brief::Brief;
-use honami_workbench::grow::{self, Assembled, Blend, Bound, Carried, Growth, Library, Onto, Out};
+use honami_workbench::grow::{self, Assembled, Blend, Bound, Carried, Fewer, Growth, Library, Onto, Out};
 use serde_json::json;
 
 use super::super::args::grow::{self as typed, Grow};
@@ -18,6 +18,7 @@ pub(super) fn check(args: &Grow, files: &Files<'_>) -> anyhow::Result<()> {
     want(args.turn.is_none_or(f64::is_finite), || "--turn takes degrees".to_owned())?;
     let has_branches = !args.branches.is_empty();
     for (option, is_typed, others, has_other) in [
+        ("--turn", args.turn.is_some(), "--onto", args.onto.is_some()),
         ("--up", args.up.is_some(), "--onto or --branches", args.onto.is_some() || has_branches),
         ("--seed", args.seed.is_some(), "--siblings or --branches", args.siblings.is_some() || has_branches),
     ] {
@@ -43,6 +44,9 @@ pub(super) fn check(args: &Grow, files: &Files<'_>) -> anyhow::Result<()> {
     want(!(is_dual && has_rig), || {
         "who reads a .glb or .usda blends linearly: --blend dual goes with frames, as out/%04d.ply, or with a .pc2"
             .to_owned()
+    })?;
+    want(args.joints.is_none() || has_rig, || {
+        "--joints goes with a .glb or .usda, whose joints engines count".to_owned()
     })?;
     let has_cache = files.iter().any(|(kind, _)| *kind == Out::Cache);
     want(!(has_cache && (args.onto.is_none() || args.weights)), || {
@@ -87,11 +91,17 @@ pub(super) fn carried(args: &Grow, growth: &Growth) -> anyhow::Result<Carried> {
     }
     let blend = args.blend.map_or(Blend::Linear, Into::into);
     let library = library.map(|library| (library, seed));
-    Ok(Carried { bound, library, unit, blend, are_weights_shown: args.weights })
+    let fewer = args.joints.map(|most| Fewer::of(&growth.skeleton, most as usize)).transpose()?;
+    Ok(Carried { bound, library, unit, blend, fewer, are_weights_shown: args.weights })
 }
 
 /// Tells of a plant of others.
 pub(super) fn describe(args: &Grow, carried: &Carried, answer: &mut Answer) {
+    if let Some(fewer) = &carried.fewer {
+        let (n_joints, n_left_out) = (fewer.n_joints(), fewer.n_left_out());
+        answer.text += &format!("\njoints of rigs: {n_joints}, bones left out: {n_left_out}");
+        answer.json["rig"] = json!({ "joints": n_joints, "left_out": n_left_out });
+    }
     let Some(bound) = &carried.bound else { return };
     if let (Some(assembled), Some((library, seed))) = (&bound.assembled, &carried.library) {
         tell(assembled, library, *seed, bound, answer);

@@ -7,6 +7,7 @@ use honami_model::skeleton::{Joint, turns};
 use proptest::prelude::*;
 
 use super::super::tests::skeleton;
+use super::super::usda;
 use super::*;
 use crate::glb::tests::scene;
 use crate::glb::upright;
@@ -145,7 +146,7 @@ impl Rig {
 fn own(mesh: &Mesh, bindings: &[Binding], rest: &Skeleton, motion: &Skeleton) -> Result<Document, RigError> {
     let document = Document::of(mesh);
     let (_, pieces) = document.pieces().unwrap();
-    rigged(document, &pieces, bindings, &[], rest, motion)
+    rigged(document, &pieces, bindings, &[], rest, motion, None)
 }
 
 /// A mesh with a vertex in the end of every bone, bound to it, and one half-way along, bound half to the bone before.
@@ -216,6 +217,65 @@ fn joints_and_what_they_carry_are_where_the_skeleton_has_them() {
     assert_is_it(&skeleton(&[(0, 10.0)], &[(0.2, 0.1)], 1));
 }
 
+fn bits<const N: usize>(of: &[f64; N]) -> [u64; N] {
+    of.map(f64::to_bits)
+}
+
+/// Bones 1 and 3 of six, and what bears them: their joints are to the last bit where they were, by the names that they had.
+#[test]
+fn fewer_joints_stay_where_they_were() {
+    let angles = [(0.0, 0.0), (0.3, 0.0), (-0.4, 0.2), (0.1, 0.1), (0.5, -0.7)];
+    let whole = skeleton(&[(0, 10.0), (1, 8.0), (1, 6.0), (3, 5.0), (3, 4.0), (2, 3.0)], &angles, 6);
+    let (mesh, bindings) = marks(&whole);
+    let all = Rig::read(own(&mesh, &bindings, &whole, &whole).unwrap());
+    // Of every bone, which carries its vertices now.
+    let bearers = [0, 1, 1, 3, 3, 3, 1];
+    let fewer = |binding: &Binding| {
+        let mut shares = [(0, 0.0); 4];
+        for (share, (bone, weight)) in shares.iter_mut().zip(binding.shares()) {
+            *share = (bearers[bone], weight);
+        }
+        Binding::new(shares)
+    };
+    let moved: Vec<Binding> = bindings.iter().map(fewer).collect();
+    let document = Document::of(&mesh);
+    let (_, pieces) = document.pieces().unwrap();
+    let kept = Some(&[0, 1, 3][..]);
+    let rig = Rig::read(rigged(document.clone(), &pieces, &moved, &[], &whole, &whole, kept).unwrap());
+    assert_eq!(rig.names, ["root", "bone_1", "bone_3", "tip_3"]);
+    for (joint, name) in rig.names.iter().enumerate() {
+        // What ends in a joint now began others there.
+        let name = if name == "tip_3" { "bone_4" } else { name };
+        let there = all.names.iter().position(|known| known == name).unwrap();
+        for (own, wanted) in rig.poses.iter().zip(&all.poses) {
+            assert_eq!(bits(&own[joint][3]), bits(&wanted[there][3]), "{name}");
+            let is_turned_alike = own[joint]
+                .as_flattened()
+                .iter()
+                .zip(wanted[there].as_flattened())
+                .all(|(a, b)| a.to_bits() == b.to_bits());
+            assert!(name == "bone_4" || is_turned_alike, "{name}");
+        }
+    }
+    for frame in 0..6 {
+        for vertex in [1, 3, 6] {
+            assert_eq!(
+                bits(&rig.vertex(2 * vertex, frame)) == bits(&all.vertex(2 * vertex, frame)),
+                vertex < 6,
+                "{vertex}"
+            );
+        }
+    }
+    let error = rigged(document, &pieces, &bindings, &[], &whole, &whole, kept).unwrap_err();
+    assert!(matches!(error, RigError::Bindings { came, wanted: 14 } if came < 14), "{error}");
+    let text = usda(&mesh, &moved, &[], &whole, &whole, kept).unwrap();
+    assert!(text.contains(
+        "joints = [\"root\", \"root/bone_1\", \"root/bone_1/bone_3\", \"root/bone_1/bone_3/tip_3\"]"
+    ));
+    let rows = text.split("timeSamples").nth(1).unwrap().lines().nth(1).unwrap().matches('(').count();
+    assert_eq!(rows, 4, "a turn a joint");
+}
+
 /// Where two bones carry a vertex half and half, it is half-way between where each would have it.
 #[test]
 fn weights_blend() {
@@ -249,7 +309,7 @@ fn meshes_of_others_are_carried_from_where_they_stand() {
     let binding = |bone: u16| Binding::new([(bone, 1.0), (0, 0.0), (0, 0.0), (0, 0.0)]);
     let bindings = [0, 1, 2, 2, 1, 0].map(binding);
     let colours: Vec<[u8; 3]> = (0..6).map(|k| [k, 2 * k, 255]).collect();
-    let bound = rigged(document, &pieces, &bindings, &colours, &bent, &bent).unwrap();
+    let bound = rigged(document, &pieces, &bindings, &colours, &bent, &bent, None).unwrap();
     assert_eq!(bound.words["asset"]["copyright"], "somebody");
     // The first hung on a node of the scene, and stands by itself now, behind the second.
     let rigs: Vec<Rig> = Rig::all(bound).into_iter().rev().collect();
@@ -287,7 +347,7 @@ fn mirrors_are_written_with_their_outside_outside() {
             let document = document.unwrap();
             let (mesh, pieces) = document.pieces().unwrap();
             let bindings = vec![Binding::new([(0, 1.0), (0, 0.0), (0, 0.0), (0, 0.0)]); 6];
-            let bound = rigged(document, &pieces, &bindings, &[], &small, &small).unwrap();
+            let bound = rigged(document, &pieces, &bindings, &[], &small, &small, None).unwrap();
             // The first hung on a node of the scene, and stands by itself now, behind the second.
             let rigs: Vec<Rig> = Rig::all(bound).into_iter().rev().collect();
             for (k, rig) in rigs.iter().enumerate() {
@@ -317,7 +377,7 @@ fn what_nodes_bear_beside_meshes_stays() {
         let place = document.words["nodes"][2]["matrix"].clone();
         let (_, pieces) = document.pieces().unwrap();
         let bindings = vec![Binding::new([(0, 1.0), (0, 0.0), (0, 0.0), (0, 0.0)]); 6];
-        let bound = rigged(document, &pieces, &bindings, &[], &small, &small).unwrap();
+        let bound = rigged(document, &pieces, &bindings, &[], &small, &small, None).unwrap();
         let nodes = bound.words["nodes"].as_array().unwrap();
         // One for the first mesh, which hung on a node, and the joints: root, bone, end.
         assert_eq!(nodes.len(), 3 + 1 + 3 + n_nodes, "{more}");

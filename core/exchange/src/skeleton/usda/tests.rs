@@ -17,7 +17,7 @@ fn written(times_s: &[f64], bone: u16) -> Result<String, RigError> {
     let positions = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 2.0, 3.5]];
     let mesh = Mesh { positions, triangles: vec![[0, 1, 2]], ..Mesh::default() };
     let binding = Binding::new([(bone, 0.75), (0, 0.25), (0, 0.0), (0, 0.0)]);
-    usda(&mesh, &[binding; 3], &[[255, 0, 51]; 3], &skeleton, &skeleton)
+    usda(&mesh, &[binding; 3], &[[255, 0, 51]; 3], &skeleton, &skeleton, None)
 }
 
 #[test]

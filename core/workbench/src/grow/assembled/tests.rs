@@ -34,7 +34,14 @@ fn folder() -> (tempfile::TempDir, impl Fn(&str) -> PathBuf) {
 }
 
 fn carried(bound: Bound) -> Carried {
-    Carried { bound: Some(bound), library: None, unit: 0.5, blend: Blend::Linear, are_weights_shown: false }
+    Carried {
+        bound: Some(bound),
+        library: None,
+        unit: 0.5,
+        blend: Blend::Linear,
+        fewer: None,
+        are_weights_shown: false,
+    }
 }
 
 #[test]

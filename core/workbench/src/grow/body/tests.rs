@@ -71,8 +71,14 @@ fn frames_are_written_all_or_none() {
     let times = FrameTimes::constant(3, 25.0).unwrap();
     let joints = vec![Joint::default(), Joint { parent: Some(0), length: 1.0, ..Joint::default() }];
     let skeleton = Skeleton::new([0.0; 3], joints, vec![[0.0, 0.0, 1.0]; 6], times).unwrap();
-    let carried =
-        Carried { bound: None, library: None, unit: 1.0, blend: Blend::Linear, are_weights_shown: false };
+    let carried = Carried {
+        bound: None,
+        library: None,
+        unit: 1.0,
+        blend: Blend::Linear,
+        fewer: None,
+        are_weights_shown: false,
+    };
     let path = folder.path().join("%d.ply");
     std::fs::write(folder.path().join("2.ply"), "ply\nmine\n").unwrap();
     let kind = Out::Frames(MeshFormat::Ply);
