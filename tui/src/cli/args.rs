@@ -59,8 +59,11 @@ pub(super) enum Command {
     Cluster(Cluster),
     /// Grow the branches behind the tracks: a skeleton that moves as filmed.
     Grow(grow::Grow),
-    /// Shape the skeleton by hand: place its root, turn bones out of the picture, have them lean or swing otherwise. Without
-    /// options, say what was done to which bone.
+    /// Shape the skeleton by hand: place its root, turn bones out of the picture, have them lean or swing otherwise.
+    ///
+    /// Without options, says how long bones are and what was done to which. The project keeps what was done; `honami grow` and
+    /// `honami simulate` lay it over what grows, and `honami edit` undoes it. Numbers are of the bone as it grows, so that the
+    /// same twice is the same, and all that a bone bears goes along. docs/skeletons.md has more.
     Shape(grow::Shape),
     /// Correct tracks from a script: one edit a line on standard input, one answer a line.
     ///

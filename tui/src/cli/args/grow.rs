@@ -100,10 +100,7 @@ pub(in crate::cli) struct Grow {
     pub(in crate::cli) truth: Option<PathBuf>,
 }
 
-/// Hand work on the skeleton of the shown groups. The project keeps it; `honami grow` and `honami simulate` lay it over what
-/// grows, and `honami edit` undoes it. Degrees and factors are of the bone as it grows, so that the same twice is the same.
-///
-/// A bone is named by the groups that it bears: 3, or 3,4 or 1-4 of a fork. All that it bears goes along.
+/// Hand work on the skeleton of the shown groups.
 #[derive(Args, Debug)]
 pub(in crate::cli) struct Shape {
     /// Project file (.honami).
@@ -111,7 +108,7 @@ pub(in crate::cli) struct Shape {
     /// Where the plant leaves the ground, pixels of the picture.
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
     pub(in crate::cli) root: Option<Place>,
-    /// The bone that bears these groups and no others.
+    /// The bone that bears these groups and no others: 3, or 3,4 or 1-4 of a fork.
     #[arg(long, visible_alias = "groups", value_name = "GROUPS")]
     pub(in crate::cli) group: Option<Groups>,
     /// Turn the plane that the bone moves in, so that it points away from the camera (-: towards it): -180 to 180 degrees.
