@@ -133,7 +133,7 @@ table! {
     Accept "accept" ["Enter"] [Place "place" Move "keep" Form "run" Menu "choose" Prompt "done" Review "accept" Dial "keep" History "go there" Slide "keep" Start "open" Sketch "keep" Shape "keep"]
         "accept: keep, place, run or go; reviewing: the open item, else open the track's, or make a key-frame; in the prints, go to the line's frame; in the skeleton, shape the bone"
     Back "back" ["Esc" "Ctrl-c"] [Place "back" Move "back" Form "back" Menu "back" Prompt "back" Label "back" Review "" Dial "back" History "back" Slide "back" Start "" Sketch "back" Shape "back"]
-        "back: leave what is open, undone; while reviewing, stop the clip or the job, give up the range, then the picks, then the two runs"
+        "back: leave what is open, undone; while reviewing, stop the clip, the job or what grows, see the skeleton from the front, give up the range, then the picks, then the two runs"
     // Time.
     PlayPause "play" ["space"] [Review "play" Sketch "" Shape "play"] "play or pause; 200 space: at 200 %, from now on"
     PlayBackwards "play-backwards" ["B"] [Review "" Sketch ""] "play backwards, or pause"
@@ -204,12 +204,12 @@ table! {
     TakeIntoGroup "take-into-group" ["G t"] [Review ""] "take the picked tracks, else the selected one, into another group"
     NameGroup "name-group" ["G n"] [Review ""] "name the selected track's group"
     ReleaseGroups "release-groups" ["G r"] [Review ""] "forget the groups made by hand: they are those of the cut again"
-    Skeleton "skeleton" ["v k" "G g"] [Review ""] "grow the skeleton of the groups and show it over the picture, or not"
+    Skeleton "skeleton" ["v k" "G g"] [Review "skeleton"] "grow the skeleton of the groups and show it over the picture, or not"
     PlaceRoot "place-root" ["G p"] [Review ""] "place the root of the skeleton by hand: where the plant leaves the ground"
     ReleaseSkeleton "release-skeleton" ["G R"] [Review ""] "forget what was done to the skeleton by hand: it is as it grows again"
     ShapeBone "shape-bone" ["G b"] [Review ""] "shape the chosen bone of the skeleton by hand: its plane, how it leans, how far it swings"
-    OrbitLeft "orbit-left" ["{"] [Review "" Shape "go round"] "see the skeleton from 15° further round the plant, clockwise from above; the picture is left out"
-    OrbitRight "orbit-right" ["}"] [Review "" Shape "go round"] "see the skeleton from 15° further round the plant, counterclockwise from above; the picture is left out"
+    OrbitLeft "orbit-left" ["{"] [Review "go round" Shape "go round"] "see the skeleton from 15° further round the plant, clockwise from above; the picture is left out"
+    OrbitRight "orbit-right" ["}"] [Review "go round" Shape "go round"] "see the skeleton from 15° further round the plant, counterclockwise from above; the picture is left out"
     Front "front-view" ["V"] [Review "" Shape ""] "see the skeleton from the front again, over the picture"
     Undo "undo" ["u"] [Review ""] "undo: take the last edit back"
     Redo "redo" ["Ctrl-r"] [Review ""] "redo: do again what was undone"
@@ -235,7 +235,7 @@ table! {
     PanelQueue "panel-queue" ["P q"] [Review ""] "show or hide the queue of doubtful segments"
     PanelTracks "panel-tracks" ["P t"] [Review ""] "show or hide the tracks"
     PanelGroups "panel-groups" ["P g"] [Review ""] "show or hide the groups"
-    PanelSkeleton "panel-skeleton" ["P s"] [Review ""] "show or hide the bones of the skeleton; j and k choose one, Enter shapes it"
+    PanelSkeleton "panel-skeleton" ["P s"] [Review "bones"] "show or hide the bones of the skeleton; j and k choose one, Enter shapes it"
     PanelKeyFrames "panel-key-frames" ["P k"] [Review ""] "show or hide the key-frames of the selected track"
     PanelPlots "panel-plots" ["P p"] [Review ""] "show or hide curves: position, speed, quality, sway"
     PlotGroup "plot-group" ["P G"] [Review ""] "plot the selected track's group, or the track"

@@ -10,7 +10,8 @@ use honami_workbench::WorkbenchError;
 use honami_workbench::grow::{self, Growth};
 use honami_workbench::shape::{Bone, Shape};
 
-use super::state::State;
+use super::panel::Panel;
+use super::state::{Mode, State};
 
 /// A step of the view round the plant, degrees.
 pub const ORBIT: i32 = 15;
@@ -233,17 +234,22 @@ impl Skeletal {
         self.outdate();
     }
 
-    /// Whether it is seen from elsewhere than the camera: then the picture is not behind it.
+    /// From where it is seen, degrees: from elsewhere than the camera, the picture is not behind it. What is done in the
+    /// picture is done from the front.
     #[must_use]
-    pub fn is_turned(&self) -> bool {
-        self.azimuth != 0 && self.pose.is_some()
+    pub fn azimuth(state: &State) -> i32 {
+        let is_in_picture =
+            matches!(state.mode, Mode::Place(_) | Mode::Root(_) | Mode::Move(_) | Mode::Sketch(_))
+                || matches!(state.mode, Mode::Label(_) | Mode::Dial(_));
+        if is_in_picture || state.skeleton.pose.is_none() { 0 } else { state.skeleton.azimuth }
     }
 
-    /// The row of the bone that is chosen, else of that of the selected track's group.
+    /// The row of the bone that is chosen among those listed or is being shaped, else of that of the selected track's group.
     #[must_use]
     pub fn current(state: &State) -> Option<usize> {
         let bones = state.skeleton.bones.as_deref()?;
-        let chosen = state.skeleton.chosen.and_then(|node| bones.row_of(node));
+        let is_listed = state.panel == Some(Panel::Skeleton) || matches!(state.mode, Mode::Shape(_));
+        let chosen = state.skeleton.chosen.filter(|_| is_listed).and_then(|node| bones.row_of(node));
         chosen.or_else(|| {
             let group = state.groups.as_ref()?.of(state.selected?)?;
             let is_its = |row: &usize| bones.growth.skeleton.joints()[*row].groups.contains(&group);

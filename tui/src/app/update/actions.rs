@@ -354,7 +354,7 @@ fn back(state: &mut State) -> Vec<Effect> {
                 job.is_stopping = true;
                 return vec![Effect::StopJob];
             }
-            if skeleton::stop(state) || state.range.take().is_some() {
+            if skeleton::stop(state) || shaping::leave_round(state) || state.range.take().is_some() {
                 return Vec::new();
             }
             if !state.picked.is_empty() {

@@ -2,6 +2,7 @@
 
 use super::{Effect, Mode, State, history, look, moving, queue, sketch, time, versus};
 use crate::app::layout::{Layout, Lens, bar, frame_at};
+use crate::app::skeleton::Skeletal;
 use crate::app::view::column::{self, Pick};
 use crate::term::input::{Mouse, MouseKind};
 
@@ -62,11 +63,7 @@ pub(super) fn on_mouse(state: &mut State, mouse: Mouse) -> Vec<Effect> {
                 match &mut state.mode {
                     Mode::Place(at) | Mode::Root(at) => *at = point,
                     Mode::Move(_) => moving::point(state, point),
-                    Mode::Review
-                        if matches!(mouse.kind, MouseKind::Press(_)) && !state.skeleton.is_turned() =>
-                    {
-                        nearest(state, &lens, point)
-                    }
+                    Mode::Review if matches!(mouse.kind, MouseKind::Press(_)) => nearest(state, &lens, point),
                     _ => {}
                 }
             }
@@ -105,6 +102,10 @@ pub(super) fn step_list(state: &mut State, by: i64) {
 
 /// Selects the track nearest to a point of the frame that is shown.
 fn nearest(state: &mut State, lens: &Lens, point: [f32; 2]) {
+    if Skeletal::azimuth(state) != 0 {
+        // Where tracks are is not seen.
+        return;
+    }
     let far = |at: [f32; 2]| (at[0] - point[0]).hypot(at[1] - point[1]);
     let frame = state.shown_frame();
     let shown = match &state.versus {
@@ -117,6 +118,8 @@ fn nearest(state: &mut State, lens: &Lens, point: [f32; 2]) {
         .filter(|(_, far)| *far <= REACH_CELLS * lens.cell_px())
         .min_by(|a, b| a.1.total_cmp(&b.1));
     if let Some((track, _)) = found {
+        // The bone of its group is the one that is meant, no longer another.
+        state.skeleton.chosen = None;
         time::select(state, track);
     }
 }

@@ -102,6 +102,15 @@ pub(super) fn orbit(state: &mut State, by: i64) {
     say(state, line);
 }
 
+/// Goes back to the front; whether it was elsewhere.
+pub(super) fn leave_round(state: &mut State) -> bool {
+    let is_turned = Skeletal::azimuth(state) != 0;
+    if is_turned {
+        front(state);
+    }
+    is_turned
+}
+
 /// Goes back to the front.
 pub(super) fn front(state: &mut State) {
     state.skeleton.azimuth = 0;

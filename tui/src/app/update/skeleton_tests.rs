@@ -181,7 +181,8 @@ fn bones_are_shaped_by_keys() {
         ("P s Enter", "shape group 1 bud "),
         ("P s k Enter", "shape fork 1,2 "),
         ("P s j Enter", "shape group 2 "),
-        ("P s 9 j Enter Esc P s j G b", "shape group 2 "),
+        ("P s 9 j Enter Esc", "review"),
+        ("P s 9 j P s G b", "shape group 1 bud "),
         ("G b 6 l", "shape group 1 bud plane 30°"),
         ("G b L H H k", "shape group 1 bud plane -0.5°, lean -5°"),
         ("G b 3 J 2 + -", "shape group 1 bud lean 1.5°, gain 1.1"),
@@ -245,10 +246,19 @@ fn a_skeleton_is_gone_round() {
         ("2 4 }", 0),
         ("} V", 0),
         ("} v k v k", 0),
+        ("} Esc", 0),
         ("G b } }", 30),
     ] {
         let (state, _) = shaped(keys);
         assert_eq!(state.skeleton.azimuth, azimuth, "by `{keys}`");
+    }
+    // What is done in the picture is done from the front, and then it is seen from where it was.
+    let (mut state, _) = shaped("2 }");
+    for (keys, azimuth) in
+        [("m", 0), ("Esc", 30), ("G p", 0), ("Esc", 30), ("G b", 30), ("Esc", 30), (":", 30)]
+    {
+        press(&mut state, keys);
+        assert_eq!(Skeletal::azimuth(&state), azimuth, "after `{keys}`");
     }
     check("", "}", "review | frame 0 track 1 | error there is no skeleton to go round: v k grows it");
     // From the right, what is far away is to the right; what is up stays up.

@@ -19,7 +19,7 @@ use crate::app::keymap::shown;
 use crate::app::layout::{Lens, bar, column_of, frame_at};
 use crate::app::panel::Panel;
 use crate::app::recovery::Recovery;
-use crate::app::skeleton::Shaping;
+use crate::app::skeleton::{Shaping, Skeletal};
 use crate::app::sketching::Sketching;
 use crate::app::state::{Job, Mode, Quiet, State};
 use crate::app::tracks::TrackRow;
@@ -52,7 +52,7 @@ fn facts(state: &State, nth: usize) -> Vec<(u8, String)> {
     facts.extend(state.groups.as_ref().map(|groups| (4, counted(groups.shown.len(), "group"))));
     let lens = Lens::shown(state);
     facts.extend((state.marks_all && nth > 1).then(|| (3, format!("1 in {nth} marked"))));
-    facts.extend(state.skeleton.is_turned().then(|| (0, format!("seen from {}°", state.skeleton.azimuth))));
+    facts.extend(turned_words(state).map(|words| (0, words)));
     facts.extend(state.read_only.is_some().then(|| (0, "read only".to_owned())));
     if state.zoom > 0 {
         let times = lens.magnification();
@@ -94,6 +94,13 @@ fn ways_of_moving(state: &State, [x, y]: [f32; 2]) -> Vec<(u8, String)> {
     ways
 }
 
+/// From where a skeleton is seen that is gone round.
+fn turned_words(state: &State) -> Option<String> {
+    Some(Skeletal::azimuth(state))
+        .filter(|azimuth| *azimuth != 0)
+        .map(|azimuth| format!("seen from {azimuth}°"))
+}
+
 /// By what a bone is shaped, and from where it is seen.
 fn ways_of_shaping(state: &State) -> Vec<(u8, String)> {
     let hints = state.keys.hints(Context::Shape);
@@ -102,7 +109,7 @@ fn ways_of_shaping(state: &State) -> Vec<(u8, String)> {
         .zip(["plane", "lean", "gain", "go round", ".5°", "play"])
         .filter_map(|(nth, word)| Some((nth, keys(word)?)))
         .collect();
-    ways.extend(state.skeleton.is_turned().then(|| (0, format!("seen from {}°", state.skeleton.azimuth))));
+    ways.extend(turned_words(state).map(|words| (0, words)));
     ways
 }
 
@@ -484,8 +491,9 @@ fn hint_line(state: &State, room: usize) -> Line<'static> {
         "keep" | "go on" => 0,
         "model" if context == Context::Move => 1,
         "back" if matches!(context, Context::Move | Context::Shape) => 2,
-        "end" | "lost" | "occluded" | "take away" | "average" => 1,
+        "shape" | "end" | "lost" | "occluded" | "take away" | "average" => 1,
         "flick" | "take A" | "take B" => 2,
+        "skeleton" | "bones" | "go round" if context == Context::Review => 2,
         "key-frame" => 4,
         _ => 3,
     });
@@ -548,6 +556,13 @@ fn is_useful(state: &State, action: Action) -> bool {
         }
         // Beside two runs there is no room for what has nothing to do with them.
         Action::AddFeature | Action::RunClusterer if state.versus.is_some() => false,
+        Action::Skeleton => {
+            state.panel == Some(Panel::Groups) && state.groups.is_some() && !state.skeleton.is_on
+        }
+        Action::PanelSkeleton => state.skeleton.is_on && state.panel != Some(Panel::Skeleton),
+        Action::OrbitLeft | Action::OrbitRight => {
+            state.skeleton.pose.is_some() && state.panel == Some(Panel::Skeleton)
+        }
         Action::MoveSample => !state.tracks.is_empty() && state.read_only.is_none(),
         Action::RunTracker => state.tracks.is_empty() && state.job.is_none() && state.read_only.is_none(),
         Action::RetrackBoth => state.selected.is_some() && state.job.is_none() && state.read_only.is_none(),

@@ -19,6 +19,7 @@ use honami_model::track::Status;
 use super::braille::{DOTS, braille};
 use super::{put, style};
 use crate::app::layout::{Layout, Lens};
+use crate::app::skeleton::Skeletal;
 use crate::app::state::{Mode, State};
 use crate::app::tracks::TrackRow;
 use crate::term::encode::Frame;
@@ -153,7 +154,7 @@ impl<'a> Canvas<'a> {
             letters: state.mono.then(Letters::default),
             scene,
         };
-        if state.skeleton.is_turned() {
+        if Skeletal::azimuth(state) != 0 {
             canvas.clear();
             canvas.skeleton(state, shot.frame);
             return canvas;

@@ -40,13 +40,11 @@ impl<'a> BoneList<'a> {
 }
 
 impl List for BoneList<'_> {
-    /// Where its root is by hand, and from where it is seen.
+    /// Where its root is by hand.
     fn above(&self, _columns: u16, _rows: u16) -> Vec<Line<'static>> {
         let skeleton = &self.state.skeleton;
         let root = skeleton.hand.root.map(|[x, y]| format!("root by hand at {x:.1}, {y:.1}"));
-        let turned = skeleton.is_turned().then(|| format!("seen from {}°", skeleton.azimuth));
-        let words: Vec<String> = root.into_iter().chain(turned).collect();
-        if words.is_empty() { Vec::new() } else { vec![Line::styled(words.join(" · "), style::DIM)] }
+        root.map(|words| Line::styled(words, style::DIM)).into_iter().collect()
     }
 
     fn text(&self) -> Option<String> {

@@ -39,7 +39,7 @@ impl Canvas<'_> {
 
     fn bones(&mut self, state: &State, (bones, pose): (&Bones, &Pose), frame: u32, grey: Option<[u8; 3]>) {
         let Some(places) = pose.at(frame) else { return };
-        let azimuth = state.skeleton.azimuth;
+        let azimuth = Skeletal::azimuth(state);
         let seen = |row: usize| match state.mode {
             // The cursor is to be the root.
             Mode::Root(at) if row == 0 => (at, 0.0),
