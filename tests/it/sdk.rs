@@ -9,7 +9,7 @@ use serde_json::Value;
 use crate::schema::assert_satisfied;
 
 /// What `honami plugin new` begins: its words, and what must be there to build it.
-const TRACKERS: [(&str, &str, &[&str]); 4] = [
+const LANGUAGES: [(&str, &str, &[&str]); 4] = [
     ("in-python", "python", &["python3", "-c", "import numpy"]),
     ("in-rust", "rust", &["cargo", "--version"]),
     ("in-c", "c", &["cc", "--version"]),
@@ -79,7 +79,7 @@ fn a_tracker_that_was_just_begun_follows_the_texture_and_is_the_same_in_every_la
     bench.synth("storm.y4m", 12, "--leaves 40 --wind storm");
     fs::write(bench.path("points.csv"), POINTS).unwrap();
     let mut samples = Vec::new();
-    for (name, lang, needed) in TRACKERS {
+    for (name, lang, needed) in LANGUAGES {
         let Some(plugin) = begun(&bench, &format!("{name} --lang {lang}"), needed) else { continue };
         let told = bench.text(&format!("plugin info {name} --plugin {plugin}"));
         assert!(told.contains("radius") && told.contains("Half the side of the template."), "{told}");
@@ -118,7 +118,7 @@ fn a_structure_builder_that_was_just_begun_grows_alike_in_every_language() {
     let bench = Bench::tracked();
     bench.json("cluster p.honami --groups 5");
     let mut tables = Vec::new();
-    for (name, lang, needed) in &TRACKERS[..2] {
+    for (name, lang, needed) in &LANGUAGES {
         let Some(plugin) = begun(&bench, &format!("{name} --kind structure --lang {lang}"), needed) else {
             continue;
         };
@@ -140,7 +140,7 @@ fn a_structure_builder_that_was_just_begun_grows_alike_in_every_language() {
 fn a_clusterer_that_was_just_begun_groups_tracks_alike_in_every_language() {
     let bench = Bench::tracked();
     let mut groups = Vec::new();
-    for (name, lang, needed) in &TRACKERS[..2] {
+    for (name, lang, needed) in &LANGUAGES[..2] {
         let Some(plugin) = begun(&bench, &format!("{name} --kind clusterer --lang {lang}"), needed) else {
             continue;
         };

@@ -406,9 +406,13 @@ public:
   Skeleton(std::size_t n_frames, double x, double y, double z) : n_frames(n_frames), root{x, y, z} { add(-1, 0); }
   /* Another joint, at the end of a bone of this length, above 0, on an earlier one. */
   std::size_t joint(std::size_t parent, double length) { return add(int32_t(parent), length); }
-  /* Points the bone of a joint in a frame; of any length above 0. */
+  /* Points the bone of a joint in a frame; of any finite length above 0. */
   void point(std::size_t joint, std::size_t frame, double x, double y, double z) {
     const double length = std::hypot(std::hypot(x, y), z);
+    in_reach("joint", joint, ways.size(), frame);
+    if (!(length > 0 && std::isfinite(length)))
+      throw std::domain_error("joint " + std::to_string(joint) + " is pointed nowhere in frame " + std::to_string(frame) +
+                              ": a direction of a finite length above 0 was wanted");
     double *const d = &ways[joint][3 * frame];
     d[0] = x / length, d[1] = y / length, d[2] = z / length;
   }
@@ -423,6 +427,7 @@ public:
     return carried.size() - 1;
   }
   void place(std::size_t leaf, std::size_t frame, double x, double y, double z) {
+    in_reach("leaf", leaf, carried.size(), frame);
     double *const d = &offsets[3 * (leaf * n_frames + frame)];
     d[0] = x, d[1] = y, d[2] = z;
   }
@@ -443,6 +448,12 @@ public:
   }
 
 private:
+  /* What is not there is an error of the plugin's, and nothing beside it is written over. */
+  void in_reach(const char *what, std::size_t k, std::size_t n, std::size_t frame) const {
+    if (k < n && frame < n_frames) return;
+    throw std::out_of_range(std::string(what) + " " + std::to_string(k) + " of " + std::to_string(n) + " was placed in frame " +
+                            std::to_string(frame) + " of " + std::to_string(n_frames));
+  }
   std::size_t add(int32_t parent, double length) {
     parents.push_back(parent), lengths.push_back(length);
     ways.emplace_back(3 * n_frames);

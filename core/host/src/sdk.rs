@@ -95,8 +95,11 @@ pub fn begin(name: &str, kind: Kind, language: Language) -> Result<Begun, String
             };
             Ok(rust::begin(name, own(text)))
         }
-        (Language::C, Kind::Tracker) => {
-            let text = include_str!("../../abi/examples/template_tracker.c");
+        (Language::C, Kind::Tracker | Kind::Structure) => {
+            let text = match kind {
+                Kind::Structure => include_str!("../../abi/examples/template_structure.c"),
+                _ => include_str!("../../abi/examples/template_tracker.c"),
+            };
             Ok(Begun {
                 files: vec![(format!("{name}.c"), own(text)), header],
                 build: format!(
@@ -105,8 +108,11 @@ pub fn begin(name: &str, kind: Kind, language: Language) -> Result<Begun, String
                 plugin: format!("{name}/{name}.so"),
             })
         }
-        (Language::Cpp, Kind::Tracker) => {
-            let text = include_str!("../../abi/examples/template_tracker.cpp");
+        (Language::Cpp, Kind::Tracker | Kind::Structure) => {
+            let text = match kind {
+                Kind::Structure => include_str!("../../abi/examples/template_structure.cpp"),
+                _ => include_str!("../../abi/examples/template_tracker.cpp"),
+            };
             let class = ("honami.hpp".to_owned(), include_str!("../../abi/include/honami.hpp").to_owned());
             let types = include_str!("../../abi/include/honami_types.hpp").to_owned();
             let types = ("honami_types.hpp".to_owned(), types);
@@ -121,10 +127,10 @@ pub fn begin(name: &str, kind: Kind, language: Language) -> Result<Begun, String
                 plugin: format!("{name}/{name}.so"),
             })
         }
-        (Language::C | Language::Cpp, Kind::Clusterer | Kind::Structure) => Err(format!(
+        (Language::C | Language::Cpp, Kind::Clusterer) => Err(format!(
             "a {kind} can be begun in Python and in Rust; honami.hpp (C++) and honami.h (C) say what it is"
         )),
-        (_, Kind::Simulator) => Err(format!("there is no template of a {kind} yet")),
+        (_, Kind::Simulator) => Err(format!("there is no template of a {kind}")),
     }
 }
 

@@ -39,7 +39,9 @@ fn a_plugin_that_was_just_begun_has_its_own_id_and_nothing_of_the_template() {
         (Language::Rust, Kind::Clusterer),
         (Language::Rust, Kind::Structure),
         (Language::C, Kind::Tracker),
+        (Language::C, Kind::Structure),
         (Language::Cpp, Kind::Tracker),
+        (Language::Cpp, Kind::Structure),
     ] {
         let begun = begin("my-own", kind, language).unwrap();
         let (file, text) = &begun.files[0];
@@ -83,7 +85,7 @@ fn names_that_would_not_work_are_refused() {
     }
     assert!(begin("json", Kind::Tracker, Language::Rust).is_ok());
     assert!(begin("a", Kind::Clusterer, Language::C).unwrap_err().contains("in Python and in Rust"));
-    assert!(begin("a", Kind::Structure, Language::Cpp).unwrap_err().contains("in Python and in Rust"));
+    assert!(begin("a", Kind::Clusterer, Language::Cpp).unwrap_err().contains("in Python and in Rust"));
     assert!(begin("a", Kind::Simulator, Language::Rust).unwrap_err().contains("no template of a simulator"));
 }
 

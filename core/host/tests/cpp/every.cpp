@@ -98,8 +98,11 @@ public:
 // A bone from the root to where each group without parts is, in a frame where all of it is seen.
 class Fan : public honami::Structure {
 public:
+  static constexpr honami::Entry faults[] = {{"none", "None"}, {"joint", "Joint"}, {"leaf", "Leaf"},
+                                             {"frame", "Frame"}, {"nowhere", "Nowhere"}, {"endless", "Endless"}};
   static constexpr honami::Info info{"org.test.fan", "Fan"};
-  explicit Fan(const honami::Values &) {}
+  static constexpr honami::Param params[] = {honami::choice("fault", faults, "What it does wrongly.")};
+  explicit Fan(const honami::Values &values) : fault(values.text("fault")) {}
 
   honami::Skeleton run(const honami::Filmed &filmed, const honami::Call &call) override {
     if (!filmed.root) throw honami::Error("a fan wants a root");
@@ -120,8 +123,16 @@ public:
         }
       }
     }
+    if (fault == "joint") fan.point(1000000, 1, 1, 0, 0);
+    if (fault == "leaf") fan.place(1000000, 1, 1, 0, 0);
+    if (fault == "frame") fan.point(1, 1000000, 1, 0, 0);
+    if (fault == "nowhere") fan.point(1, 1, 0, 0, 0);
+    if (fault == "endless") fan.point(2, 0, 1.7e308, 1.7e308, 0);
     return fan;
   }
+
+private:
+  std::string fault;
 };
 
 HONAMI_LIBRARY("org.test.every", "1.0.0", "MIT", Faster, Chain, Fan);

@@ -3,7 +3,7 @@
 
 use crate::tools::{has_compiler, host, isolating, named, pixels, point, scratch, start_in, stream, view};
 use honami_host::{
-    CallContext, DetectRequest, Filmed, GroupTree, Host, HostError, Kind, Registry, Tracker, Tracks,
+    CallContext, DetectRequest, Filmed, GroupTree, Host, HostError, Kind, Registry, Tracker, Tracks, Value,
 };
 use honami_model::picture::Gray;
 use honami_model::track::Status;
@@ -167,6 +167,21 @@ fn a_structure_builder_in_cpp_gives_a_skeleton_and_says_why_it_cannot() {
             let (mut fan, _) = host.structure(info, &honami_host::Values::default(), &cx).unwrap();
             fan.run(filmed, &cx)
         };
+        for (fault, wanted) in [
+            ("joint", "joint 1000000 of 3 was placed in frame 1 of 2"),
+            ("leaf", "leaf 1000000 of 2 was placed in frame 1 of 2"),
+            ("frame", "joint 1 of 3 was placed in frame 1000000 of 2"),
+            ("nowhere", "joint 1 is pointed nowhere in frame 1"),
+            ("endless", "joint 2 is pointed nowhere in frame 0"),
+        ] {
+            let values = [("fault".to_owned(), Value::Text(fault.to_owned()))].into_iter().collect();
+            let (mut fan, _) = host.structure(info, &values, &cx).unwrap();
+            let error = fan.run(&filmed, &cx).unwrap_err();
+            assert!(
+                matches!(&error, HostError::Failed { text, .. } if text.starts_with(wanted)),
+                "{fault}: {error}"
+            );
+        }
         let rootless = grow(&Filmed { root: None, ..filmed }).unwrap_err();
         assert!(
             matches!(&rootless, HostError::Failed { text, .. } if text == "a fan wants a root"),
