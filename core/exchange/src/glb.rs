@@ -34,6 +34,8 @@ pub(crate) const F32: u32 = 5126;
 pub(crate) const ARRAY: u32 = 34962;
 const INDICES: u32 = 34963;
 pub(crate) const OTHER: u32 = 0;
+/// What a node that bears a mesh says beside where it stands.
+pub(crate) const KEPT: [&str; 3] = ["name", "weights", "extras"];
 /// What wood looks like: linear red, green, blue, and how opaque.
 const COLOUR: [f32; 4] = [0.16, 0.1, 0.06, 1.0];
 const ROUGHNESS: f32 = 0.9;

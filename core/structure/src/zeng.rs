@@ -24,7 +24,7 @@ pub const COPIES: u32 = 3;
 pub const SHIFT: f64 = 0.5;
 
 /// Offsets of leaves, a frame each, that copies may carry: 6 GB of them.
-const MAX_OFFSETS: u64 = 1 << 28;
+const MAX_OFFSETS: u64 = 250_000_000;
 
 /// How to grow.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,7 +72,7 @@ pub fn grow(
     if n_copies > 1 && n_offsets > MAX_OFFSETS {
         return Err(StructureError::TooManyLeaves {
             copies: n_copies,
-            gigabytes: n_offsets * 24 / 1_000_000_000,
+            gigabytes: (n_offsets * 24).div_ceil(1_000_000_000),
         });
     }
     let filmed = Filmed::of(paths, groups, times, settings.root)?;

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 
-use super::{Document, Matrix, Piece, laid, product, upright};
+use super::{Document, KEPT, Matrix, Piece, laid, product, upright};
 
 /// Meshes of a file on their way into another, with what they need: their numbers, materials and pictures, each once.
 #[derive(Debug)]
@@ -36,10 +36,12 @@ impl<'a> Grafting<'a> {
     ) -> Piece {
         let mesh = self.take(into, "meshes", piece.mesh);
         let matrix = product(&moving(axes, origin), &piece.matrix);
-        let name = &self.from.words["nodes"][piece.node]["name"];
         let mut words = json!({ "mesh": mesh, "matrix": matrix });
-        if name.is_string() {
-            words["name"] = name.clone();
+        for name in KEPT {
+            let kept = &self.from.words["nodes"][piece.node][name];
+            if !kept.is_null() {
+                words[name] = kept.clone();
+            }
         }
         let node = into.put("nodes", words);
         if let Some(scene) = into.scene().as_array_mut() {
@@ -122,6 +124,9 @@ impl<'a> Grafting<'a> {
             ["byteOffset", "byteLength"].map(|name| words[name].as_u64().unwrap_or(0) as usize);
         let bytes =
             first.checked_add(length).and_then(|end| self.from.numbers.get(first..end)).unwrap_or_default();
+        if !words.is_object() {
+            *words = json!({});
+        }
         into.numbers.resize(into.numbers.len().next_multiple_of(4), 0);
         words["byteOffset"] = into.numbers.len().into();
         into.numbers.extend(bytes);

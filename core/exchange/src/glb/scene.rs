@@ -156,12 +156,14 @@ impl Document {
         let (mut stands, mut n_seen) = (Vec::new(), 0);
         while let Some((tree, node, before)) = open.pop() {
             n_seen += 1;
-            if node >= n_nodes || n_seen > n_nodes {
+            let words = &self.words["nodes"][node];
+            let children = indices(&words["children"]);
+            // Those that wait are counted, too: small files may name one child a million times.
+            if node >= n_nodes || n_seen + open.len() + children.len() > n_nodes {
                 return Err(lacks("its nodes are no trees"));
             }
-            let words = &self.words["nodes"][node];
             let matrix = product(&before, &own(words)?);
-            open.extend(indices(&words["children"]).into_iter().rev().map(|child| (tree, child, matrix)));
+            open.extend(children.into_iter().rev().map(|child| (tree, child, matrix)));
             stands.extend(whole(&words["mesh"]).map(|mesh| Stand { tree, node, mesh, matrix }));
         }
         Ok(stands)
@@ -192,17 +194,40 @@ impl Document {
     fn primitives(&self, mesh: usize) -> Result<Vec<Primitive<'_>>, PlantFileError> {
         let primitives = self.words["meshes"][mesh]["primitives"].as_array();
         let primitives = primitives.ok_or_else(|| lacks(&format!("mesh {mesh} has no primitives")))?;
-        let primitive = |words: &Value| {
-            let missing = || lacks(&format!("mesh {mesh} has no positions"));
-            let positions = whole(&words["attributes"]["POSITION"]).ok_or_else(missing)?;
-            let vertices = self.rows(positions, "VEC3", &[F32])?;
-            let mode = whole(&words["mode"]).unwrap_or(TRIANGLES);
-            let indices = whole(&words["indices"]).filter(|_| (TRIANGLES..=FAN).contains(&mode));
-            let indices =
-                indices.map(|accessor| self.rows(accessor, "SCALAR", &[U8, U16, U32])).transpose()?;
-            Ok(Primitive { vertices, mode, indices })
-        };
+        let primitive = |words| self.primitive(mesh, words);
         primitives.iter().map(primitive).collect()
+    }
+
+    fn primitive<'a>(&'a self, mesh: usize, words: &'a Value) -> Result<Primitive<'a>, PlantFileError> {
+        let missing = || lacks(&format!("mesh {mesh} has no positions"));
+        let positions = whole(&words["attributes"]["POSITION"]).ok_or_else(missing)?;
+        let vertices = self.rows(positions, "VEC3", &[F32])?;
+        let mode = whole(&words["mode"]).unwrap_or(TRIANGLES);
+        let indices = whole(&words["indices"]).filter(|_| (TRIANGLES..=FAN).contains(&mode));
+        let indices = indices.map(|accessor| self.rows(accessor, "SCALAR", &[U8, U16, U32])).transpose()?;
+        let targets = words["targets"].as_array().map_or(&[][..], Vec::as_slice);
+        Ok(Primitive { vertices, mode, indices, targets })
+    }
+
+    /// Where vertices are when nothing moves: with as much of every shape as the node says, or else the mesh.
+    fn at_rest(
+        &self,
+        node: usize,
+        mesh: usize,
+        primitive: &Primitive<'_>,
+    ) -> Result<Vec<f64>, PlantFileError> {
+        let mut floats: Vec<f64> = primitive.vertices.numbers().collect();
+        let weights = [&self.words["nodes"][node]["weights"], &self.words["meshes"][mesh]["weights"]];
+        let weights = weights.into_iter().find_map(Value::as_array).map_or(&[][..], Vec::as_slice);
+        for (target, weight) in primitive.targets.iter().zip(weights.iter().filter_map(Value::as_f64)) {
+            let Some(shape) = whole(&target["POSITION"]).filter(|_| weight.abs() > 0.0) else { continue };
+            let shape = self.rows(shape, "VEC3", &[F32])?;
+            if shape.count != primitive.vertices.count {
+                return Err(lacks(&format!("a shape of mesh {mesh} is not of its vertices")));
+            }
+            floats.iter_mut().zip(shape.numbers()).for_each(|(float, by)| *float += weight * by);
+        }
+        Ok(floats)
     }
 
     /// Adds the primitives of a mesh where it stands.
@@ -212,7 +237,7 @@ impl Document {
         let (mut counts, mut turned) = (Vec::new(), Vec::new());
         for primitive in self.primitives(mesh)? {
             let first = all.positions.len() as u32;
-            let floats: Vec<f64> = primitive.vertices.numbers().collect();
+            let floats = self.at_rest(node, mesh, &primitive)?;
             let places = floats.as_chunks::<3>().0.iter();
             all.positions.extend(places.map(|place| laid(placed(&matrix, *place))));
             counts.push(primitive.vertices.count);
@@ -236,6 +261,8 @@ struct Primitive<'a> {
     mode: usize,
     /// Vertices are corners in their own order where there are none.
     indices: Option<Rows<'a>>,
+    /// Shapes that it may take on.
+    targets: &'a [Value],
 }
 
 impl Primitive<'_> {

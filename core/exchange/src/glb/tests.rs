@@ -74,6 +74,25 @@ fn meshes_are_where_their_nodes_put_them() {
     }
 }
 
+/// Each vertex has a shape that takes it as far again from the origin.
+#[test]
+fn shapes_are_as_much_as_nodes_or_else_meshes_say() {
+    let plain = Document::read(&scene(|_| {})).unwrap().pieces().unwrap().0;
+    let shaped = scene(|words| {
+        words["meshes"][0]["primitives"][0]["targets"] = json!([{ "NORMAL": 1 }, { "POSITION": 1 }]);
+        words["meshes"][0]["weights"] = json!([1, 2.0]);
+        words["nodes"][1]["weights"] = json!([0, -0.5]);
+    });
+    let (mesh, _) = Document::read(&shaped).unwrap().pieces().unwrap();
+    for (row, (found, was)) in mesh.positions.iter().zip(&plain.positions).enumerate() {
+        let (origin, size) = if row < 3 { ([10.0, 0.0, 0.0], 0.5) } else { ([0.0, 0.0, 5.0], 3.0) };
+        for axis in 0..3 {
+            let wanted = origin[axis] + size * (was[axis] - origin[axis]);
+            assert!((found[axis] - wanted).abs() < 1e-12, "{row}: {found:?} {was:?}");
+        }
+    }
+}
+
 #[test]
 fn lists_of_points_and_lines_have_no_triangles() {
     for (mode, n) in [(0, 0), (1, 0), (4, 2), (5, 2), (6, 2)] {
@@ -129,7 +148,7 @@ fn mirrors_do_not_turn_inside_out() {
 #[test]
 fn what_is_not_read_is_named() {
     type Change = fn(&mut Value);
-    let cases: [(Change, &str); 20] = [
+    let cases: [(Change, &str); 22] = [
         (|words| words["buffers"][0]["uri"] = "far.bin".into(), "export it as one .glb"),
         (|words| words["buffers"] = json!([]), "export it as one .glb"),
         (|words| words["asset"] = "2.0".into(), "`asset`, an object"),
@@ -165,6 +184,17 @@ fn what_is_not_read_is_named() {
         (|words| words["accessors"][1]["count"] = 2.into(), "a corner that is none"),
         (|words| words["nodes"][1]["children"] = json!([0]), "no trees"),
         (|words| words["scenes"][0]["nodes"] = json!([9]), "no trees"),
+        (|words| words["nodes"][0]["children"] = json!(vec![1; 1_000_000]), "no trees"),
+        (
+            |words| {
+                words["meshes"][0]["primitives"][0]["targets"] = json!([{ "POSITION": 2 }]);
+                words["meshes"][0]["weights"] = json!([1]);
+                let mut shorter = words["accessors"][1].clone();
+                shorter["count"] = 2.into();
+                words["accessors"].as_array_mut().unwrap().push(shorter);
+            },
+            "a shape of mesh 0 is not of its vertices",
+        ),
         (|words| words["nodes"][0]["scale"] = json!([1.0, "2"]), "3 numbers of a node"),
         (|words| words["meshes"] = json!([{}]), "mesh 0 has no primitives"),
     ];

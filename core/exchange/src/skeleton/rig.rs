@@ -10,7 +10,7 @@ use honami_model::skeleton::Skeleton;
 use serde_json::{Value, json};
 
 use super::joints::{Joints, MOST_JOINTS, rotations};
-use crate::glb::{ARRAY, Document, F32, Matrix, OTHER, Piece, TRIANGLES, U8, U16, product};
+use crate::glb::{ARRAY, Document, F32, KEPT, Matrix, OTHER, Piece, TRIANGLES, U8, U16, product};
 
 /// Why there is no rig.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -111,7 +111,7 @@ pub(super) fn check(
 fn stand(document: &mut Document, node: usize, mesh: usize, skin: usize) {
     let old = &mut document.words["nodes"][node];
     let mut made = json!({ "mesh": mesh, "skin": skin });
-    for name in ["name", "weights", "extras"] {
+    for name in KEPT {
         if !old[name].is_null() {
             made[name] = old[name].take();
         }

@@ -290,6 +290,7 @@ fn what_is_out_of_range_says_so() {
     assert_eq!(with(Settings { copies: 0, ..flat() }), StructureError::Copies);
     let copies = u32::MAX;
     let error = with(Settings { copies, is_flat: false, ..flat() });
-    let gigabytes = 24 * paths.len() as u64 * u64::from(times().len()) * u64::from(copies) / 1_000_000_000;
+    let bytes = 24 * paths.len() as u64 * u64::from(times().len()) * u64::from(copies);
+    let gigabytes = bytes.div_ceil(1_000_000_000);
     assert_eq!(error, StructureError::TooManyLeaves { copies, gigabytes });
 }

@@ -25,6 +25,7 @@ fn painted() -> Document {
         primitive["material"] = 1.into();
         primitive["targets"] = json!([{ "POSITION": 1 }]);
         primitive["extensions"] = json!({ "KHR_materials_variants": { "mappings": [{ "material": 0 }] } });
+        words["nodes"][2]["weights"] = json!([0.0]);
     });
     Document::read(&bytes).unwrap()
 }
@@ -44,6 +45,11 @@ fn pieces_stand_where_they_are_put_with_what_they_need() {
         let put = grafting.graft(&mut into, &pieces[piece], axes, origin);
         assert_eq!((put.mesh, put.n_vertices()), (1, 3));
     }
+    let last = into.words["nodes"].as_array().unwrap().len() - 1;
+    assert_eq!(
+        (&into.words["nodes"][last]["name"], &into.words["nodes"][last]["weights"]),
+        (&"leaf".into(), &json!([0.0]))
+    );
     into.credit(&[&from, &from]);
     let placed = into.pieces().unwrap().0;
     for (row, place) in placed.positions[6..].iter().enumerate() {
@@ -81,6 +87,10 @@ fn rows_that_there_are_not_stay_empty() {
     let mut from = painted();
     from.words["bufferViews"][2]["byteOffset"] = u64::MAX.into();
     from.words["meshes"][0]["primitives"][0]["material"] = 77.into();
+    let accessor = &mut from.words["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"];
+    *accessor = 3.into();
+    from.words["accessors"].as_array_mut().unwrap().resize(4, json!({ "bufferView": 3 }));
+    from.words["bufferViews"].as_array_mut().unwrap().push(5.into());
     let (_, pieces) = from.pieces().unwrap();
     let mut into = Document::empty();
     let put = Grafting::of(&from).graft(
