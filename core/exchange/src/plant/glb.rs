@@ -1,9 +1,11 @@
 //! Plants that move, as one file of glTF 2.0 (.glb): what viewers, engines and modellers read.
 //!
 //! The mesh is there once. What it can do are its morph targets, displacements of all its vertices; every copy is a node
-//! of its own that has them by its own weights, frame by frame. Lengths are metres; z, which is up here, is y there.
+//! of its own that has them by its own weights, frame by frame; from 0 to 1, whatever they are here, for many tools know no
+//! others ([`reach`]). Lengths are metres; z, which is up here, is y there.
 
 mod layout;
+mod reach;
 #[cfg(test)]
 mod tests;
 
@@ -12,6 +14,7 @@ use std::io::{self, Write as _};
 use crate::atomic::AtomicFile;
 use crate::table::TableError;
 use layout::Layout;
+use reach::Reach;
 use serde_json::{Value, json};
 
 /// Readers take such a file into memory whole, and many count its bytes in 31 bits.
@@ -57,7 +60,7 @@ pub struct Placed {
     pub turn: f32,
     /// So many times as large as the mesh.
     pub scale: f32,
-    /// `(n_frames, n_targets)`.
+    /// `(n_frames, n_targets)`, any finite ones; the file has them from 0 to 1.
     pub weights: Vec<f32>,
 }
 
@@ -150,8 +153,10 @@ pub fn write_glb(
     check(body, copies, n_frames)?;
     // What cannot move has no frames: the standard has no animations of nothing.
     let times: Vec<f32> = (0..n_frames).map(|frame| (frame as f64 / fps) as f32).collect();
+    let reach = Reach::new(n_targets, copies);
+    let least = reach.least(body);
     let mut layout = Layout::default();
-    let mesh = mesh(&mut layout, name, body);
+    let mesh = mesh(&mut layout, name, body, &least, &reach);
     let animations: Vec<Value> =
         (n_targets > 0).then(|| animation(&mut layout, &times, copies)).into_iter().collect();
     let nodes: Vec<Value> = (1..).zip(copies).map(|(k, copy)| node(k, copy)).collect();
@@ -180,10 +185,22 @@ pub fn write_glb(
     // Chunks begin and end at whole words; JSON is filled up with blanks.
     words.resize(words.len().next_multiple_of(4), b' ');
     let whole = 12 + 8 + words.len() as u32 + 8 + n_bytes;
-    put(&mut file, &words, whole, n_bytes, body, &times, copies)
+    let numbers = Numbers { body, least: &least, reach: &reach, times: &times, copies };
+    put(&mut file, &words, whole, n_bytes, &numbers)
         .map_err(|source| TableError::File { path: file.path().to_owned(), source })?;
     file.finish()?;
     Ok(u64::from(whole))
+}
+
+/// What is not words.
+struct Numbers<'a> {
+    body: &'a Body,
+    /// Vertices where all weights are 0.
+    least: &'a [[f32; 3]],
+    reach: &'a Reach,
+    /// Seconds.
+    times: &'a [f32],
+    copies: &'a [Placed],
 }
 
 /// The header, the words, and all numbers in the order in which [`mesh`] and [`animation`] have laid them out.
@@ -192,10 +209,9 @@ fn put(
     words: &[u8],
     whole: u32,
     n_bytes: u32,
-    body: &Body,
-    times: &[f32],
-    copies: &[Placed],
+    numbers: &Numbers<'_>,
 ) -> io::Result<()> {
+    let Numbers { body, least, reach, times, copies } = numbers;
     file.write_all(b"glTF")?;
     for word in [2, whole, words.len() as u32] {
         file.write_all(&word.to_le_bytes())?;
@@ -207,13 +223,18 @@ fn put(
     for index in body.triangles.iter().flatten() {
         file.write_all(&index.to_le_bytes())?;
     }
-    let targets = body.targets.iter().map(|target| &target.moved);
-    for vertex in [&body.positions, &body.normals].into_iter().chain(targets).flatten() {
-        for number in upright(*vertex) {
+    let ways = (0..).zip(&body.targets);
+    let ways = ways.flat_map(|(k, target)| target.moved.iter().map(move |moved| reach.way(k, *moved)));
+    for vertex in least.iter().chain(&body.normals).copied().chain(ways) {
+        for number in upright(vertex) {
             file.write_all(&number.to_le_bytes())?;
         }
     }
-    for number in times.iter().chain(copies.iter().flat_map(|copy| &copy.weights)) {
+    let n_targets = body.targets.len().max(1);
+    let of_frame =
+        |frame: &[f32]| (0..).zip(frame).map(|(k, weight)| reach.weight(k, *weight)).collect::<Vec<_>>();
+    let weights = copies.iter().flat_map(|copy| copy.weights.chunks(n_targets)).flat_map(of_frame);
+    for number in times.iter().copied().chain(weights) {
         file.write_all(&number.to_le_bytes())?;
     }
     Ok(())
@@ -224,12 +245,15 @@ fn upright([x, y, z]: [f32; 3]) -> [f32; 3] {
     [x, z, -y]
 }
 
-fn mesh(layout: &mut Layout, name: &str, body: &Body) -> Value {
+fn mesh(layout: &mut Layout, name: &str, body: &Body, least: &[[f32; 3]], reach: &Reach) -> Value {
     let indices = layout.indices(body.triangles.len());
-    let position = layout.vertices(&body.positions);
-    let normal = layout.vertices(&body.normals);
-    let targets: Vec<Value> =
-        body.targets.iter().map(|target| json!({ "POSITION": layout.vertices(&target.moved) })).collect();
+    let position = layout.vertices(least.iter().copied());
+    let normal = layout.vertices(body.normals.iter().copied());
+    let target = |(k, target): (usize, &Target)| {
+        let ways = target.moved.iter().map(|moved| reach.way(k, *moved));
+        json!({ "POSITION": layout.vertices(ways) })
+    };
+    let targets: Vec<Value> = body.targets.iter().enumerate().map(target).collect();
     let names: Vec<&str> = body.targets.iter().map(|target| target.name.as_str()).collect();
     let mut mesh = json!({
         "name": name,
@@ -240,7 +264,7 @@ fn mesh(layout: &mut Layout, name: &str, body: &Body) -> Value {
         }],
     });
     if !targets.is_empty() {
-        mesh["weights"] = vec![0.0; targets.len()].into();
+        mesh["weights"] = reach.rest().into();
         mesh["primitives"][0]["targets"] = targets.into();
         // Not of the standard, but where most readers look for names.
         mesh["extras"] = json!({ "targetNames": names });

@@ -30,17 +30,18 @@ impl Layout {
     }
 
     /// Three numbers a vertex, as they are before they are turned upright.
-    pub(super) fn vertices(&mut self, vertices: &[[f32; 3]]) -> usize {
+    pub(super) fn vertices(&mut self, vertices: impl ExactSizeIterator<Item = [f32; 3]>) -> usize {
         let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+        let count = vertices.len();
         for vertex in vertices {
-            for (axis, v) in upright(*vertex).into_iter().enumerate() {
+            for (axis, v) in upright(vertex).into_iter().enumerate() {
                 (low[axis], high[axis]) = (low[axis].min(v), high[axis].max(v));
             }
         }
         let what = json!({
-            "componentType": F32, "type": "VEC3", "count": vertices.len(), "min": low, "max": high,
+            "componentType": F32, "type": "VEC3", "count": count, "min": low, "max": high,
         });
-        self.add(OF_VERTICES, 12 * vertices.len(), what)
+        self.add(OF_VERTICES, 12 * count, what)
     }
 
     /// Seconds, ascending.

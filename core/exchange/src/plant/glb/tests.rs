@@ -1,5 +1,6 @@
 //! What is written is read back by another's reader; what cannot be is refused.
 
+use super::reach::Reach;
 use super::{Body, GlbError, Placed, Sizes, Target, write_glb};
 use crate::atomic::AtomicFile;
 use gltf::animation::util::ReadOutputs;
@@ -21,7 +22,7 @@ fn copies() -> Vec<Placed> {
         place: [x, 10.0, 0.0],
         turn,
         scale: 1.0 + x / 10.0,
-        weights: (0..6).map(|k| x + 0.1 * k as f32).collect(),
+        weights: (0..6).map(|k| x / 8.0 - 0.3 * k as f32).collect(),
     };
     vec![copy(0.0, 0.0), copy(5.0, std::f32::consts::FRAC_PI_2)]
 }
@@ -46,27 +47,55 @@ fn another_reader_finds_the_mesh_its_targets_and_the_motion_of_every_copy() {
     let mesh = document.meshes().next().unwrap();
     let primitive = mesh.primitives().next().unwrap();
     let reader = primitive.reader(data);
-    // y up: x, z, -y.
     let places: Vec<[f32; 3]> = reader.read_positions().unwrap().collect();
-    assert!(close(&places.concat(), &[0., 0., 0., 1., 0., 0., 0., 0., -2., 0., 3., 0.]), "{places:?}");
     let indices: Vec<u32> = reader.read_indices().unwrap().into_u32().collect();
     assert_eq!(indices, [0, 1, 2, 0, 2, 3]);
-    let moved: Vec<Vec<[f32; 3]>> =
+    let targets: Vec<Vec<[f32; 3]>> =
         reader.read_morph_targets().map(|(moved, ..)| moved.unwrap().collect()).collect();
-    assert!(close(&moved[0].concat(), &[0.5, 1.5, -1.0].repeat(4)), "{moved:?}");
-    assert!(close(&moved[1].concat(), &[-1.0, -3.0, 2.0].repeat(4)), "{moved:?}");
+    let rest = mesh.weights().unwrap();
+    // As readers sum it, and as it was given; y up: x, z, -y.
+    let is_moved = |weights: &[f32], wanted: &[f32]| {
+        assert!(weights.iter().all(|weight| (0.0..=1.0).contains(weight)), "{weights:?}");
+        for (k, place) in body().positions.into_iter().enumerate() {
+            let there: [f32; 3] = std::array::from_fn(|axis| {
+                places[k][axis]
+                    + weights.iter().zip(&targets).map(|(w, moved)| w * moved[k][axis]).sum::<f32>()
+            });
+            let [x, y, z] = std::array::from_fn(|axis| {
+                let targets = body().targets;
+                place[axis]
+                    + wanted.iter().zip(&targets).map(|(w, target)| w * target.moved[k][axis]).sum::<f32>()
+            });
+            assert!(close(&there, &[x, z, -y]), "vertex {k} by {wanted:?}: {there:?}");
+        }
+    };
+    is_moved(rest, &[0.0, 0.0]);
     let animation = document.animations().next().unwrap();
     for (channel, copy) in animation.channels().zip(copies()) {
         let reader = channel.reader(data);
         let times: Vec<f32> = reader.read_inputs().unwrap().collect();
         assert!(close(&times, &[0.0, 0.1, 0.2]), "{times:?}");
         let Some(ReadOutputs::MorphTargetWeights(weights)) = reader.read_outputs() else { unreachable!() };
-        assert!(close(&weights.into_f32().collect::<Vec<f32>>(), &copy.weights));
+        let weights: Vec<f32> = weights.into_f32().collect();
+        assert_eq!(weights.len(), copy.weights.len());
+        weights.chunks(2).zip(copy.weights.chunks(2)).for_each(|(there, wanted)| is_moved(there, wanted));
         let ([x, y, z], [_, sin, _, cos], _) = channel.target().node().transform().decomposed();
         let [east, north, up] = copy.place;
         assert!(close(&[x, y, z], &[east, up, -north]));
         assert!(close(&[sin, cos], &[(copy.turn / 2.0).sin(), (copy.turn / 2.0).cos()]));
     }
+}
+
+/// Least and most of all copies and rest are 0 and 1, so that none of what a weight can say is wasted; a target that never
+/// moves is there as it is.
+#[test]
+fn weights_fill_what_tools_take() {
+    let by = |weights: [f32; 6]| Placed { weights: weights.to_vec(), ..copies().swap_remove(0) };
+    let reach = Reach::new(2, &[by([-2.0, 0.0, -1.0, 0.0, -3.0, 0.0]), by([1.0, 0.0, 0.0, 0.0, -1.5, 0.0])]);
+    assert!(close(&[-3.0, 0.0, 1.0].map(|weight| reach.weight(0, weight)), &[0.0, 0.75, 1.0]));
+    assert!(close(&reach.rest(), &[0.75, 0.0]), "{reach:?}");
+    assert!(close(&reach.way(0, [0.5, 0.0, -1.0]), &[2.0, 0.0, -4.0]), "{reach:?}");
+    assert!(close(&reach.way(1, [0.5, 0.0, -1.0]), &[0.5, 0.0, -1.0]), "{reach:?}");
 }
 
 /// What stands still has no targets and no animation, which the standard has none of without any.
