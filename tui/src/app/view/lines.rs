@@ -51,7 +51,10 @@ fn facts(state: &State, nth: usize) -> Vec<(u8, String)> {
     }
     facts.extend(state.groups.as_ref().map(|groups| (4, counted(groups.shown.len(), "group"))));
     let lens = Lens::shown(state);
-    facts.extend((state.marks_all && nth > 1).then(|| (3, format!("1 in {nth} marked"))));
+    facts.extend(
+        (state.marks_all && nth > 1 && Skeletal::azimuth(state) == 0)
+            .then(|| (3, format!("1 in {nth} marked"))),
+    );
     facts.extend(turned_words(state).map(|words| (0, words)));
     facts.extend(state.read_only.is_some().then(|| (0, "read only".to_owned())));
     if state.zoom > 0 {
@@ -557,7 +560,8 @@ fn is_useful(state: &State, action: Action) -> bool {
         // Beside two runs there is no room for what has nothing to do with them.
         Action::AddFeature | Action::RunClusterer if state.versus.is_some() => false,
         Action::Skeleton => {
-            state.panel == Some(Panel::Groups) && state.groups.is_some() && !state.skeleton.is_on
+            let is_near = matches!(state.panel, Some(Panel::Groups | Panel::Skeleton));
+            is_near && state.groups.is_some() && !state.skeleton.is_on
         }
         Action::PanelSkeleton => state.skeleton.is_on && state.panel != Some(Panel::Skeleton),
         Action::OrbitLeft | Action::OrbitRight => {

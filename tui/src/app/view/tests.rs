@@ -250,7 +250,8 @@ fn screens_of_skeletons() {
     check("shape_80x24", (80, 24), "", bones("G b 6 l 3 k + +"));
     check("shape_120x36", (120, 36), "", bones("P s Enter 6 l"));
     check("orbit_120x36", (120, 36), "", bones("P s 3 }"));
-    check("bones_none_80x24", (80, 24), "P s P s Tab Tab Tab Tab", |_| {});
+    check("bones_none_80x24", (80, 24), "Tab Tab Tab Tab", |_| {});
+    check("bones_growing_80x24", (80, 24), "P s", |_| {});
     check("skeleton_mono_40x12", (40, 12), "", |state| {
         state.mono = true;
         shown(state);
