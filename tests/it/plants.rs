@@ -137,18 +137,19 @@ fn skeletons_and_cylinders_are_plants_too() {
 /// measured of it in winter.
 #[test]
 fn scanned_trees_swing_as_trees_do() {
-    let trees = [
-        ("Tf12_Validation", 0.1750),
-        ("Tf20_LeafOff_Validation", 0.3348),
-        ("Tf3_LeafOff_Validation", 0.2079),
-    ];
-    assert!((0.29 / 2.0..0.29 * 2.0).contains(&trees[2].1));
-    for (name, wanted) in trees {
+    // What this model gave, to the digits that are told here: any change of it shows. And what was measured.
+    for (name, wanted, measured) in [
+        ("Tf12_Validation", 0.1750, None),
+        ("Tf20_LeafOff_Validation", 0.3348, None),
+        ("Tf3_LeafOff_Validation", 0.2079, Some(0.29)),
+    ] {
         let Some(tree) = data(&format!("trees/wytham_qsm/cyl_data_{name}_1_1.mat")) else { return };
         let wood = ["--young", "7e9", "--density", "800", "--modes", "5", "--json"];
         let answer = Bench::new().run(["simulate", tree.to_str().unwrap()].into_iter().chain(wood)).json();
         let first = hz(&answer)[0];
-        assert!((first / wanted - 1.0).abs() < 0.01 && answer["certified"] == true, "{name}: {first} Hz");
+        assert!((first - wanted).abs() < 1e-4 && answer["certified"] == true, "{name}: {first} Hz");
+        let is_near = |measured: f64| (measured / 2.0..measured * 2.0).contains(&first);
+        assert!(measured.is_none_or(is_near), "{name}: {first} Hz, measured {measured:?}");
     }
 }
 

@@ -19,6 +19,7 @@ fn files(bench: &Bench) {
         ("rod.mtg", mtg(4)),
         ("two.mtg", mtg(1)),
         ("none.mtg", "nothing".to_owned()),
+        ("lost.csv", "t,x,y\n0,1,2\n0.1,-9999,2\n".to_owned()),
         ("nan.csv", "t,x,y\n0,1,2\n0.1,NaN,2\n".to_owned()),
         ("fat.swc", swc("1", "1e300")),
         ("thin.swc", swc("1", "1e-200")),
@@ -66,7 +67,11 @@ fn what_is_refused_leaves_nothing_and_says_what_is_wanted() {
 
 /// What was typed, the exit status, and what it says.
 const CASES: &[(&str, i32, &str)] = &[
+    // A file that is missing is work that failed, of a plant and of a wind; a name that there is not was typed wrongly.
     ("simulate no.mtg", 1, "no.mtg: No such file"),
+    ("synth a.y4m --plant no.mtg", 1, "no.mtg: No such file"),
+    ("simulate two.mtg --modes 2 --wind no.csv", 1, "no.csv: No such file"),
+    ("simulate two.mtg --modes 2 --wind calm+no/wind", 1, "no/wind: No such file"),
     (
         "simulate rod.obj",
         2,
@@ -86,6 +91,11 @@ const CASES: &[(&str, i32, &str)] = &[
     ("simulate two.mtg --modes 2 --young=-1", 2, "a Young's modulus of more than 0 Pa, not of -1"),
     ("simulate two.mtg --modes 2 --wind gale", 2, "\"gale\" is no wind and no file: there are still"),
     ("simulate two.mtg --modes 2 --wind nan.csv", 1, "line 3: \"NaN\" is no number"),
+    (
+        "simulate two.mtg --modes 2 --wind lost.csv",
+        1,
+        "line 3: a wind of -9999 m/s, and none is faster than 200",
+    ),
     (
         "simulate two.mtg --modes 2 --wind calm --method symplectic",
         2,
@@ -149,12 +159,13 @@ const CASES: &[(&str, i32, &str)] = &[
     ("simulate tall.swc --modes 2", 1, "segments of up to 1e6 m are wanted; is it the unit?"),
     ("simulate two.mtg --modes 2 --unit 0", 2, "units are more than 0"),
     ("simulate two.mtg --modes 2 --longest 0", 2, "the longest segment is more than 0 m long, not 0 m"),
-    (
-        "simulate no.honami --modes 2",
-        2,
-        "is in pixels: `honami simulate --unit M` says how many metres one of them is",
-    ),
+    ("simulate no.honami --modes 2", 2, "is in pixels: --unit M says how many metres one of them is"),
     ("simulate no.honami --modes 2 --unit 0.01", 1, "cannot open the project"),
+    ("synth a.y4m --plant no.honami", 2, "is in pixels: --unit M says"),
+    ("synth a.y4m --plant no.honami --unit 0.01", 1, "cannot open the project"),
+    ("synth a.y4m --plant two.mtg --unit 0", 2, "units are more than 0"),
+    ("synth a.y4m --plant nan.csv --unit 2", 2, "--unit says nothing of nan.csv"),
+    ("synth a.y4m --unit 2", 2, "--plant"),
     // Options for files of other kinds, and classes that do not occur.
     ("simulate rod.mtg --modes 2 --classes S,X", 2, "rod.mtg: no part is of class X: there are S (5)"),
     (
@@ -188,6 +199,11 @@ const CASES: &[(&str, i32, &str)] = &[
     ("simulate two.mtg --modes 2 --air-density nan", 2, "not of 1 in air of NaN"),
     ("simulate two.mtg --modes 2 --spacing 3", 2, "--forest"),
     ("simulate two.mtg --modes 2 --forest 3 --spacing 0", 2, "copies stand 0.001 to 100000 m apart, not 0 m"),
+    (
+        "simulate two.mtg --modes 2 --forest 1000 --fps 0.001 --seconds 4000 --substeps 100000000",
+        1,
+        "the winds of 1000 copies in 100000000 steps a frame take 1200000 MB",
+    ),
     (
         "simulate synth::tree:30,1 --modes 2 --forest 100000 --seconds 4e6",
         1,

@@ -61,11 +61,11 @@ fn what_is_no_rig_says_why() {
         ("grow p.honami rig.glb --unit 1e-12", 1, "is it the unit?"),
         (
             "grow p.honami rig.glb --joints 2",
-            1,
+            2,
             "a rig has 3 joints at least, the root, a bone and its end, not 2",
         ),
         ("grow p.honami rig.bvh --joints 9", 2, "--joints goes with a .glb or .usda"),
-        ("grow p.honami rig.glb --unit 1e12", 1, "is it the unit?"),
+        ("grow p.honami rig.glb --unit 1e12", 2, "is it the unit?"),
     ] {
         let ran = bench.line(line);
         assert!(ran.code == Some(code) && ran.stderr.contains(wanted), "{line}: {ran:?}");
@@ -339,9 +339,9 @@ fn what_cannot_be_carried_says_why() {
         ("out.glb --onto one.swc", 1, "two nodes at least, this one has 1"),
         ("out.glb --onto no.glb", 1, "no.glb: a .glb begins with `glTF`"),
         ("out.glb --onto rig.glb", 1, "rig.glb: it is bound to bones already"),
-        ("out.glb --onto leaf.txt", 1, "not as leaf.txt"),
+        ("out.glb --onto leaf.txt", 2, "not as leaf.txt"),
         ("out.glb --onto none.obj", 1, "none.obj: "),
-        ("out.glb --onto good.obj --unit 1e-320", 1, "a pixel is 1e-9 to 1e9 of the plant's length"),
+        ("out.glb --onto good.obj --unit 1e-320", 2, "a pixel is 1e-9 to 1e9 of the plant's length"),
         ("out.glb --onto rig.glb --up z", 2, "--up"),
         ("out.pc2 --onto one.swc", 1, "two nodes"),
         ("out.pc2", 2, "a .pc2 has the vertices of an .obj or .ply"),

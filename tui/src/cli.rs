@@ -150,8 +150,7 @@ fn is_usage(error: &anyhow::Error) -> bool {
             || cause.is::<ValueError>()
             || cause.downcast_ref::<HostError>().is_some_and(by_plugin)
             || wrapped.is_some_and(|error| {
-                error.is_of_plant_as_typed()
-                    || matches!(error, WorkbenchError::Plugin(error) if by_plugin(error))
+                error.is_as_typed() || matches!(error, WorkbenchError::Plugin(error) if by_plugin(error))
             })
     })
 }

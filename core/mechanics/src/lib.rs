@@ -43,6 +43,6 @@ pub use threads::{Threads, ThreadsError};
 pub use tree_matrix::TreeMatrix;
 pub use turning::Turning;
 
-/// A direction, a place or a velocity.
-pub type Direction = nalgebra::Vector3<f64>;
+/// Three numbers in space: a place, a way or a velocity.
+pub type Vector = nalgebra::Vector3<f64>;
 pub use wind_basis::{AIR, Drag, WindBasis};

@@ -17,9 +17,36 @@ impl fmt::Display for Brief {
     }
 }
 
+/// So many of what one is called: `1 group`, `3 groups`, `2 leaves`.
+#[must_use]
+pub fn counted(n: usize, one: &str) -> String {
+    match one {
+        _ if n == 1 => format!("1 {one}"),
+        "leaf" => format!("{n} leaves"),
+        "branch" => format!("{n} branches"),
+        "vertex" => format!("{n} vertices"),
+        one => format!("{n} {one}s"),
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::Brief;
+    use super::{Brief, counted};
+
+    #[test]
+    fn one_is_one_and_others_are_many() {
+        for (n, one, wanted) in [
+            (1, "group", "1 group"),
+            (0, "group", "0 groups"),
+            (2, "group", "2 groups"),
+            (1, "leaf", "1 leaf"),
+            (2, "leaf", "2 leaves"),
+            (3, "branch", "3 branches"),
+            (4, "vertex", "4 vertices"),
+        ] {
+            assert_eq!(counted(n, one), wanted);
+        }
+    }
 
     #[test]
     fn a_number_is_short_and_the_same() {

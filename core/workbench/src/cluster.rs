@@ -1,6 +1,9 @@
 //! Clustering: a clusterer plugin finds what moves together, and the hierarchy is kept.
 
+use std::ops::Range;
+
 use honami_host::{CallContext, Clusterer, Flow, HostError, Kind, Tracks, Values};
+use honami_model::brief::counted;
 use honami_model::document::ClusteringId;
 use honami_model::edit::Transaction;
 use honami_model::provenance::Provenance;
@@ -10,6 +13,7 @@ use honami_store::Clustering;
 use crate::ear::Ear;
 use crate::error::WorkbenchError;
 use crate::progress::Progress;
+use crate::scarce::scarce;
 use crate::session::Session;
 use crate::stamp::{SEED, stamp};
 use crate::track::threads;
@@ -35,6 +39,8 @@ pub struct ClusterRequest {
 pub struct ClusterJob {
     clusterer: Clusterer,
     tracks: Tracks,
+    /// From the first in which a track is seen to the last.
+    n_frames: usize,
     provenance: Provenance,
     groups: Option<u32>,
     plugin: String,
@@ -60,7 +66,7 @@ pub struct ClusterOutcome {
     pub outlier_frames: Vec<u32>,
     /// Time it took.
     pub seconds: f64,
-    /// What the clusterer warned of.
+    /// What the clusterer warned of, and whether there was little to go by.
     pub warnings: Vec<String>,
     /// All of that in one line.
     pub line: String,
@@ -79,7 +85,10 @@ pub fn prepare(session: &Session, request: &ClusterRequest) -> Result<ClusterJob
     let mut tracks = Tracks::new(clip.width, clip.height, 0, clip.times.as_slice().to_vec());
     tracks.max_threads = threads();
     tracks.seed = SEED;
+    let mut frames: Option<(u32, u32)> = None;
     for (track, span) in shown.iter().filter(|(_, span)| moving(span)) {
+        let Range { start, end } = span.frames();
+        frames = Some(frames.map_or((start, end), |(first, last)| (first.min(start), last.max(end))));
         let samples = span.samples.iter().map(|sample| (sample.x, sample.y, sample.status));
         tracks.push(track.0, i64::from(span.first_frame), samples);
     }
@@ -94,7 +103,8 @@ pub fn prepare(session: &Session, request: &ClusterRequest) -> Result<ClusterJob
         session.options.host.clusterer(plugin, &request.params, &CallContext::silent())?;
     let provenance = stamp(session.project.revision(), "cluster", plugin, &request.params, origin);
     let plugin = plugin.short_name.clone();
-    Ok(ClusterJob { clusterer, tracks, provenance, groups: request.groups, plugin })
+    let n_frames = frames.map_or(0, |(first, last)| (last - first) as usize);
+    Ok(ClusterJob { clusterer, tracks, n_frames, provenance, groups: request.groups, plugin })
 }
 
 impl ClusterJob {
@@ -113,6 +123,7 @@ impl ClusterJob {
             other => other?,
         };
         let dendrogram = found.dendrogram;
+        let little = scarce(self.tracks.len(), self.n_frames);
         let outliers = found.frames.iter().filter(|note| note.outlier);
         let clustering = Clustering {
             provenance: self.provenance,
@@ -120,7 +131,7 @@ impl ClusterJob {
             cut: self.groups.unwrap_or_else(|| dendrogram.clearest_cut(MAX_GUESS)),
             dendrogram,
             outlier_frames: outliers.filter_map(|note| u32::try_from(note.frame).ok()).collect(),
-            notes: ear.warnings(),
+            notes: ear.warnings().into_iter().chain(little).collect(),
         };
         Ok(ClusterDone { clustering, plugin: self.plugin, seconds: begun.elapsed().as_secs_f64() })
     }
@@ -141,9 +152,10 @@ pub fn finish(session: &mut Session, done: ClusterDone) -> Result<ClusterOutcome
     }
     let (n_tracks, n_groups) = (clustering.tracks.len(), group_sizes.len());
     let n_outliers = clustering.outlier_frames.len();
-    let line = format!(
-        "{plugin}: {n_tracks} tracks in {n_groups} groups, {n_outliers} outlier frames, {seconds:.1} s"
-    );
+    let [tracks, groups, outliers] =
+        [(n_tracks, "track"), (n_groups, "group"), (n_outliers, "outlier frame")]
+            .map(|(n, one)| counted(n, one));
+    let line = format!("{plugin}: {tracks} in {groups}, {outliers}, {seconds:.1} s");
     Ok(ClusterOutcome {
         clustering: id,
         n_tracks,

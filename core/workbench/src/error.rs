@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::path::PathBuf;
 
-use honami_model::brief::Brief;
+use honami_model::brief::{Brief, counted};
 use honami_model::document::RunId;
 use honami_model::track::TrackId;
 
@@ -169,7 +169,7 @@ pub enum WorkbenchError {
     #[error("no pixel of the clip lies in the region or the mask: features cannot be detected there")]
     EmptyArea,
     /// A hierarchy cannot be cut into that many groups.
-    #[error("{n_tracks} tracks make 1 to {n_tracks} groups, not {groups}")]
+    #[error("{} make 1 to {}, not {groups}", counted(*n_tracks, "track"), counted(*n_tracks, "group"))]
     Groups {
         /// Groups asked for.
         groups: u32,
@@ -359,9 +359,7 @@ pub enum WorkbenchError {
         source_name: String,
     },
     /// A skeleton of a size that nobody has said.
-    #[error(
-        "the skeleton of a project is in pixels: `honami simulate --unit M` says how many metres one of them is"
-    )]
+    #[error("the skeleton of a project is in pixels: --unit M says how many metres one of them is")]
     Pixels,
     /// An option for files of other kinds.
     #[error("{option} says nothing of {source_name}: it is for plants in {}", of.join(", "))]
@@ -397,12 +395,31 @@ pub enum WorkbenchError {
     #[error(transparent)]
     Detail(#[from] honami_mechanics::DetailError),
     /// A forest for which there is no room.
-    #[error("{copies} copies of {nodes} nodes take {} MB, and there are {}", bytes / 1_000_000, there / 1_000_000)]
+    #[error(
+        "{copies} copies of {nodes} nodes take {} MB, and there are {}: fewer copies are wanted, or a plant of fewer nodes",
+        bytes / 1_000_000, there / 1_000_000
+    )]
     Memory {
         /// Of the plant.
         copies: usize,
         /// Of each.
         nodes: usize,
+        /// Wanted.
+        bytes: usize,
+        /// Free.
+        there: usize,
+    },
+    /// Winds for which there is no room.
+    #[error(
+        "the winds of {copies} copies in {steps} steps a frame take {} MB, and there are {}: fewer copies or --substeps are \
+         wanted, or more frames a second",
+        bytes / 1_000_000, there / 1_000_000
+    )]
+    WindMemory {
+        /// Of the plant.
+        copies: usize,
+        /// Of a frame.
+        steps: u32,
         /// Wanted.
         bytes: usize,
         /// Free.
@@ -642,17 +659,36 @@ pub enum WorkbenchError {
 }
 
 impl WorkbenchError {
-    /// Whether other options or names are wanted for a plant, its motion or its wind: not another file, nor more room.
+    /// Whether other options, numbers or names are wanted than were typed: not another file, nor more room or work.
     #[must_use]
-    pub fn is_of_plant_as_typed(&self) -> bool {
+    pub fn is_as_typed(&self) -> bool {
         use honami_mechanics::wind::FlowingError::{Cells, Numbers};
         use honami_mechanics::{BeamsError, ForestError};
+        use honami_structure::StructureError as Grown;
         if let Self::PlantFile(error) = self {
             return error.is_as_typed();
         }
         matches!(
             self,
             Self::NoPlant { .. }
+                | Self::Frames { .. }
+                | Self::Groups { .. }
+                | Self::NoSuchTracks
+                | Self::FarRoot { .. }
+                | Self::Unit { .. }
+                | Self::NoCarried { .. }
+                | Self::NoVertices
+                | Self::TooFast { .. }
+                | Self::Structure(
+                    Grown::Shift(_)
+                        | Grown::Copies
+                        | Grown::Root { .. }
+                        | Grown::NoLevel { .. }
+                        | Grown::Threshold { .. }
+                        | Grown::TooFewJoints { .. }
+                        | Grown::Unit(_)
+                )
+                | Self::Onto { source: Grown::Unit(_), .. }
                 | Self::Weather { .. }
                 | Self::Units { .. }
                 | Self::Pixels

@@ -24,6 +24,7 @@ pub mod rebuilt;
 pub mod regroup;
 pub mod retrack;
 pub mod review;
+mod scarce;
 pub mod script;
 pub mod session;
 pub mod shape;

@@ -25,7 +25,7 @@ use honami_exchange::skeleton::at_rest;
 use honami_mechanics::{
     AIR, Beams, BeamsError, Drag, Leaves, MOST_NODES, Modes, ModesError, Options, WindBasis,
 };
-use honami_model::brief::Brief;
+use honami_model::brief::{Brief, counted};
 use honami_model::plant::RadiusRule;
 use honami_store::{Access, Project};
 
@@ -207,8 +207,8 @@ fn skeleton(path: &Path, unit: Option<f64>) -> Result<Measured, WorkbenchError> 
     let grown = grow::usual(&Project::open(path, Access::Read)?)?;
     let mut measured = swc::parse(&at_rest(&grown.skeleton), unit)?;
     let whose = format!(
-        "the skeleton that `honami grow` makes of {} groups, a pixel taken as {} m",
-        grown.n_groups,
+        "the skeleton that `honami grow` makes of {}, a pixel taken as {} m",
+        counted(grown.n_groups, "group"),
         Brief(unit)
     );
     measured.notes.extend(std::iter::once(whose).chain(grown.notes));
@@ -243,6 +243,7 @@ pub fn read(wish: &Wish) -> Result<Measured, WorkbenchError> {
     if ![unit, diameters].iter().all(|v| v.is_finite() && *v > 0.0) {
         return Err(WorkbenchError::Units { unit, diameters });
     }
+    let typed = [("--unit", wish.unit.is_some()), ("--diameters", wish.diameters.is_some())];
     let path = Path::new(source);
     let bytes = || fs::read(path).map_err(|source| PlantFileError::Io { path: path.to_owned(), source });
     // Some are in Latin-1: only remarks and names of people have such letters.
@@ -255,13 +256,13 @@ pub fn read(wish: &Wish) -> Result<Measured, WorkbenchError> {
             let mut measured = mtg::parse(&text()?, &options).map_err(within)?;
             let taken =
                 format!("lengths taken in {} m, diameters in {} m", Brief(unit), Brief(unit / diameters));
-            measured.notes.push(sizes::as_taken(&measured.plant, &taken, "--unit and --diameters say"));
+            measured.notes.push(sizes::as_taken(&measured.plant, &taken, &typed));
             Ok(measured)
         }
         "swc" => {
             let mut measured = swc::parse(&text()?, unit).map_err(within)?;
             let taken = format!("lengths taken in {} m", Brief(unit));
-            measured.notes.push(sizes::as_taken(&measured.plant, &taken, "--unit says"));
+            measured.notes.push(sizes::as_taken(&measured.plant, &taken, &typed[..1]));
             Ok(measured)
         }
         "honami" => skeleton(path, wish.unit),

@@ -7,6 +7,7 @@ mod arguments;
 mod tests;
 mod words;
 
+use honami_model::brief::counted;
 use honami_model::edit::Transaction;
 use honami_model::history::{Entry, EntryId};
 use honami_store::StoreError;
@@ -88,7 +89,7 @@ pub enum ScriptError {
         n_frames: u32,
     },
     /// There are not so many tracks to group.
-    #[error("{n_tracks} tracks make 1 to {n_tracks} groups, not {groups}")]
+    #[error("{} make 1 to {}, not {groups}", counted(*n_tracks, "track"), counted(*n_tracks, "group"))]
     Groups {
         /// Groups asked for.
         groups: u32,

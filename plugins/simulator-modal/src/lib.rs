@@ -6,7 +6,7 @@ mod settings;
 mod tests;
 
 use honami_mechanics::{
-    Beams, Detail, Direction, Drag, Forest, Integrator, Leaves, Modes, Pace, Pose, Stand, Stirring, Threads,
+    Beams, Detail, Drag, Forest, Integrator, Leaves, Modes, Pace, Pose, Stand, Stirring, Threads, Vector,
     WindBasis,
 };
 use honami_model::plant;
@@ -96,7 +96,7 @@ impl Simulator for Modal {
         for left in (0..steps.n).rev() {
             cx.progress(-1.0, "")?;
             let wind = steps.wind.blowing(self.forest.time());
-            let blowing = |copy: usize| Direction::from(wind.at(copy).map(f64::from));
+            let blowing = |copy: usize| Vector::from(wind.at(copy).map(f64::from));
             let last = if left == 0 { pose.take() } else { None };
             self.forest.step(&blowing, last, &self.threads).map_err(unusable)?;
         }

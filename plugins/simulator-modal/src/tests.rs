@@ -129,7 +129,7 @@ fn the_plugin_moves_as_the_forest_does() {
         let velocities: Vec<[f32; 3]> = (0..5).map(|k| [frame as f32, 3.0 - k as f32, 0.5]).collect();
         let wind = Wind { times_s: &[0.0], velocities: &velocities };
         modal.step(&Steps { dt: 0.02, n: 1, wind, detail: None }, &mut theirs, &testing::cx()).unwrap();
-        let blowing = |copy: usize| Direction::from(velocities[copy].map(f64::from));
+        let blowing = |copy: usize| Vector::from(velocities[copy].map(f64::from));
         let pose = Pose { details: None, motion: &mut ours };
         forest.step(&blowing, Some(pose), &threads).unwrap();
         assert!(ours == theirs, "frame {frame}");

@@ -372,6 +372,9 @@ pub(super) struct Synth {
     /// Of a .mtg plant: only parts of these classes, such as S.
     #[arg(long, value_name = "C,…", value_delimiter = ',', requires = "plant")]
     pub(super) classes: Vec<String>,
+    /// Of a plant: metres of a unit of length, where its file does not say; of a project's skeleton, of a pixel.
+    #[arg(long, value_name = "M", requires = "plant", allow_negative_numbers = true)]
+    pub(super) unit: Option<f64>,
     /// Of a plant: how many modes, the slowest first (default: 25, or as many as a small plant has).
     #[arg(long, value_name = "M", requires = "plant", value_parser = clap::value_parser!(u32).range(1..=5000))]
     pub(super) modes: Option<u32>,

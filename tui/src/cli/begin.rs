@@ -8,8 +8,8 @@ use honami_workbench::plugins::PluginInfo;
 use honami_workbench::plugins::sdk::{self, Language};
 use serde_json::json;
 
-use super::Answer;
 use super::args::{Kind, Lang};
+use super::{Answer, Usage, want};
 
 /// Writes the files of a new plugin into a folder of its name. Where `other` has the same short name its whole id is said.
 pub(super) fn plugin(
@@ -19,29 +19,24 @@ pub(super) fn plugin(
     command: &[String],
     other: Option<&PluginInfo>,
 ) -> anyhow::Result<Answer> {
-    let language = match lang {
-        Lang::Python => Some(Language::Python),
-        Lang::Rust => Some(Language::Rust),
-        Lang::C => Some(Language::C),
-        Lang::Cpp => Some(Language::Cpp),
-        Lang::Trax => None,
-    };
     let of = match kind {
         Kind::Tracker => honami_workbench::plugins::Kind::Tracker,
         Kind::Clusterer => honami_workbench::plugins::Kind::Clusterer,
         Kind::Structure => honami_workbench::plugins::Kind::Structure,
     };
+    let language = language(lang);
     let begun = match language {
         Some(language) => {
-            anyhow::ensure!(command.is_empty(), "a command line belongs to --lang trax");
+            want(command.is_empty(), || "a command line belongs to --lang trax".to_owned())?;
             sdk::begin(name, of, language)
         }
         None => {
-            anyhow::ensure!(of == honami_workbench::plugins::Kind::Tracker, "what speaks TraX is a tracker");
+            let is_tracker = of == honami_workbench::plugins::Kind::Tracker;
+            want(is_tracker, || "what speaks TraX is a tracker".to_owned())?;
             sdk::adapt(name, command)
         }
     };
-    let begun = begun.map_err(anyhow::Error::msg)?;
+    let begun = begun.map_err(Usage)?;
     write(name, &begun.files)?;
     let plugin = &begun.plugin;
     let called = other.map_or_else(|| name.to_owned(), |_| format!("org.me.{name}"));
@@ -90,6 +85,17 @@ pub(super) fn plugin(
         text,
         done: true,
     })
+}
+
+/// What it is written in; `None` where a command of another's is.
+fn language(lang: Lang) -> Option<Language> {
+    match lang {
+        Lang::Python => Some(Language::Python),
+        Lang::Rust => Some(Language::Rust),
+        Lang::C => Some(Language::C),
+        Lang::Cpp => Some(Language::Cpp),
+        Lang::Trax => None,
+    }
 }
 
 /// Makes the folder with these files, each a path in it and a text.

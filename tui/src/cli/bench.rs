@@ -1,5 +1,6 @@
 //! `bench`: how fast it is here what the thesis has tables of.
 
+use honami_model::brief::counted;
 use honami_workbench::mechanics::Roof;
 use honami_workbench::plant::bench::cells::{Cell, TABLE_6_1, TABLE_6_2};
 use honami_workbench::plant::bench::{self, Boundary, Rate, Runs, Speed};
@@ -50,7 +51,8 @@ pub(super) fn forest(args: &BenchForest, common: &Common) -> anyhow::Result<Answ
         ));
     }
     let mut text = format!(
-        "{n_threads} threads: {:.0} GFLOP/s at most, {:.1} GB/s written at most",
+        "{}: {:.0} GFLOP/s at most, {:.1} GB/s written at most",
+        counted(n_threads, "thread"),
         roof.flops / 1e9,
         roof.written / 1e9
     );

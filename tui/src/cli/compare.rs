@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use honami_model::brief::counted;
 use honami_workbench::WorkbenchError;
 use honami_workbench::compare::{self, Comparison, Contestant, KeyPaths, Question};
 use honami_workbench::drive::Seed;
@@ -60,7 +61,8 @@ fn head(found: &Comparison, frames: &Range<u32>, n_unseen: usize) -> String {
         [] => String::new(),
         some => format!(" (left out: {})", some.join(", ")),
     };
-    format!("{} points, frames {}-{}{left_out}", found.n_points, frames.start, frames.end - 1)
+    let points = counted(found.n_points, "point");
+    format!("{points}, frames {}-{}{left_out}", frames.start, frames.end - 1)
 }
 
 /// What is compared on.

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use honami_model::brief::counted;
 use honami_workbench::WorkbenchError;
 use honami_workbench::export::{self, ExportRequest};
 use honami_workbench::foreign::Format;
@@ -32,7 +33,11 @@ pub(super) fn import(args: &Import) -> anyhow::Result<Answer> {
     };
     let done = import::tracks(&mut project, &request, &Bar::new())?;
     let (file, format) = (args.file.display(), done.format.word());
-    let mut text = format!("{file} ({format}): {} tracks, {} samples", done.n_tracks, done.n_samples);
+    let mut text = format!(
+        "{file} ({format}): {}, {}",
+        counted(done.n_tracks, "track"),
+        counted(done.n_samples as usize, "sample")
+    );
     if done.n_keys > 0 {
         text += &format!(", {} of them key-frames", done.n_keys);
     }
@@ -119,10 +124,10 @@ fn tracks(args: &Export) -> anyhow::Result<Answer> {
     let written = export::tracks(&look(&args.project)?, &args.out, &request)?;
     let word = request.format.word();
     let mut text = format!(
-        "{} ({word}): {} tracks, {} samples",
+        "{} ({word}): {}, {}",
         args.out.display(),
-        written.n_tracks,
-        written.n_samples
+        counted(written.n_tracks, "track"),
+        counted(written.n_samples as usize, "sample")
     );
     text.extend(written.losses.iter().map(|loss| format!("\nnot kept: {loss}")));
     let losses: Vec<_> = written
@@ -144,6 +149,6 @@ fn groups(args: &Export) -> anyhow::Result<Answer> {
     let is_csv = Path::new(&args.out).extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
     want(is_csv, || format!("groups are written as .csv, not as {}", args.out.display()))?;
     let n_tracks = export::groups(&look(&args.project)?, &args.out)?;
-    let text = format!("{}: the groups of {n_tracks} tracks", args.out.display());
+    let text = format!("{}: the groups of {}", args.out.display(), counted(n_tracks, "track"));
     Ok(Answer { json: json!({ "file": args.out, "tracks": n_tracks }), text, done: true })
 }

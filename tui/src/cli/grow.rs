@@ -5,7 +5,7 @@ mod siblings;
 
 use std::path::PathBuf;
 
-use honami_model::brief::Brief;
+use honami_model::brief::{Brief, counted};
 use honami_workbench::grow::siblings::Settings;
 use honami_workbench::grow::{self, GrowRequest, Growth, Judged, Out, SkeletonFormat};
 use honami_workbench::plugins::{Kind, PluginInfo, Value, Values};
@@ -78,13 +78,15 @@ pub(super) fn grow(args: &Grow, common: &Common) -> anyhow::Result<Answer> {
             Out::Rig | Out::Usd => {
                 format!("a rig that moves, y up, a pixel taken as {} m", Brief(carried.unit))
             }
-            Out::Frames(_) => format!("{} frames of what it carries", growth.skeleton.times().len()),
+            Out::Frames(_) => {
+                format!("{} of what it carries", counted(growth.skeleton.times().len() as usize, "frame"))
+            }
             Out::Cache => "where the vertices of the plant are in every frame".to_owned(),
         };
         answer.text += &format!("\n{}: {what}", out.display());
     }
     if let (Some(out), Some(n_rows)) = (&args.leaves, n_rows) {
-        answer.text += &format!("\n{}: leaves, {n_rows} rows", out.display());
+        answer.text += &format!("\n{}: leaves, {}", out.display(), counted(n_rows, "row"));
     }
     if let Some((n, siblings)) = &siblings {
         siblings::draw(*n, siblings, growth.frames.start, args, &files, &carried, &mut answer)?;
@@ -149,8 +151,11 @@ fn describe(args: &Grow, growth: &Growth) -> Answer {
         true => format!("in depth, copies: {}", growth.n_copies),
     };
     let mut text = format!(
-        "{}: {n_groups} groups of {n_tracks} tracks, {n_joints} joints {depth}, root at {x:.1},{y:.1}",
+        "{}: {} of {}, {} {depth}, root at {x:.1},{y:.1}",
         args.project.display(),
+        counted(n_groups, "group"),
+        counted(n_tracks, "track"),
+        counted(n_joints, "joint"),
     );
     if growth.n_collapsed > 0 {
         text += &format!("\nforks that are one with another: {}", growth.n_collapsed);
@@ -195,8 +200,12 @@ fn told(judged: &Judged, growth: &Growth) -> String {
         false => format!(", in frames {}..{} that both have", frames.start, frames.end),
     };
     format!(
-        "beside the truth of {} tracks in {} groups{of}: joints are {:.2} px off in the median; standing still they would be \
+        "beside the truth of {} in {}{of}: joints are {:.2} px off in the median; standing still they would be \
          {:.2} px off, and their motion alone is {:.2} px off",
-        judged.n_tracks, judged.n_groups, judged.median_px, judged.still_px, judged.motion_px
+        counted(judged.n_tracks, "track"),
+        counted(judged.n_groups, "group"),
+        judged.median_px,
+        judged.still_px,
+        judged.motion_px
     )
 }

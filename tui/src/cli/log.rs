@@ -1,5 +1,6 @@
 //! `log`: everything that was done to a project, with its provenance.
 
+use honami_model::brief::counted;
 use honami_model::provenance::Provenance;
 use honami_workbench::store::{LogItem, LogLine, Seam};
 use serde_json::json;
@@ -37,7 +38,8 @@ fn line(line: &LogLine) -> String {
         }
         LogItem::Clustering(info) => {
             let made = &info.provenance;
-            format!("{date}  clustering {}  {} tracks in {} groups  {made}", info.id, info.n_tracks, info.cut)
+            let (tracks, groups) = (counted(info.n_tracks, "track"), counted(info.cut as usize, "group"));
+            format!("{date}  clustering {}  {tracks} in {groups}  {made}", info.id)
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use honami_model::brief::counted;
 use honami_workbench::media::{self, OpenOptions};
 use honami_workbench::session::Session;
 use honami_workbench::store::{Access, Project};
@@ -38,9 +39,9 @@ fn describe(session: &Session) -> Answer {
         None => "a single frame".to_owned(),
     };
     let mut text = format!(
-        "{}: {} frames of {}x{} pixels, {rate}",
+        "{}: {} of {}x{} pixels, {rate}",
         session.project.path().display(),
-        clip.n_frames(),
+        counted(clip.n_frames() as usize, "frame"),
         clip.width,
         clip.height
     );

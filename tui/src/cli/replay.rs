@@ -1,6 +1,7 @@
 //! `replay`: a logged session done again in a project, without a screen.
 
 use anyhow::Context as _;
+use honami_model::brief::counted;
 use serde_json::json;
 
 use super::args::{Common, Replay};
@@ -20,7 +21,7 @@ pub(super) fn replay(args: &Replay, common: &Common) -> anyhow::Result<Answer> {
     .with_context(|| args.log.display().to_string())?;
     text += &match &done.difference {
         Some((line, how)) => format!("{}, line {line}: {how}", args.log.display()),
-        None => format!("{} lines done as in the log; at edit {}", done.n_done, done.revision),
+        None => format!("{} done as in the log; at edit {}", counted(done.n_done, "line"), done.revision),
     };
     let difference = done.difference.as_ref().map(|(line, how)| json!({ "line": line, "what": how }));
     let json = json!({

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use honami_model::brief::counted;
 use honami_model::judgement::Verdict;
 use honami_workbench::review::{self, Item, Review, effort};
 use honami_workbench::session::{Session, SessionOptions};
@@ -32,7 +33,7 @@ fn text(session: &Session, review: &Review) -> String {
     let progress = review.progress();
     let mut lines = vec![match progress.total() {
         0 => "nothing is doubtful".to_owned(),
-        _ => format!("{} segments to review, {} done", progress.open, progress.judged.done()),
+        _ => format!("{} to review, {} done", counted(progress.open, "segment"), progress.judged.done()),
     }];
     let found = Verdict::ALL.into_iter().filter(|verdict| progress.judged.of(*verdict) > 0);
     let found: Vec<String> =

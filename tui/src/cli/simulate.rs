@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use honami_model::brief::counted;
 use honami_model::plant::RadiusRule;
 use honami_workbench::mechanics::{Damping, Form, Integrator, Leaves, Material, Options, Oscillator};
 use honami_workbench::plant::glb::Made;
@@ -196,11 +197,11 @@ fn describe(wish: &Wish, plant: &Vibrating, damping: &Damping) -> (String, serde
     let Vibrating { modes, beams, notes, .. } = plant;
     let rule = plant::words(wish.beams.rule);
     let mut text = format!(
-        "{}: {:.2} m high, {} nodes measured, {} nodes of beams; radius of a beam: {rule}",
+        "{}: {:.2} m high, {} measured, {} of beams; radius of a beam: {rule}",
         wish.source,
         plant.height,
-        plant.n_measured,
-        beams.len()
+        counted(plant.n_measured, "node"),
+        counted(beams.len(), "node")
     );
     notes.iter().for_each(|note| text += &format!("\nnote: {note}"));
     let heavier = damping.mass.sqrt();
@@ -220,11 +221,11 @@ fn describe(wish: &Wish, plant: &Vibrating, damping: &Damping) -> (String, serde
     }
     text += &format!("\n{}", report::table(&rows));
     if modes.len() > LISTED {
-        text += &format!("\n… and {} more modes: --json", modes.len() - LISTED);
+        text += &format!("\n… and {}: --json", counted(modes.len() - LISTED, "more mode"));
     }
     text += &format!(
-        "\n{} modes in {:.0} ms; the count of pivots says that none below {:.4} Hz was missed",
-        modes.len(),
+        "\n{} in {:.0} ms; the count of pivots says that none below {:.4} Hz was missed",
+        counted(modes.len(), "mode"),
         plant.seconds * 1e3,
         modes.hz(modes.len() - 1) / heavier
     );
@@ -268,8 +269,10 @@ fn told(args: &Simulate, motion: &Motion, moved: &Moved, spans: &Spans) -> Strin
         if motion.n_copies == 1 { "it".to_owned() } else { format!("each of {} copies", motion.n_copies) };
     let who = args.nodes.first().map_or("the highest end".to_owned(), |node| format!("node {node}"));
     let mut text = format!(
-        "{} frames of {copies}: {who} deviates by {:.3} m from its mean place, {:.3} m at most from rest",
-        moved.n_frames, moved.deviation, moved.farthest
+        "{} of {copies}: {who} deviates by {:.3} m from its mean place, {:.3} m at most from rest",
+        counted(moved.n_frames as usize, "frame"),
+        moved.deviation,
+        moved.farthest
     );
     if motion.n_copies > 1 {
         let [hz, metres, kg] = [spans.hz, spans.height, spans.kilograms].map(|[least, most]| {
@@ -288,7 +291,7 @@ fn told(args: &Simulate, motion: &Motion, moved: &Moved, spans: &Spans) -> Strin
     text += &format!(
         "\n{:.2} ms a frame on {}, {:.1} MB",
         moved.frame_s * 1e3,
-        if motion.n_threads == 1 { "1 thread".to_owned() } else { format!("{} threads", motion.n_threads) },
+        counted(motion.n_threads, "thread"),
         moved.bytes as f64 / 1e6
     );
     if let Some(out) = &args.out {
@@ -303,10 +306,10 @@ fn told(args: &Simulate, motion: &Motion, moved: &Moved, spans: &Spans) -> Strin
     }
     if let (Some(path), Some(made)) = (&args.glb, &moved.glb) {
         text += &format!(
-            "\n{}: a mesh of {} vertices with {} morph targets, {:.1} MB; at most {:.2} mm from where it moved",
+            "\n{}: a mesh of {} with {}, {:.1} MB; at most {:.2} mm from where it moved",
             path.display(),
-            made.n_vertices,
-            made.n_targets,
+            counted(made.n_vertices, "vertex"),
+            counted(made.n_targets, "morph target"),
             made.bytes as f64 / 1e6,
             made.off * 1e3
         );

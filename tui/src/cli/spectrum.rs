@@ -49,10 +49,9 @@ pub(super) fn spectrum(args: &Spectrum) -> anyhow::Result<Answer> {
     };
     if let Some(track) = args.track {
         spectra.lines.retain(|line| matches!(line.subject, Subject::Track(id) if id.0 == track));
-        anyhow::ensure!(
-            !spectra.lines.is_empty(),
-            "track {track} is not there, or is seen in fewer than 8 frames"
-        );
+        want(!spectra.lines.is_empty(), || {
+            format!("track {track} is not there, or is seen in fewer than 8 frames")
+        })?;
     }
     Ok(describe(&spectra))
 }

@@ -6,6 +6,7 @@ use std::io::IsTerminal as _;
 use std::path::Path;
 
 use anyhow::Context as _;
+use honami_model::brief::counted;
 use honami_workbench::generate::{self, Generated};
 use honami_workbench::media;
 use honami_workbench::plant::mover::Mover;
@@ -54,7 +55,7 @@ pub(super) fn synth(args: &Synth, common: &Common) -> anyhow::Result<Answer> {
 /// Films a plant as a simulator moves it.
 fn film(args: &Synth, source: &str, settings: &Settings, common: &Common) -> anyhow::Result<Answer> {
     let n_modes = args.modes.map(|modes| modes as usize);
-    let wish = Wish { classes: args.classes.clone(), ..Wish::of(source, n_modes) };
+    let wish = Wish { classes: args.classes.clone(), unit: args.unit, ..Wish::of(source, n_modes) };
     let (weather, pull) = match (args.pull, args.wind) {
         (Some(pull), _) => ("still".to_owned(), pull),
         (None, Wind::Calm) => (format!("calm:seed={}", args.seed), 0.0),
@@ -98,10 +99,10 @@ fn film(args: &Synth, source: &str, settings: &Settings, common: &Common) -> any
 
 fn describe(made: &Generated) -> Answer {
     let text = format!(
-        "{}: {} leaves on {} branches, moving {:.2} px per frame\ntruth: {}",
+        "{}: {} on {}, moving {:.2} px per frame\ntruth: {}",
         made.clip.display(),
-        made.n_leaves,
-        made.n_branches,
+        counted(made.n_leaves, "leaf"),
+        counted(made.n_branches, "branch"),
         made.step_px,
         made.truth.display()
     );

@@ -12,8 +12,9 @@ use honami_model::brief::Brief;
 
 /// Steps of a recording may differ by so much of the usual one.
 const EVEN: f64 = 0.01;
-/// Metres per second: no wind is faster, and what is made of it stays a number.
-const FASTEST: f64 = 1e6;
+/// Metres per second: none that was ever measured is faster, tornadoes are not (135 m/s). What is faster is a value for what
+/// is missing, -999 or -9999, or of another unit.
+const FASTEST: f64 = 200.0;
 
 /// A wind at one place, evenly timed.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,8 +32,8 @@ type Sample = (usize, f64, [f64; 3]);
 ///
 /// # Errors
 /// [`PlantFileError`] with the line: cells that are no finite numbers, rows of fewer or more than three or four of them,
-/// time that stands still, runs back or is uneven by more than a hundredth of a step, as at a gap, winds of more than a
-/// million metres per second; and fewer than two rows.
+/// time that stands still, runs back or is uneven by more than a hundredth of a step, as at a gap, winds of more than 200
+/// metres per second, as values for what is missing are; and fewer than two rows.
 pub fn parse(text: &str) -> Result<Recording, PlantFileError> {
     let lines = (1..).zip(text.lines()).map(|(line, text)| (line, text.trim()));
     let mut lines = lines.filter(|(_, text)| !(text.is_empty() || text.starts_with('#'))).peekable();
@@ -71,7 +72,11 @@ fn row(line: usize, text: &str) -> Result<Sample, PlantFileError> {
         }
     };
     match wind.iter().find(|v| v.abs() > FASTEST) {
-        Some(wild) => Err(wrong(format!("a wind of {} m/s, more than {FASTEST}", Brief(*wild)))),
+        Some(wild) => Err(wrong(format!(
+            "a wind of {} m/s, and none is faster than {FASTEST}: where that stands for what is missing, as -999 and -9999 do, \
+             fill it in, or cut it off; where it is of another unit, metres per second are wanted",
+            Brief(*wild)
+        ))),
         None => Ok((line, time, wind)),
     }
 }

@@ -1,7 +1,7 @@
 //! Tips of a tree in turbulent wind, as a camera sees them.
 
 use honami_mechanics::wind::{Kaimal, Spectrum};
-use honami_mechanics::{Beams, Damping, Direction, Modes, Oscillator, State};
+use honami_mechanics::{Beams, Damping, Modes, Oscillator, State, Vector};
 use honami_motion::Positions;
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
@@ -39,7 +39,7 @@ pub(crate) fn modes(beams: &Beams) -> Result<Modes, Box<dyn Error>> {
 pub(crate) fn film(beams: &Beams, modes: &Modes, tips: &[u32], seed: u64) -> Filmed {
     let mut rng = Pcg64::seed_from_u64(seed);
     let patches: Vec<usize> = (0..N_PATCHES).map(|_| rng.random_range(1..beams.len())).collect();
-    let places: Vec<Direction> = patches.iter().map(|node| beams.position(*node)).collect();
+    let places: Vec<Vector> = patches.iter().map(|node| beams.position(*node)).collect();
     let wind = wind(&places, rng.random_range(0.0..TAU), &mut rng);
     let felt = felt(beams, modes, tips, &places);
     let mut swings: Vec<Vec<f64>> = Vec::new();
@@ -65,7 +65,7 @@ pub(crate) fn film(beams: &Beams, modes: &Modes, tips: &[u32], seed: u64) -> Fil
 }
 
 /// How much each mode feels of the wind at each patch: areas of wood, and of leaves at tips, times displacements.
-fn felt(beams: &Beams, modes: &Modes, tips: &[u32], places: &[Direction]) -> Vec<Vec<Direction>> {
+fn felt(beams: &Beams, modes: &Modes, tips: &[u32], places: &[Vector]) -> Vec<Vec<Vector>> {
     let mut areas = vec![0.0; beams.len()];
     for (node, area) in areas.iter_mut().enumerate() {
         if let Some(parent) = beams.parent(node) {
@@ -79,7 +79,7 @@ fn felt(beams: &Beams, modes: &Modes, tips: &[u32], places: &[Direction]) -> Vec
         (0..places.len()).min_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or(0)
     };
     let patch_of: Vec<usize> = (0..beams.len()).map(nearest).collect();
-    let mut felt = vec![vec![Direction::zeros(); places.len()]; modes.len()];
+    let mut felt = vec![vec![Vector::zeros(); places.len()]; modes.len()];
     for (mode, felt) in felt.iter_mut().enumerate() {
         for (node, area) in areas.iter().enumerate() {
             felt[patch_of[node]] += *area * modes.displacement(mode, node);
@@ -89,10 +89,10 @@ fn felt(beams: &Beams, modes: &Modes, tips: &[u32], places: &[Direction]) -> Vec
 }
 
 /// Turbulence at places, alike as far as they are near and it is slow: a series of velocities each.
-fn wind(places: &[Direction], towards: f64, rng: &mut Pcg64) -> Vec<Vec<Direction>> {
+fn wind(places: &[Vector], towards: f64, rng: &mut Pcg64) -> Vec<Vec<Vector>> {
     let n = places.len();
-    let along = Direction::new(towards.cos(), towards.sin(), 0.0);
-    let axes = [along, Direction::new(-along.y, along.x, 0.0), Direction::new(0.0, 0.0, 1.0)];
+    let along = Vector::new(towards.cos(), towards.sin(), 0.0);
+    let axes = [along, Vector::new(-along.y, along.x, 0.0), Vector::new(0.0, 0.0, 1.0)];
     let mut wind = vec![vec![along * SPEED; N_WIND]; n];
     let turns: Vec<(f64, f64)> = (0..N_WIND).map(|k| (TAU * k as f64 / N_WIND as f64).sin_cos()).collect();
     let df = FPS / N_WIND as f64;
@@ -118,7 +118,7 @@ fn wind(places: &[Direction], towards: f64, rng: &mut Pcg64) -> Vec<Vec<Directio
 }
 
 /// L of the coherence C = L L^T of all places.
-fn root(places: &[Direction], per_metre: f64) -> Vec<f64> {
+fn root(places: &[Vector], per_metre: f64) -> Vec<f64> {
     let n = places.len();
     let mut root = vec![0.0; n * n];
     for i in 0..n {
@@ -139,7 +139,7 @@ fn root(places: &[Direction], per_metre: f64) -> Vec<f64> {
 
 /// From the side, the picture as high as the tree; motion of 2 px (root of the mean square).
 fn seen(beams: &Beams, modes: &Modes, tips: &[u32], swings: &[Vec<f64>], azimuth: f64) -> Filmed {
-    let project = |at: Direction| [at.x * azimuth.cos() + at.y * azimuth.sin(), -at.z];
+    let project = |at: Vector| [at.x * azimuth.cos() + at.y * azimuth.sin(), -at.z];
     let ground = beams.position(0).z;
     let height = (0..beams.len()).map(|node| beams.position(node).z - ground).fold(0.0, f64::max);
     let scale = HEIGHT_PX / height;

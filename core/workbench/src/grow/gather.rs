@@ -17,6 +17,7 @@ use honami_structure::tree::{Group, tree_of};
 
 use super::hand::named;
 use crate::error::WorkbenchError;
+use crate::scarce::scarce;
 use crate::stamp::SEED;
 use crate::track::threads;
 
@@ -83,6 +84,7 @@ pub(super) fn gather(project: &Project, groups: Option<u32>) -> Result<Gathered,
         notes.push(format!("{n_lost} of {n_tracks} tracks are seen in no frame now and are left out"));
     }
     notes.extend(blind(within, frames.start));
+    notes.extend(scarce(n_tracks - n_lost, frames.len()));
     let document = project.document();
     let groups = dendrogram.groups(k, document.held_groups(shown.id));
     let groups = tree_of(dendrogram, &groups, &is_seen);

@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use honami_host::{CallContext, Host, PluginInfo, Steps, WindRows};
 use honami_mechanics::{
-    Damping, Detail, Direction, Forest, Form, Integrator, Pace, Pose, Roof, Stand, Stirring, Threads,
+    Damping, Detail, Forest, Form, Integrator, Pace, Pose, Roof, Stand, Stirring, Threads, Vector,
 };
 use honami_motion::accuracy;
 
@@ -180,8 +180,7 @@ fn rate(
 /// cell.
 fn step(forest: &mut Forest, pose: Option<Pose<'_>>, threads: &Threads) -> Result<(), WorkbenchError> {
     let phase = forest.time() * 7.0;
-    let wind =
-        |copy: usize| Direction::new(5.0, 2.0, 0.3) * (1.0 + 0.3 * (phase + copy as f64 * 0.37).fract());
+    let wind = |copy: usize| Vector::new(5.0, 2.0, 0.3) * (1.0 + 0.3 * (phase + copy as f64 * 0.37).fract());
     Ok(forest.step(&wind, pose, threads)?)
 }
 
@@ -225,7 +224,7 @@ pub fn boundary(
         for _ in 0..n {
             let begun = Instant::now();
             let pose = Some(Pose { details: None, motion: &mut motion });
-            forest.step(&|copy| Direction::from(winds[copy].map(f64::from)), pose, &threads)?;
+            forest.step(&|copy| Vector::from(winds[copy].map(f64::from)), pose, &threads)?;
             took[0] += begun.elapsed().as_secs_f64();
             let begun = Instant::now();
             simulator.step(&steps, &cx)?;

@@ -1,13 +1,13 @@
 //! A plant that is filmed while it moves, from the side on which it moves most.
 
-use honami_mechanics::Direction;
+use honami_mechanics::Vector;
 use honami_mechanics::wind::Wind;
 use honami_synth::Moving as Filmed;
 
 use super::Vibrating;
 use super::grove::Grove;
 use super::mover::{Mover, Moving, Way};
-use super::sway::{Motion, free};
+use super::sway::{Motion, free, room_of_winds};
 use crate::ear::Ear;
 use crate::error::WorkbenchError;
 use crate::progress::Progress;
@@ -24,7 +24,7 @@ pub struct Film {
 /// Moves a plant by a simulator and looks at it.
 ///
 /// # Errors
-/// What the simulator refuses, [`WorkbenchError::FilmMemory`], and [`WorkbenchError::Stopped`].
+/// What the simulator refuses, [`WorkbenchError::FilmMemory`], [`WorkbenchError::WindMemory`], and [`WorkbenchError::Stopped`].
 pub fn film(
     plant: &Vibrating,
     mover: &Mover<'_>,
@@ -40,10 +40,11 @@ pub fn film(
     if bytes > there {
         return Err(WorkbenchError::FilmMemory { frames, nodes: n_nodes, bytes, there });
     }
+    room_of_winds(motion)?;
     let grove = Grove::new(plant.height, motion);
     let ear = Ear::new(&mover.plugin.short_name, progress);
     let root = plant.beams.position(0);
-    let mut frames: Vec<Vec<Direction>> = Vec::new();
+    let mut frames: Vec<Vec<Vector>> = Vec::new();
     // Sums over all nodes and frames: of x x, y y and x y of displacements.
     let mut spread = [0.0; 3];
     let way = Way::Steps(*mover);
@@ -59,7 +60,7 @@ pub fn film(
     // The longer axis of the ellipse of displacements.
     let angle = (2.0 * spread[2]).atan2(spread[0] - spread[1]) / 2.0;
     let (sin, cos) = angle.sin_cos();
-    let seen = |at: &Direction| [cos * at.x + sin * at.y, at.z];
+    let seen = |at: &Vector| [cos * at.x + sin * at.y, at.z];
     let filmed = Filmed {
         parents: (0..n_nodes).map(|node| plant.beams.parent(node)).collect(),
         radii: (0..n_nodes).map(|node| plant.beams.radius(node)).collect(),

@@ -1,6 +1,6 @@
 //! How long branches stay, by each way in which nodes can follow modes.
 
-use honami_mechanics::{Beams, Bending, Direction, Form, Modes, Turning};
+use honami_mechanics::{Beams, Bending, Form, Modes, Turning, Vector};
 
 use super::Vibrating;
 
@@ -42,7 +42,7 @@ pub struct Row {
 pub fn forms(plant: &Vibrating) -> Vec<Row> {
     let (beams, modes) = (&plant.beams, &plant.modes);
     let wind: Vec<f64> = (0..modes.len())
-        .map(|mode| plant.basis.force(mode, &Direction::x()) / modes.omegas[mode].powi(2))
+        .map(|mode| plant.basis.force(mode, &Vector::x()) / modes.omegas[mode].powi(2))
         .collect();
     let mut alone = vec![0.0; modes.len()];
     alone[0] = 1.0;
@@ -50,7 +50,7 @@ pub fn forms(plant: &Vibrating) -> Vec<Row> {
     let row = |&(form, name): &(Form, &'static str)| {
         let cells = |amplitudes: &[f64]| {
             DEFLECTIONS.map(|share| {
-                let most = linear(beams, modes, amplitudes).iter().map(Direction::norm).fold(0.0, f64::max);
+                let most = linear(beams, modes, amplitudes).iter().map(Vector::norm).fold(0.0, f64::max);
                 let by = share * plant.height / most.max(f64::MIN_POSITIVE);
                 let amplitudes: Vec<f64> = amplitudes.iter().map(|q| q * by).collect();
                 cell(beams, modes, &turning, form, &amplitudes)
@@ -61,7 +61,7 @@ pub fn forms(plant: &Vibrating) -> Vec<Row> {
     FORMS.iter().map(row).collect()
 }
 
-fn linear(beams: &Beams, modes: &Modes, amplitudes: &[f64]) -> Vec<Direction> {
+fn linear(beams: &Beams, modes: &Modes, amplitudes: &[f64]) -> Vec<Vector> {
     let of = |node| amplitudes.iter().enumerate().map(|(mode, q)| modes.displacement(mode, node) * *q).sum();
     (0..beams.len()).map(of).collect()
 }
@@ -86,7 +86,7 @@ fn cell(beams: &Beams, modes: &Modes, turning: &Turning, form: Form, amplitudes:
         Some((now.norm() / at_rest.norm() - 1.0).powi(2))
     });
     let stretch = (errors.sum::<f64>() / (beams.len() - 1) as f64).sqrt();
-    let square = |of: &[Direction]| of.iter().map(Direction::norm_squared).sum::<f64>();
-    let apart: Vec<Direction> = moved.iter().zip(&turned).map(|(a, b)| a - b).collect();
+    let square = |of: &[Vector]| of.iter().map(Vector::norm_squared).sum::<f64>();
+    let apart: Vec<Vector> = moved.iter().zip(&turned).map(|(a, b)| a - b).collect();
     Cell { stretch, off: (square(&apart) / square(&turned).max(f64::MIN_POSITIVE)).sqrt() }
 }

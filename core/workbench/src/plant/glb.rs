@@ -6,7 +6,7 @@
 
 use honami_exchange::AtomicFile;
 use honami_exchange::plant::{Body, Placed, Sizes, Target, write_glb};
-use honami_mechanics::{Direction, Shapes, Stand, Sums, Threads};
+use honami_mechanics::{Shapes, Stand, Sums, Threads, Vector};
 
 use super::Vibrating;
 use super::grove::Grove;
@@ -92,7 +92,7 @@ impl Gathering {
         let Self { tubes, shapes, threads, .. } = self;
         let sums = shapes.fewest(&threads);
         let (n, n_copies) = (sums.shapes.len(), grove.stands.len());
-        let copy = |(k, (place, stand)): (usize, (&Direction, &Stand))| {
+        let copy = |(k, (place, stand)): (usize, (&Vector, &Stand))| {
             let frames = sums.weights.chunks(n.max(1)).skip(k).step_by(n_copies);
             let weights = frames.flatten().copied().collect();
             Placed { place: single(place), turn: stand.turn, scale: stand.scale, weights }
@@ -137,6 +137,6 @@ fn body(plant: &Vibrating, sums: &Sums, tubes: &Tubes) -> Body {
     body
 }
 
-fn single(at: &Direction) -> [f32; 3] {
+fn single(at: &Vector) -> [f32; 3] {
     [at.x as f32, at.y as f32, at.z as f32]
 }

@@ -1,7 +1,7 @@
 //! Where the copies of a forest stand, which wind they feel there, and where their nodes are.
 
 use honami_mechanics::wind::Wind;
-use honami_mechanics::{Direction, Stand};
+use honami_mechanics::{Stand, Vector};
 use rand::{RngExt as _, SeedableRng as _};
 
 use super::Vibrating;
@@ -48,7 +48,7 @@ impl Spans {
 /// Where copies stand, and how.
 pub(super) struct Grove {
     /// Of their roots, metres.
-    pub(super) places: Vec<Direction>,
+    pub(super) places: Vec<Vector>,
     pub(super) stands: Vec<Stand>,
     /// Of the plant, metres.
     pub(super) height: f64,
@@ -65,13 +65,13 @@ impl Grove {
         let mut stand = |k: usize| {
             let mut off = || chance.random_range(-0.25..0.25);
             let (row, column) = (k / side, k % side);
-            let place = Direction::new((column as f64 + off()) * apart, (row as f64 + off()) * apart, 0.0);
+            let place = Vector::new((column as f64 + off()) * apart, (row as f64 + off()) * apart, 0.0);
             let turn = chance.random_range(0.0..std::f32::consts::TAU);
             let [scale, mass] = [motion.size_spread, motion.mass_spread].map(|spread| {
                 let step = sizes.random_range(-STEPS..=STEPS);
                 (1.0 + spread).powf(f64::from(step) / f64::from(STEPS)) as f32
             });
-            let first = (Direction::zeros(), Stand::default());
+            let first = (Vector::zeros(), Stand::default());
             if k == 0 { first } else { (place, Stand { turn, scale, mass }) }
         };
         let (places, stands) = (0..motion.n_copies).map(&mut stand).unzip();
@@ -79,16 +79,16 @@ impl Grove {
     }
 
     /// The wind at a copy's crown.
-    pub(super) fn blowing(&self, wind: &dyn Wind, copy: usize, time: f64) -> Direction {
-        let up = Direction::z() * (CROWN * f64::from(self.stands[copy].scale) * self.height);
+    pub(super) fn blowing(&self, wind: &dyn Wind, copy: usize, time: f64) -> Vector {
+        let up = Vector::z() * (CROWN * f64::from(self.stands[copy].scale) * self.height);
         wind.sample(&(self.places[copy] + up), time)
     }
 
     /// From the axes of the plant to where a copy stands.
-    pub(super) fn shown(&self, copy: usize, own: &Direction) -> Direction {
+    pub(super) fn shown(&self, copy: usize, own: &Vector) -> Vector {
         let Stand { turn, scale, .. } = self.stands[copy];
         let (sin, cos) = f64::from(turn).sin_cos();
-        let turned = Direction::new(cos * own.x - sin * own.y, sin * own.x + cos * own.y, own.z);
+        let turned = Vector::new(cos * own.x - sin * own.y, sin * own.x + cos * own.y, own.z);
         self.places[copy] + turned * f64::from(scale)
     }
 }

@@ -6,7 +6,7 @@ use honami_host::{
 use std::time::Instant;
 
 use honami_mechanics::wind::Wind;
-use honami_mechanics::{Direction, Stand};
+use honami_mechanics::{Stand, Vector};
 use rayon::prelude::*;
 
 use super::Vibrating;
@@ -95,9 +95,9 @@ pub(super) struct Played {
 
 impl Displacements<'_> {
     /// Metres.
-    pub(super) fn of(&self, copy: usize, node: usize) -> Direction {
+    pub(super) fn of(&self, copy: usize, node: usize) -> Vector {
         let row = copy * self.rows.len() + self.rows[node] as usize;
-        Direction::from(self.motion[row].map(f64::from))
+        Vector::from(self.motion[row].map(f64::from))
     }
 
     /// Of any node, metres.

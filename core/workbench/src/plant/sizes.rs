@@ -16,11 +16,19 @@ const THICKEST: f64 = 0.25;
 /// Gravity, metres per second squared.
 const GRAVITY: f64 = 9.81;
 
-/// What a file without units was taken as, and what it makes the plant.
-pub(super) fn as_taken(plant: &Plant, taken: &str, say: &str) -> String {
+/// What a file without units was taken as, and what it makes the plant; and of options that say it, those that were not
+/// typed.
+pub(super) fn as_taken(plant: &Plant, taken: &str, options: &[(&str, bool)]) -> String {
     let (height, radius) = (plant.height(), thickest(plant));
+    let open: Vec<&str> =
+        options.iter().filter(|(_, is_typed)| !is_typed).map(|(option, _)| *option).collect();
+    let otherwise = match open[..] {
+        [] => String::new(),
+        [one] => format!("; {one} says otherwise"),
+        _ => format!("; {} say otherwise", open.join(" and ")),
+    };
     format!(
-        "the file names no units: {taken}, which makes it {} m high and {} m thick at most; {say} otherwise",
+        "the file names no units: {taken}, which makes it {} m high and {} m thick at most{otherwise}",
         rounded(height),
         rounded(2.0 * radius)
     )

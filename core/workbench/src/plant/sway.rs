@@ -211,6 +211,9 @@ pub fn sway(
     let sensors = sensors(plant, motion)?;
     let bytes = room(n_copies, n_nodes, plant.modes.len())?;
     let sizes = [n_copies.saturating_mul(n_nodes), sensors.len()];
+    if matches!(way, Way::Steps(_)) {
+        room_of_winds(motion)?;
+    }
     check_room(&outs, sizes, motion.n_frames, free_in, progress)?;
     // What goes round ends where it begins, in a file that is played from key to key.
     let n_keys = motion.n_frames.saturating_add(u32::from(matches!(way, Way::Spectrum)));
@@ -312,6 +315,16 @@ pub(crate) fn room(copies: usize, nodes: usize, modes: usize) -> Result<usize, W
     let bytes = copies.saturating_mul(numbers).saturating_mul(size_of::<f32>());
     let there = free();
     if bytes > there { Err(WorkbenchError::Memory { copies, nodes, bytes, there }) } else { Ok(bytes) }
+}
+
+/// Whether there is room for the wind of a frame: three numbers a copy and step.
+///
+/// # Errors
+/// [`WorkbenchError::WindMemory`].
+pub(super) fn room_of_winds(motion: &Motion) -> Result<(), WorkbenchError> {
+    let (copies, steps, there) = (motion.n_copies, motion.n_substeps, free());
+    let bytes = copies.saturating_mul(steps as usize).saturating_mul(size_of::<[f32; 3]>());
+    if bytes > there { Err(WorkbenchError::WindMemory { copies, steps, bytes, there }) } else { Ok(()) }
 }
 
 /// Memory that may be taken, bytes.

@@ -6,7 +6,7 @@
 #[cfg(test)]
 mod tests;
 
-use honami_mechanics::{Beams, Direction};
+use honami_mechanics::{Beams, Vector};
 
 /// Vertices of a ring.
 pub(crate) const SIDES: usize = 6;
@@ -19,9 +19,9 @@ pub(crate) struct Ring {
     /// Metres.
     pub(crate) radius: f64,
     /// At right angles to the branch and to each other, of length 1.
-    across: [Direction; 2],
+    across: [Vector; 2],
     /// Segments before and after it: from node to node, and which way by metres of their length.
-    beside: [([u32; 2], Direction); 2],
+    beside: [([u32; 2], Vector); 2],
 }
 
 /// Rings of all branches, branch after branch.
@@ -62,7 +62,7 @@ impl Tubes {
 
     /// A branch by its nodes, the first of which bears it.
     fn add(&mut self, beams: &Beams, nodes: &[u32]) {
-        let segments: Vec<(Direction, f64, ([u32; 2], Direction))> = nodes
+        let segments: Vec<(Vector, f64, ([u32; 2], Vector))> = nodes
             .windows(2)
             .map(|pair| {
                 let [base, tip] = [0, 1].map(|k| pair[k] as usize);
@@ -119,9 +119,9 @@ impl Tubes {
 
 impl Ring {
     /// By what it turns when nodes are moved so, radians about an axis.
-    pub(crate) fn turn(&self, moved: impl Fn(u32) -> Direction) -> Direction {
-        let turn = |([base, tip], along): &([u32; 2], Direction)| along.cross(&(moved(*tip) - moved(*base)));
-        self.beside.iter().map(turn).sum::<Direction>() / 2.0
+    pub(crate) fn turn(&self, moved: impl Fn(u32) -> Vector) -> Vector {
+        let turn = |([base, tip], along): &([u32; 2], Vector)| along.cross(&(moved(*tip) - moved(*base)));
+        self.beside.iter().map(turn).sum::<Vector>() / 2.0
     }
 
     /// Nodes at the tips of the segments before and after it.
@@ -130,7 +130,7 @@ impl Ring {
     }
 
     /// From the node to each vertex, of length 1.
-    pub(crate) fn outward(&self) -> impl Iterator<Item = Direction> {
+    pub(crate) fn outward(&self) -> impl Iterator<Item = Vector> {
         let [side, other] = self.across;
         (0..SIDES).map(move |k| {
             let (sin, cos) = (std::f64::consts::TAU * k as f64 / SIDES as f64).sin_cos();
@@ -140,8 +140,8 @@ impl Ring {
 }
 
 /// Any direction at right angles to one.
-fn beside(along: &Direction) -> Direction {
+fn beside(along: &Vector) -> Vector {
     let least = along.iamin();
-    let axis = Direction::from_fn(|row, _| if row == least { 1.0 } else { 0.0 });
+    let axis = Vector::from_fn(|row, _| if row == least { 1.0 } else { 0.0 });
     (axis - along * axis.dot(along)).normalize()
 }

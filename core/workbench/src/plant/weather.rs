@@ -6,7 +6,7 @@ mod typed;
 
 use std::f64::consts::SQRT_2;
 
-use honami_mechanics::Direction;
+use honami_mechanics::Vector;
 use honami_mechanics::wind::{
     Constant, Draw, Field, Flowing, Frozen, Growth, Inflow, Kaimal, Mask, Noise, Power, Primitive, Profile,
     Shape, Sine, Spectrum, Sum, Wind,
@@ -71,7 +71,7 @@ impl Ground {
         let grove = Grove::new(plant.height, motion);
         let heavy = plant.beams.kilograms() * motion.damping.mass;
         let copies = grove.places.iter().zip(&grove.stands);
-        let tree = |(place, stand): (&Direction, &honami_mechanics::Stand)| {
+        let tree = |(place, stand): (&Vector, &honami_mechanics::Stand)| {
             ([place.x, place.y], heavy * f64::from(stand.scale.powi(3) * stand.mass))
         };
         let seconds = f64::from(motion.n_frames) / motion.fps;
@@ -92,8 +92,8 @@ impl Ground {
 
 impl Ground {
     /// From where to where trees stand across a wind, metres to the left of it; the origin, where there are none.
-    fn across(&self, along: &Direction) -> [f64; 2] {
-        let left = Direction::z().cross(along);
+    fn across(&self, along: &Vector) -> [f64; 2] {
+        let left = Vector::z().cross(along);
         let places = self.trees.iter().map(|([x, y], _)| x * left.x + y * left.y);
         let ends = places.fold(None, |ends: Option<[f64; 2]>, at| {
             Some(ends.map_or([at; 2], |[low, high]| [low.min(at), high.max(at)]))
@@ -119,7 +119,7 @@ pub const WEATHERS: &[Weather] = &[
         name: "still",
         doc: "no wind",
         values: &[],
-        make: Make::Alone(|_| Box::new(Constant(Direction::zeros()))),
+        make: Make::Alone(|_| Box::new(Constant(Vector::zeros()))),
     },
     Weather {
         name: "steady",
@@ -283,12 +283,12 @@ impl Values {
         place.map_or(0.0, |place| self.values[place])
     }
 
-    fn along(&self) -> Direction {
+    fn along(&self) -> Vector {
         let (sin, cos) = self.of("towards").to_radians().sin_cos();
-        Direction::new(cos, sin, 0.0)
+        Vector::new(cos, sin, 0.0)
     }
 
-    fn blowing(&self) -> Direction {
+    fn blowing(&self) -> Vector {
         self.along() * self.of("speed")
     }
 }

@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use honami_model::brief::Brief;
+use honami_model::brief::{Brief, counted};
+use honami_workbench::WorkbenchError;
 use honami_workbench::grow::{self, Assembled, Blend, Bound, Carried, Fewer, Growth, Library, Onto, Out};
 use serde_json::json;
 
@@ -91,7 +92,8 @@ pub(super) fn carried(args: &Grow, growth: &Growth) -> anyhow::Result<Carried> {
     }
     let blend = args.blend.map_or(Blend::Linear, Into::into);
     let library = library.map(|library| (library, seed));
-    let fewer = args.joints.map(|most| Fewer::of(&growth.skeleton, most as usize)).transpose()?;
+    let fewer = args.joints.map(|most| Fewer::of(&growth.skeleton, most as usize));
+    let fewer = fewer.transpose().map_err(WorkbenchError::from)?;
     Ok(Carried { bound, library, unit, blend, fewer, are_weights_shown: args.weights })
 }
 
@@ -111,8 +113,10 @@ pub(super) fn describe(args: &Grow, carried: &Carried, answer: &mut Answer) {
     let unit = bound.unit();
     let [height, width] = bound.extent();
     answer.text += &format!(
-        "\n{}: {n_vertices} vertices, {n_triangles} triangles, {} high and {} wide, a pixel being {} of its lengths",
+        "\n{}: {}, {}, {} high and {} wide, a pixel being {} of its lengths",
         plant.display(),
+        counted(n_vertices, "vertex"),
+        counted(n_triangles, "triangle"),
         Brief(rounded(height)),
         Brief(rounded(width)),
         Brief(rounded(unit))

@@ -70,7 +70,8 @@ fn gusts_come_in_and_no_others() {
         assert!(here.z == 0.0 && here.xy().norm() < 15.0);
         assert_eq!(here, again.sample(&Vector3::zeros(), time));
     }
-    assert!(off < 0.5 * swing, "{off} of {swing}");
+    // .38 of it: what two cells of 4 m smooth away. With nothing that comes in it is 1.
+    assert!(off < 0.4 * swing, "{off} of {swing}");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Copies of a benchmark: all of each, or as much of each as an eye makes out from where it stands.
 
-use honami_mechanics::{Detail, DetailError, Details, Direction, Stand, Stirring, View};
+use honami_mechanics::{Detail, DetailError, Details, Stand, Stirring, Vector, View};
 
 /// Metres between copies of a plant of height 1.
 const APART: f64 = 0.8;
@@ -20,7 +20,7 @@ pub(super) struct Crowd {
 struct Seen {
     view: View,
     details: Details,
-    places: Vec<Direction>,
+    places: Vec<Vector>,
 }
 
 impl Crowd {
@@ -34,12 +34,12 @@ impl Crowd {
     /// those of one detail are worked out together.
     pub(super) fn seen(plant: &Stirring, n_copies: usize) -> Result<Self, DetailError> {
         let (side, apart) = ((n_copies as f64).sqrt().ceil(), APART * plant.height());
-        let eye = Direction::new((side - 1.0) / 2.0 * apart, -apart, EYE);
+        let eye = Vector::new((side - 1.0) / 2.0 * apart, -apart, EYE);
         let place = |k: usize| {
             let row = (k as f64 / side).floor();
-            Direction::new((k as f64 - row * side) * apart, row * apart, 0.0)
+            Vector::new((k as f64 - row * side) * apart, row * apart, 0.0)
         };
-        let mut places: Vec<Direction> = (0..n_copies).map(place).collect();
+        let mut places: Vec<Vector> = (0..n_copies).map(place).collect();
         places.sort_by(|a, b| (a - eye).norm().total_cmp(&(b - eye).norm()));
         let share = |n: usize, share: f64| (n as f64 * share).ceil() as u32;
         let level = |&(from, nodes, modes): &(f64, f64, f64)| {
@@ -49,7 +49,7 @@ impl Crowd {
         };
         let levels: Vec<(f64, Detail)> = LEVELS.iter().map(level).collect();
         let far = 2.0 * side * apart;
-        let view = View { eye, towards: Direction::y(), angle: ANGLE, aspect: 16.0 / 9.0, far };
+        let view = View { eye, towards: Vector::y(), angle: ANGLE, aspect: 16.0 / 9.0, far };
         let seen = Some(Seen { view, details: Details::new(&levels)?, places });
         Ok(Self { seen, ..Self::whole(n_copies) })
     }
@@ -58,7 +58,7 @@ impl Crowd {
     pub(super) fn details(&self, plant: &Stirring) -> Option<Vec<Detail>> {
         let Seen { view, details, places } = self.seen.as_ref()?;
         let most = Detail { n_nodes: plant.n_nodes() as u32, n_modes: plant.n_modes() as u32 };
-        let of = |place: &Direction| details.of(plant, view, place, 1.0).at_most(most);
+        let of = |place: &Vector| details.of(plant, view, place, 1.0).at_most(most);
         Some(places.iter().map(of).collect())
     }
 }

@@ -60,9 +60,16 @@ fn what_no_plant_is_like_is_told_with_a_hint() {
 
 #[test]
 fn what_a_file_without_units_makes_of_a_plant_is_told() {
-    assert_eq!(
-        as_taken(&rod(28.314, 0.1875), "lengths taken in 0.01 m", "--unit says"),
-        "the file names no units: lengths taken in 0.01 m, which makes it 28.3 m high and 0.375 m thick at most; \
-         --unit says otherwise"
-    );
+    let both = |unit: bool, diameters: bool| [("--unit", unit), ("--diameters", diameters)];
+    for (options, wanted) in [
+        (&both(false, false)[..1], "; --unit says otherwise"),
+        (&both(true, false)[..1], ""),
+        (&both(false, false), "; --unit and --diameters say otherwise"),
+        (&both(true, false), "; --diameters says otherwise"),
+        (&both(true, true), ""),
+    ] {
+        let told = as_taken(&rod(28.314, 0.1875), "lengths taken in 0.01 m", options);
+        let taken = "the file names no units: lengths taken in 0.01 m, which makes it 28.3 m high and 0.375 m thick at most";
+        assert_eq!(told, format!("{taken}{wanted}"));
+    }
 }

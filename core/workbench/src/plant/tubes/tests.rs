@@ -1,7 +1,7 @@
 //! Tubes of small plants: where rings are, how thick, which way their triangles look.
 
 use super::{SIDES, Tubes};
-use honami_mechanics::{Beams, Direction, Options};
+use honami_mechanics::{Beams, Options, Vector};
 use honami_model::plant::{Node, Plant};
 
 /// A stem of two segments, a thin branch from its middle.
@@ -43,7 +43,7 @@ fn triangles_look_outward_and_hold_the_wood() {
     let nodes = vec![node(None, [0.0; 3]), node(Some(0), [0.0, 0.0, 1.0]), node(Some(1), [0.0, 0.0, 3.0])];
     let beams = Beams::new(&Plant::new(nodes).unwrap(), &Options::default()).unwrap();
     let tubes = Tubes::new(&beams);
-    let vertices: Vec<Direction> = tubes
+    let vertices: Vec<Vector> = tubes
         .rings()
         .iter()
         .flat_map(|ring| {

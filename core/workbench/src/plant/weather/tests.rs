@@ -2,7 +2,7 @@
 
 use super::{Ground, N_SAMPLES, STEP_S, WEATHERS, read};
 use crate::error::WorkbenchError;
-use honami_mechanics::Direction;
+use honami_mechanics::Vector;
 use honami_mechanics::wind::{Kaimal, Spectrum, Wind};
 
 /// Over a few trees, for two seconds.
@@ -34,7 +34,7 @@ fn winds_that_go_round_begin_again_and_others_are_refused() {
         for seconds in can {
             let wind = round(typed, *seconds).unwrap();
             for k in 0..9 {
-                let (place, t) = (Direction::new(f64::from(k) * 3.0, -4.0, 5.0), 0.37 * f64::from(k));
+                let (place, t) = (Vector::new(f64::from(k) * 3.0, -4.0, 5.0), 0.37 * f64::from(k));
                 let off = (wind.sample(&place, t + seconds) - wind.sample(&place, t)).norm();
                 assert!(off < 1e-9, "{typed} {seconds} {t}: {off}");
             }
@@ -47,7 +47,7 @@ fn winds_that_go_round_begin_again_and_others_are_refused() {
     }
     // Of the spectrum that it was: the same mean, and of its gusts of 1.6 m/s what goes into a minute, read between stations.
     let (wind, n) = (round("wind", 60.0).unwrap(), 6000);
-    let along: Vec<f64> = (0..n).map(|k| wind.sample(&Direction::zeros(), f64::from(k) * 0.01).x).collect();
+    let along: Vec<f64> = (0..n).map(|k| wind.sample(&Vector::zeros(), f64::from(k) * 0.01).x).collect();
     let mean = along.iter().sum::<f64>() / f64::from(n);
     let deviation = (along.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / f64::from(n)).sqrt();
     assert!((mean - 8.0).abs() < 1e-9 && (0.8..1.6).contains(&deviation), "{mean} {deviation}");
@@ -55,8 +55,8 @@ fn winds_that_go_round_begin_again_and_others_are_refused() {
     assert_eq!(error, "a wind begins again after 3600 s at most, not 3601 s");
 }
 
-fn at(typed: &str, place: [f64; 3], time: f64) -> Direction {
-    blow(typed).unwrap().sample(&Direction::from(place), time)
+fn at(typed: &str, place: [f64; 3], time: f64) -> Vector {
+    blow(typed).unwrap().sample(&Vector::from(place), time)
 }
 
 #[test]
@@ -67,7 +67,7 @@ fn every_wind_that_has_a_name_blows_with_numbers() {
         let wind = blow(&carried).unwrap();
         for k in 0..50 {
             let t = f64::from(k);
-            let v = wind.sample(&Direction::new(t, -2.0 * t, 5.0), 0.37 * t);
+            let v = wind.sample(&Vector::new(t, -2.0 * t, 5.0), 0.37 * t);
             assert!(v.iter().all(|v| v.is_finite()), "{}: {v}", weather.name);
         }
     }
@@ -90,7 +90,7 @@ fn winds_with_a_plus_between_them_add_up() {
         ("steady:speed=+3+squall+noise:speed=0", &["steady:speed=3", "squall", "noise:speed=0"]),
     ] {
         for (place, time) in [([3.0, -8.0, 5.0], 0.4), ([-20.0, 11.0, 2.0], 1.7)] {
-            let wanted: Direction = parts.iter().map(|part| at(part, place, time)).sum();
+            let wanted: Vector = parts.iter().map(|part| at(part, place, time)).sum();
             assert!((at(typed, place, time) - wanted).norm() < 1e-12 && wanted.norm() > 0.1, "{typed}");
         }
     }
@@ -100,7 +100,7 @@ fn winds_with_a_plus_between_them_add_up() {
 #[test]
 fn frozen_carries_what_follows_it() {
     let place = [4.0, 1.0, 2.0];
-    let mean = Direction::new(0.0, 5.0, 0.0);
+    let mean = Vector::new(0.0, 5.0, 0.0);
     let of =
         |time: f64, place: [f64; 3]| at("vortex+frozen:speed=5,towards=90,at=3+noise:speed=0", place, time);
     let vortex = |place: [f64; 3]| at("vortex", place, 0.0);
@@ -161,7 +161,7 @@ fn gusts_deviate_at_every_tree_as_they_are_told_to() {
     let df = 1.0 / (f64::from(n) * step);
     let wanted: f64 = (1..n / 2).map(|k| kaimal.density(f64::from(k) * df) * df).sum();
     assert!((0.9..1.0).contains(&(wanted.sqrt() / 1.6)), "{wanted}");
-    let variance = |typed: &str, place: Direction, along: Direction| {
+    let variance = |typed: &str, place: Vector, along: Vector| {
         let wind = blow(typed).unwrap();
         let gust = |k: i32| wind.sample(&place, f64::from(k) * step).dot(&along) - 8.0;
         (0..n).map(|k| gust(k).powi(2)).sum::<f64>() / f64::from(n)
@@ -169,10 +169,10 @@ fn gusts_deviate_at_every_tree_as_they_are_told_to() {
     for towards in [0, 30, 90] {
         let (sin, cos) = f64::from(towards).to_radians().sin_cos();
         let (along, typed) =
-            (Direction::new(cos, sin, 0.0), |seed: i32| format!("wind:towards={towards},seed={seed}"));
+            (Vector::new(cos, sin, 0.0), |seed: i32| format!("wind:towards={towards},seed={seed}"));
         for [x, y] in [[0.0, 0.0], [6.0, 6.0], [12.0, 0.0], [0.0, 12.0]] {
             // On a sample of the station, whatever the way to it takes.
-            let tree = Direction::new(x, y, 0.0);
+            let tree = Vector::new(x, y, 0.0);
             let far = tree.dot(&along);
             let place = tree + along * ((far / 8.0 / step).round() * step * 8.0 - far);
             let mean = (1..=4).map(|seed| variance(&typed(seed), place, along)).sum::<f64>() / 4.0;
@@ -184,7 +184,7 @@ fn gusts_deviate_at_every_tree_as_they_are_told_to() {
 #[test]
 fn air_that_flows_by_itself_is_held_back_by_the_trees() {
     let along = |typed: &str| {
-        let (wind, middle) = (blow(typed).unwrap(), Direction::new(6.0, 6.0, 5.0));
+        let (wind, middle) = (blow(typed).unwrap(), Vector::new(6.0, 6.0, 5.0));
         (0..20).map(|k| wind.sample(&middle, 0.1 * f64::from(k)).x).sum::<f64>() / 20.0
     };
     let [free, some, much] = [0.0, 0.02, 0.2].map(|drag| along(&format!("air:deviation=0,drag={drag}")));

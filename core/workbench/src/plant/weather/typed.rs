@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use honami_exchange::plant::{PlantFileError, anemometer};
-use honami_mechanics::Direction;
+use honami_mechanics::Vector;
 use honami_mechanics::wind::{Series, Sum, Wind};
 
 use super::{Ground, LONGEST_ROUND_S, Make, N_SAMPLES, STEP_S, Values, WEATHERS, range};
@@ -92,7 +92,9 @@ fn part(typed: &str) -> Result<Part, WorkbenchError> {
     let (name, given) = typed.split_once(':').unwrap_or((typed, ""));
     let Some(weather) = WEATHERS.iter().find(|weather| weather.name == name) else {
         let path = Path::new(typed);
-        if path.exists() {
+        // What is named as files are is one, also where it is missing.
+        let is_named_so = Path::new(name).extension().is_some() || name.contains('/');
+        if is_named_so || path.exists() {
             return Ok(Part::Recorded(path.to_owned(), recorded(path)?));
         }
         let names: Vec<&str> = WEATHERS.iter().map(|weather| weather.name).collect();
@@ -145,7 +147,7 @@ fn recorded(path: &Path) -> Result<Series, WorkbenchError> {
     let text =
         fs::read_to_string(path).map_err(|source| PlantFileError::Io { path: path.to_owned(), source })?;
     let recording = anemometer::parse(&text).map_err(|error| error.of(path))?;
-    let samples: Vec<Direction> = recording.samples.into_iter().map(Direction::from).collect();
+    let samples: Vec<Vector> = recording.samples.into_iter().map(Vector::from).collect();
     Ok(Series { step: recording.step, samples })
 }
 
