@@ -69,7 +69,7 @@ All trackers are given the same points, with their default parameters, one threa
 samples within 1, 2, 4, 8 and 16 px of the truth, averaged; lost samples are misses. A tracker that takes more than \
 10 times as long as `klt` is given fewer points, one above 40 times far fewer and only the first seed: n says how many. Times are of two \
 trackers side by side on a machine of two cores; `cargo xtask bench trackers` measures them properly. The row \"static\" \
-tracks nothing.
+tracks nothing. What was measured is kept: a row says what its tracker did on that day.
 ";
 
 impl Page<'_> {
