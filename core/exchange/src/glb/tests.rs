@@ -203,6 +203,10 @@ fn what_is_not_read_is_named() {
             Document::read(&scene(change)).and_then(|document| document.pieces()).unwrap_err().to_string();
         assert!(error.contains(wanted), "{wanted}: {error}");
     }
+}
+
+#[test]
+fn what_is_too_much_cut_or_no_scene_is_no_document() {
     // A mesh that is small, and stands in as many places as fill the memory.
     let forest = scene(|words| {
         words["nodes"] = vec![json!({ "mesh": 0 }); 10_000].into();
