@@ -175,7 +175,7 @@ fn only_what_was_tracked_grows() {
     };
     std::fs::write(bench.path("half.csv"), until(30)).unwrap();
     std::fs::write(bench.path("none.csv"), until(10)).unwrap();
-    assert!(bench.text("grow p.honami --truth half.csv").contains("in frames 15..30 that both have"));
+    assert!(bench.text("grow p.honami --truth half.csv").contains("in frames 15-29 that both have"));
     let none = bench.line("grow p.honami --truth none.csv");
     assert!(
         none.code == Some(1)
@@ -197,8 +197,10 @@ fn what_cannot_grow_says_why() {
         (
             "grow p.honami out.obj",
             2,
-            "skeletons are written as .bvh, .csv, .swc, .glb, .usda or as frames, out/%04d.ply or .obj, not as out.obj",
+            "skeletons are written as .bvh, .csv, .swc, .glb, .usda, .pc2 or as frames, out/%04d.ply or out/%04d.obj, not as out.obj",
         ),
+        ("grow p.honami mv/%04d.glb", 2, "or out/%04d.obj, not as mv/%04d.glb"),
+        ("grow p.honami a.glb a-1.glb --siblings 1", 2, "a.glb and a-1.glb would both be written to"),
         ("grow p.honami --leaves out.obj", 2, "leaves are written as .csv, not as out.obj"),
         ("grow p.honami --root 3", 2, "wanted a place as X,Y in pixels, got 3"),
         ("grow p.honami --root nan,1", 2, "wanted a place as X,Y"),
@@ -216,7 +218,13 @@ fn what_cannot_grow_says_why() {
         ("grow p.honami --with zeng --shift 1", 2, "shift: wanted a number, 0 to 0.999"),
         ("grow p.honami --with nobody", 2, "there is no structure \"nobody\"; there are: diener, zeng"),
         ("grow p.honami --envelope clip.y4m", 1, "it knows no envelope"),
+        ("grow p.honami --envelope none.png", 1, "it knows no envelope"),
         ("grow p.honami --with zeng --envelope none.png", 1, "none.png"),
+        (
+            "grow p.honami --with zeng --envelope clip.y4m",
+            1,
+            "one picture is wanted that says where, and this has 40: ",
+        ),
         ("grow p.honami out.bvh --siblings 0", 2, "0 is not in 1..=9999"),
         ("grow p.honami --siblings 2", 2, "name its file, as out.bvh"),
         ("grow p.honami out.bvh --seed 2", 2, "--seed goes with --siblings or --branches"),

@@ -161,6 +161,19 @@ fn another_plant_moves_as_the_filmed_one() {
     assert_eq!((&answer["onto"]["vertices"], &answer["onto"]["triangles"]), (&76.into(), &128.into()));
     let frames: Vec<_> = (0..40).map(|frame| ply(&bench.path(&format!("moved/{frame:04}.ply")))).collect();
     assert!(!bench.path("moved/0040.ply").exists());
+    assert_eq!(answer["onto"]["notes"], serde_json::json!([]));
+    // What stands behind a shorter motion is told, and so is a folder.
+    std::fs::copy(bench.path("moved/0039.ply"), bench.path("moved/0040.ply")).unwrap();
+    let told = bench.text(&line.replace("moved/", "other/"));
+    assert!(
+        told.contains("other/%04d.ply: 40 frames of what it carries, in a folder made for them\n"),
+        "{told}"
+    );
+    let told = bench.text(line);
+    assert!(
+        told.contains("moved/%04d.ply: 40 frames of what it carries; 1 more stand behind them"),
+        "{told}"
+    );
     let cache = std::fs::read(bench.path("at.pc2")).unwrap();
     let cached: Vec<f32> =
         cache[32..].as_chunks::<4>().0.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect();
@@ -334,7 +347,7 @@ fn what_cannot_be_carried_says_why() {
     for (line, code, wanted) in [
         ("out.glb --onto points.obj", 1, "points.obj: a plant to carry has a triangle at least"),
         ("out.glb --onto lost.obj", 1, "lost.obj: line 2: a vertex is three finite numbers"),
-        ("out.glb --onto far.obj", 1, "far.obj: vertex 1 lies at"),
+        ("out.glb --onto far.obj", 1, "far.obj: vertex 2 lies at [0.0, 1e30, 0.0]"),
         ("out.glb --onto flat.obj", 1, "--unit says how much of the plant's length a pixel is"),
         ("out.glb --onto one.swc", 1, "two nodes at least, this one has 1"),
         ("out.glb --onto no.glb", 1, "no.glb: a .glb begins with `glTF`"),
@@ -345,7 +358,7 @@ fn what_cannot_be_carried_says_why() {
         ("out.glb --onto rig.glb --up z", 2, "--up"),
         ("out.pc2 --onto one.swc", 1, "two nodes"),
         ("out.pc2", 2, "a .pc2 has the vertices of an .obj or .ply"),
-        ("out.ply --onto good.obj", 2, "as frames, out/%04d.ply or .obj, not as out.ply"),
+        ("out.ply --onto good.obj", 2, "or as frames, out/%04d.ply or out/%04d.obj, not as out.ply"),
         ("a%db%d.ply --onto good.obj", 2, "not as a%db%d.ply"),
         ("out.bvh --onto good.obj", 2, "--onto goes with a .glb, as out.glb, or with frames"),
         ("out.bvh --weights", 2, "--weights goes with a .glb"),

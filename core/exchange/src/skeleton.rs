@@ -21,7 +21,7 @@ use std::path::Path;
 
 use honami_model::skeleton::Skeleton;
 
-use crate::atomic::{AtomicFile, is_begun_alike};
+use crate::atomic::AtomicFile;
 use crate::table::{TableError, Writer};
 
 /// Kinds of files that a skeleton can be written as.
@@ -50,11 +50,12 @@ impl SkeletonFormat {
 /// Writes a skeleton, whole or not at all; tables number its frames from `first` on.
 ///
 /// # Errors
-/// [`TableError::File`] when the disk refuses, [`TableError::Precious`] when something stands there.
+/// [`TableError::File`] when the disk refuses, [`TableError::Precious`] and [`TableError::Unlike`] when something of others
+/// stands there.
 pub fn write(path: &Path, format: SkeletonFormat, skeleton: &Skeleton, first: u32) -> Result<(), TableError> {
-    let text = match format {
-        SkeletonFormat::Bvh => bvh::text(skeleton),
-        SkeletonFormat::Swc => swc::text(skeleton),
+    let (text, begin) = match format {
+        SkeletonFormat::Bvh => (bvh::text(skeleton), bvh::BEGIN),
+        SkeletonFormat::Swc => (swc::text(skeleton), swc::BEGIN),
         SkeletonFormat::Angles => {
             let mut table = Writer::create(path)?;
             for row in angles::rows(skeleton, first) {
@@ -63,7 +64,7 @@ pub fn write(path: &Path, format: SkeletonFormat, skeleton: &Skeleton, first: u3
             return table.finish();
         }
     };
-    let mut file = AtomicFile::create(path, |head| is_begun_alike(head, &text))?;
+    let mut file = AtomicFile::create(path, |head| head.starts_with(begin.as_bytes()))?;
     let full = |source| TableError::File { path: path.into(), source };
     file.write_all(text.as_bytes()).map_err(full)?;
     file.finish()

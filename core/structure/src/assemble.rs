@@ -48,7 +48,7 @@ pub struct Branch {
 }
 
 impl Branch {
-    /// Of a mesh that begins at `foot`, or at its [`foot`](crate::bind::foot).
+    /// Of a mesh that begins at `foot`, or at what [`foot`] says.
     ///
     /// Its tip is the mean of the vertices that are at least nine tenths as far from the foot as the farthest. It is as wide
     /// as nine tenths of its vertices are near the line between. Vertices that no triangle uses do not count.

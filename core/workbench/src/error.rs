@@ -165,6 +165,14 @@ pub enum WorkbenchError {
         /// The mask.
         path: PathBuf,
     },
+    /// A mask that is a video.
+    #[error("one picture is wanted that says where, and this has {n_frames}: {}", path.display())]
+    MaskFrames {
+        /// Its frames.
+        n_frames: u32,
+        /// The mask.
+        path: PathBuf,
+    },
     /// No pixel is left to detect in.
     #[error("no pixel of the clip lies in the region or the mask: features cannot be detected there")]
     EmptyArea,

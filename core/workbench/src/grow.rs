@@ -34,7 +34,7 @@ pub use self::hand::{Bones, Hand, shape};
 use self::hand::{Laid, lay};
 pub(crate) use self::hand::{Usual, named_bones, usual};
 pub use self::judge::{Judged, judge};
-pub use self::outs::{Carried, Out, write};
+pub use self::outs::{Carried, ENDINGS, Out, write};
 use crate::ear::Ear;
 use crate::error::WorkbenchError;
 use crate::progress::Progress;
@@ -113,14 +113,17 @@ pub fn grow(
     if let Some(root) = root {
         check_root(root, clip)?;
     }
-    let envelope = request.envelope.as_ref().map(|image| white(image, clip)).transpose()?;
+    let envelope = request.envelope.as_ref().map(|image| white(image, clip)).transpose();
+    // Whether a method takes an envelope at all is said before what is wrong with this one.
+    let everywhere = vec![1; clip.width as usize * clip.height as usize];
+    let pixels = envelope.as_ref().map_or_else(|_wrong| Some(&everywhere), Option::as_ref);
     let begun = std::time::Instant::now();
     let tree = gathered.tree();
     let filmed = Filmed {
         tracks: &gathered.tracks,
         groups: &tree,
         root,
-        mask: envelope.as_ref().map(|pixels| Gray::packed(pixels, clip.width, clip.height)),
+        mask: pixels.map(|pixels| Gray::packed(pixels, clip.width, clip.height)),
     };
     let (mut structure, origin) = host.structure(plugin, &request.params, &CallContext::silent())?;
     let ear = Ear::new(&plugin.short_name, progress);
@@ -128,6 +131,7 @@ pub fn grow(
         Err(HostError::Cancelled { .. }) => return Err(WorkbenchError::Stopped),
         other => other?,
     };
+    let envelope = envelope?;
     let Laid { skeleton, bones, hand, notes: of_hands } =
         lay(skeleton, &bears, (gathered.clustering, &gathered.bones), hands, placed)?;
     let (skeleton, frames) = match request.is_loop {

@@ -405,6 +405,10 @@ pub(crate) fn mask(area: &Area, clip: &Clip) -> Result<Option<Vec<u8>>, Workbenc
             if came != wanted {
                 return Err(WorkbenchError::MaskSize { wanted, came, path: path.clone() });
             }
+            let n_frames = image.clip().times.len();
+            if n_frames > 1 {
+                return Err(WorkbenchError::MaskFrames { n_frames, path: path.clone() });
+            }
             let frame = image.frame(0)?;
             let gray = frame.planes().y;
             Ok(Some((0..gray.height).flat_map(|y| gray.row(y)).copied().collect()))

@@ -2,12 +2,13 @@
 
 mod carried;
 mod siblings;
+mod written;
 
 use std::path::PathBuf;
 
-use honami_model::brief::{Brief, counted};
+use honami_model::brief::counted;
 use honami_workbench::grow::siblings::Settings;
-use honami_workbench::grow::{self, GrowRequest, Growth, Judged, Out, SkeletonFormat};
+use honami_workbench::grow::{self, ENDINGS, GrowRequest, Growth, Judged, Out, SkeletonFormat};
 use honami_workbench::plugins::{Kind, PluginInfo, Value, Values};
 use serde_json::json;
 
@@ -43,9 +44,7 @@ pub(super) fn grow(args: &Grow, common: &Common) -> anyhow::Result<Answer> {
     let settings = Settings { level: args.level, threshold: args.threshold };
     let siblings = args.siblings.map(|n| grow::siblings(&growth, settings).map(|of| (n, of))).transpose()?;
     let carried = carried::carried(args, &growth)?;
-    for (kind, out) in &files {
-        grow::write(&growth.skeleton, growth.frames.start, *kind, &carried, out)?;
-    }
+    let lines = written::write(args, &files, &growth, &carried)?;
     let leaves = |out: &PathBuf| grow::write_leaves(&growth.skeleton, growth.frames.start, out);
     let n_rows = args.leaves.as_ref().map(leaves).transpose()?;
     let mut answer = describe(args, &growth);
@@ -61,30 +60,7 @@ pub(super) fn grow(args: &Grow, common: &Common) -> anyhow::Result<Answer> {
             "motion_px": judged.motion_px,
         });
     }
-    for (kind, out) in &files {
-        let what = match kind {
-            Out::Skeleton(SkeletonFormat::Bvh) => "motion, degrees, y up".to_owned(),
-            Out::Skeleton(SkeletonFormat::Angles) => {
-                "joints and angles, radians, a row a joint and frame".to_owned()
-            }
-            Out::Skeleton(SkeletonFormat::Swc) => "the shape at rest, z up".to_owned(),
-            Out::Rig | Out::Usd if !args.branches.is_empty() => {
-                format!(
-                    "the plant of branches as a rig that moves, y up, a pixel taken as {} m",
-                    Brief(carried.unit)
-                )
-            }
-            Out::Rig | Out::Usd if args.onto.is_some() => "the plant as a rig that moves, y up".to_owned(),
-            Out::Rig | Out::Usd => {
-                format!("a rig that moves, y up, a pixel taken as {} m", Brief(carried.unit))
-            }
-            Out::Frames(_) => {
-                format!("{} of what it carries", counted(growth.skeleton.times().len() as usize, "frame"))
-            }
-            Out::Cache => "where the vertices of the plant are in every frame".to_owned(),
-        };
-        answer.text += &format!("\n{}: {what}", out.display());
-    }
+    lines.iter().for_each(|line| answer.text += &format!("\n{line}"));
     if let (Some(out), Some(n_rows)) = (&args.leaves, n_rows) {
         answer.text += &format!("\n{}: leaves, {}", out.display(), counted(n_rows, "row"));
     }
@@ -120,13 +96,7 @@ fn files(args: &Grow) -> anyhow::Result<Files<'_>> {
     let mut files = Vec::new();
     for out in &args.out {
         let kind = Out::of(out);
-        want(kind.is_some(), || {
-            let frames = "as frames, out/%04d.ply or .obj";
-            format!(
-                "skeletons are written as .bvh, .csv, .swc, .glb, .usda or {frames}, not as {}",
-                out.display()
-            )
-        })?;
+        want(kind.is_some(), || format!("skeletons are written as {ENDINGS}, not as {}", out.display()))?;
         files.extend(kind.map(|kind| (kind, out)));
     }
     carried::check(args, &files)?;
@@ -164,7 +134,8 @@ fn describe(args: &Grow, growth: &Growth) -> Answer {
         text += &format!("\ngroups outside the envelope, left out: {}", growth.n_left_out);
     }
     let (frames, by) = (&growth.frames, &growth.provenance.plugin_id);
-    text += &format!("\nframes {}..{}, by {by}, {:.3} s", frames.start, frames.end, growth.seconds);
+    let last = frames.end.saturating_sub(1);
+    text += &format!("\nframes {}-{last}, by {by}, {:.3} s", frames.start, growth.seconds);
     let is_uneven = skeleton.times().is_variable()
         && args.out.iter().any(|out| Out::of(out) == Some(Out::Skeleton(SkeletonFormat::Bvh)));
     let uneven =
@@ -197,7 +168,7 @@ fn told(judged: &Judged, growth: &Growth) -> String {
     let frames = &judged.frames;
     let of = match *frames == growth.frames {
         true => String::new(),
-        false => format!(", in frames {}..{} that both have", frames.start, frames.end),
+        false => format!(", in frames {}-{} that both have", frames.start, frames.end.saturating_sub(1)),
     };
     format!(
         "beside the truth of {} in {}{of}: joints are {:.2} px off in the median; standing still they would be \

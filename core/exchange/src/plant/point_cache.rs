@@ -13,6 +13,11 @@ use crate::atomic::AtomicFile;
 use crate::table::TableError;
 
 const MAGIC: &[u8] = b"POINTCACHE2\0";
+/// The first frame, where the format has a number for it. It is 0 to whoever reads it, and has a sign, which others do not
+/// write: caches of others are not to be lost.
+const FIRST: f32 = -0.0;
+/// Where that stands, bytes.
+const AT: usize = 20;
 /// Bytes of samples that are handed on at a time.
 const CHUNK: usize = 1 << 16;
 
@@ -44,10 +49,13 @@ impl PointCache {
         let mut chunk = MAGIC.to_vec();
         chunk.extend(1_i32.to_le_bytes());
         chunk.extend(points.to_le_bytes());
-        chunk.extend(0_f32.to_le_bytes());
+        chunk.extend(FIRST.to_le_bytes());
         chunk.extend(1_f32.to_le_bytes());
         chunk.extend(n_frames.to_le_bytes());
-        Ok(Self { file: AtomicFile::create(path, |head| head.starts_with(MAGIC))?, chunk })
+        let is_own = |head: &[u8]| {
+            head.starts_with(MAGIC) && head.get(AT..AT + 4).is_some_and(|first| first == FIRST.to_le_bytes())
+        };
+        Ok(Self { file: AtomicFile::create(path, is_own)?, chunk })
     }
 
     /// Where a point is: one call a point, frame by frame.

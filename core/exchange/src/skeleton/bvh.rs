@@ -10,6 +10,10 @@ use std::fmt::Write as _;
 use honami_model::skeleton::{Skeleton, turns};
 use honami_model::turn::Turn;
 
+/// What files that are written begin with: others have other names.
+pub(super) const BEGIN: &str = "HIERARCHY\nROOT root\n{\n\tOFFSET 0 0 0\n\tCHANNELS 6 Xposition Yposition Zposition \
+                                Zrotation Xrotation Yrotation\n\tJOINT bone_1\n";
+
 /// The file.
 pub(super) fn text(skeleton: &Skeleton) -> String {
     let joints = skeleton.joints();

@@ -54,11 +54,9 @@ pub fn rigged(
     check(bindings, colours, &joints, pieces.iter().flat_map(|piece| &piece.counts).sum())?;
     let joints = Nodes::add(&mut document, joints);
     joints.turn(&mut document, rest, motion)?;
-    let coloured = (!colours.is_empty()).then(|| {
-        let look = json!({ "metallicFactor": 0.0, "roughnessFactor": 1.0 });
-        document
-            .put("materials", json!({ "name": "weights", "pbrMetallicRoughness": look, "doubleSided": true }))
-    });
+    if !colours.is_empty() {
+        look_at_weights(&mut document);
+    }
     let (mut used, mut skins, mut first) = (BTreeSet::new(), BTreeMap::new(), 0);
     let meshes = document.words["meshes"].clone();
     for piece in pieces {
@@ -66,8 +64,7 @@ pub fn rigged(
         for (k, &n) in piece.counts.iter().enumerate() {
             let (primitive, own) = (&mut mesh["primitives"][k], first..first + n);
             bind(&mut document, &mut primitive["attributes"], &bindings[own.clone()], &joints.joints);
-            if let Some(material) = coloured {
-                primitive["material"] = material.into();
+            if !colours.is_empty() {
                 colour(&mut document, &mut primitive["attributes"], &colours[own]);
             }
             // The node was the mirror, and bones carry what they carry whichever node it is of.
@@ -90,6 +87,22 @@ pub fn rigged(
     }
     list(document.scene()).push(joints.nodes[0].into());
     Ok(document)
+}
+
+/// One look for all meshes, on which the colours of vertices are seen, in place of their own and what only these needed.
+fn look_at_weights(document: &mut Document) {
+    let look = json!({ "metallicFactor": 0.0, "roughnessFactor": 1.0 });
+    let words = &mut document.words;
+    for name in ["textures", "images", "samplers"] {
+        words.as_object_mut().into_iter().for_each(|words| drop(words.remove(name)));
+    }
+    words["materials"] = json!([{ "name": "weights", "pbrMetallicRoughness": look, "doubleSided": true }]);
+    let meshes = words["meshes"].as_array_mut().into_iter().flatten();
+    for primitive in meshes.filter_map(|mesh| mesh["primitives"].as_array_mut()).flatten() {
+        primitive["material"] = 0.into();
+        // Other looks to choose from are by rows that there are no more.
+        primitive.as_object_mut().into_iter().for_each(|words| drop(words.remove("extensions")));
+    }
 }
 
 /// Whether so many vertices are bound to bones that there are.

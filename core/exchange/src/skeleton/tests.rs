@@ -225,3 +225,30 @@ proptest! {
         assert_is_it(&skeleton(&bones, &angles, 4));
     }
 }
+
+/// Motion and nerves of others begin alike, and are not written over; what was written here is.
+#[test]
+fn files_take_the_place_of_their_own_kind_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let skeleton = skeleton(&[(0, 10.0), (1, 5.0)], &[(0.2, 0.1)], 2);
+    for (name, format, theirs) in [
+        (
+            "a.bvh",
+            SkeletonFormat::Bvh,
+            "HIERARCHY\nROOT root\n{\n\tOFFSET 0 0 0\n\tCHANNELS 3 Zrotation Xrotation Yrotation\n",
+        ),
+        ("b.bvh", SkeletonFormat::Bvh, "HIERARCHY\nROOT Hips\n{\n"),
+        ("a.swc", SkeletonFormat::Swc, "# number type x y z radius parent\n1 1 0 0 0 1 -1\n"),
+        ("b.csv", SkeletonFormat::Angles, "joint,parent,groups,frame\n"),
+    ] {
+        let path = folder.path().join(name);
+        std::fs::write(&path, theirs).unwrap();
+        let error = write(&path, format, &skeleton, 0).unwrap_err();
+        assert!(matches!(error, TableError::Unlike { .. }), "{name}: {error}");
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), theirs);
+        std::fs::remove_file(&path).unwrap();
+        for _again in 0..2 {
+            write(&path, format, &skeleton, 0).unwrap();
+        }
+    }
+}

@@ -42,7 +42,7 @@ pub fn usda(
 ) -> Result<String, RigError> {
     let joints = Joints::of(rest, kept)?;
     check(bindings, colours, &joints, mesh.positions.len())?;
-    let fps = motion.times().nominal_fps().unwrap_or(FPS);
+    let fps = told(motion.times().nominal_fps().unwrap_or(FPS));
     let codes = codes(motion, fps)?;
     let mut text = format!(
         "#usda 1.0\n(\n    defaultPrim = \"plant\"\n    {DOC}\n    startTimeCode = 0\n    \
@@ -69,6 +69,11 @@ pub fn write_usda(path: &Path, text: &str) -> Result<(), TableError> {
     let mut file = AtomicFile::create(path, is_own)?;
     file.write_all(text.as_bytes()).map_err(|source| TableError::File { path: path.into(), source })?;
     file.finish()
+}
+
+/// To nine digits: steps of 0.04 s are 25 a second, not 24.999999999999996.
+fn told(fps: f64) -> f64 {
+    format!("{fps:.8e}").parse().unwrap_or(fps)
 }
 
 /// Times of frames, in frames.

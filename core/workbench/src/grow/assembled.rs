@@ -14,7 +14,7 @@ use honami_model::skeleton::{Joint, Skeleton};
 use honami_structure::assemble::{Branch, Graft, assemble, branches};
 
 use super::body::{bearing, tubes};
-use super::bound::{Bound, Read, in_origin, nodes, read};
+use super::bound::{Bound, Read, in_origin, nodes, read, refused};
 use crate::error::WorkbenchError;
 
 /// Vertices of all branches on a plant: gigabytes of memory.
@@ -75,13 +75,14 @@ impl Library {
     }
 
     fn add_mesh(&mut self, path: &Path, read: Read) -> Result<(), WorkbenchError> {
-        let Read { mesh, document, pieces, notes, .. } = read;
+        let Read { mesh, up, document, pieces, notes, .. } = read;
         self.notes.extend(notes.into_iter().map(|note| (path.to_owned(), note)));
         let parts = parts(&mesh, pieces);
         // A scene without a mesh is no branch either, which the first look at it says.
         let parts = if parts.is_empty() { vec![(Mesh::default(), Vec::new())] } else { parts };
         for (mesh, pieces) in parts {
-            self.keep(path, mesh, None, pieces)?;
+            let branch = Branch::of(&mesh, None).map_err(|error| refused(error, path, up))?;
+            self.keep(branch, mesh, pieces);
         }
         self.documents.push(document);
         Ok(())
@@ -99,24 +100,17 @@ impl Library {
             let mesh = tubes(&beams);
             let document = Document::of(&mesh);
             let (_, pieces) = document.pieces()?;
-            self.keep(path, mesh, Some(beams.position(0).into()), pieces)?;
+            let foot = Some(beams.position(0).into());
+            let branch = Branch::of(&mesh, foot).map_err(|error| refused(error, path, None))?;
+            self.keep(branch, mesh, pieces);
             self.documents.push(document);
         }
         Ok(())
     }
 
     /// Of the document that comes next.
-    fn keep(
-        &mut self,
-        path: &Path,
-        mesh: Mesh,
-        foot: Option<[f64; 3]>,
-        pieces: Vec<Piece>,
-    ) -> Result<(), WorkbenchError> {
-        let within = |source| WorkbenchError::Onto { path: path.to_owned(), source };
-        let branch = Branch::of(&mesh, foot).map_err(within)?;
+    fn keep(&mut self, branch: Branch, mesh: Mesh, pieces: Vec<Piece>) {
         self.branches.push(Kept { branch, mesh, document: self.documents.len(), pieces });
-        Ok(())
     }
 
     /// How many branches it has.

@@ -10,7 +10,7 @@ use honami_mechanics::{Beams, Options};
 use honami_model::brief::Brief;
 use honami_model::mesh::{Binding, Mesh};
 use honami_model::skeleton::Skeleton;
-use honami_structure::bind;
+use honami_structure::{StructureError, bind};
 
 use super::assembled::Assembled;
 use super::body::{body, tubes};
@@ -63,7 +63,7 @@ pub struct Bound {
 /// A plant as it was read.
 pub(super) struct Read {
     pub(super) mesh: Mesh,
-    up: Option<Up>,
+    pub(super) up: Option<Up>,
     pub(super) document: Document,
     pub(super) pieces: Vec<Piece>,
     is_one: bool,
@@ -107,7 +107,7 @@ impl Bound {
             Some(read) => read,
             None => wood(&onto.plant)?,
         };
-        let within = |error| WorkbenchError::Onto { path: onto.plant.clone(), source: error };
+        let within = |error| refused(error, &onto.plant, up);
         let foot = foot.map_or_else(|| bind::foot(&mesh), Ok).map_err(within)?;
         let turn_rad = onto.turn_rad;
         let rest = bind::fitted(skeleton, &mesh, foot, onto.unit, turn_rad).map_err(within)?;
@@ -184,6 +184,18 @@ fn hue(bone: usize) -> [f64; 3] {
         let k = (n + turn) % 6.0;
         1.0 - 0.85 * k.min(4.0 - k).clamp(0.0, 1.0)
     })
+}
+
+/// What is wrong with a plant, vertices as its file has them: in its axes, of an `.obj` counted from 1.
+pub(super) fn refused(error: StructureError, path: &Path, up: Option<Up>) -> WorkbenchError {
+    let source = match error {
+        StructureError::Vertex { vertex, place } => StructureError::Vertex {
+            vertex: vertex + usize::from(MeshFormat::of(path) == Some(MeshFormat::Obj)),
+            place: up.map_or(place, |up| up.written(place)),
+        },
+        error => error,
+    };
+    WorkbenchError::Onto { path: path.to_owned(), source }
 }
 
 /// A skeleton with its root in the origin, a pixel so many metres.

@@ -16,6 +16,9 @@ use super::assembled::Library;
 use super::bound::{Bound, coloured};
 use crate::error::WorkbenchError;
 
+/// What names of files end in, in words.
+pub const ENDINGS: &str = ".bvh, .csv, .swc, .glb, .usda, .pc2 or as frames, out/%04d.ply or out/%04d.obj";
+
 /// Kinds of files that a skeleton can be written as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Out {
@@ -61,19 +64,28 @@ impl Carried {
 }
 
 impl Out {
-    /// The kind whose files end so; frames have a number in their name.
+    /// The kind whose files end so; frames have a number in their name, and others none.
     #[must_use]
     pub fn of(path: &Path) -> Option<Self> {
+        if numbered(path, 0).is_some() {
+            return MeshFormat::of(path).map(Self::Frames);
+        }
         let ending = path.extension()?.to_str()?.to_ascii_lowercase();
         match ending.as_str() {
             "glb" => Some(Self::Rig),
             "usda" => Some(Self::Usd),
             "pc2" => Some(Self::Cache),
-            _ => {
-                let frames =
-                    || MeshFormat::of(path).filter(|_| numbered(path, 0).is_some()).map(Self::Frames);
-                SkeletonFormat::of(path).map(Self::Skeleton).or_else(frames)
-            }
+            _ => SkeletonFormat::of(path).map(Self::Skeleton),
+        }
+    }
+
+    /// Frames of a longer motion that stand behind those of so many: nothing takes their place.
+    #[must_use]
+    pub fn n_behind(self, path: &Path, n_frames: u32) -> usize {
+        let there = |frame: &u32| numbered(path, *frame).is_some_and(|name| name.exists());
+        match self {
+            Self::Frames(_) => (n_frames..).take_while(there).count(),
+            _ => 0,
         }
     }
 

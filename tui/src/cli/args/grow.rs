@@ -18,7 +18,8 @@ pub(in crate::cli) struct Grow {
     /// Project file (.honami).
     pub(in crate::cli) project: PathBuf,
     /// Files to write: .bvh (motion capture), .csv (joints and angles in every frame), .swc (the shape at rest), .glb (a rig:
-    /// tubes, or the plant of --onto, on bones that move, for modellers and engines), .usda (the same, without materials).
+    /// tubes, or the plant of --onto or --branches, on bones that move, for modellers and engines), .usda (the same, without
+    /// materials), out/%04d.ply or out/%04d.obj (that, a file a frame), .pc2 (where the vertices of --onto are).
     pub(in crate::cli) out: Vec<PathBuf>,
     #[command(flatten)]
     pub(in crate::cli) plugin: WithPlugin,

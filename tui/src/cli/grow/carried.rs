@@ -1,6 +1,7 @@
 //! `grow --onto`: what the skeleton carries.
 
-use std::path::PathBuf;
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
 
 use honami_model::brief::{Brief, counted};
 use honami_workbench::WorkbenchError;
@@ -57,8 +58,9 @@ pub(super) fn check(args: &Grow, files: &Files<'_>) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Whether nothing that is written, in any frame and of any sibling, takes the place of the plant that is read.
+/// Whether nothing that is written, in any frame and of any sibling, takes the place of the plant that is read, or of another.
 pub(super) fn check_names(args: &Grow, files: &Files<'_>, n_frames: u32) -> anyhow::Result<()> {
+    check_twice(args, files)?;
     let plants: Vec<PathBuf> =
         args.onto.iter().chain(&args.branches).filter_map(|plant| plant.canonicalize().ok()).collect();
     let is_it =
@@ -72,6 +74,34 @@ pub(super) fn check_names(args: &Grow, files: &Files<'_>, n_frames: u32) -> anyh
         let over = over.unwrap_or_default();
         format!("what is written takes another name than the plant that is read: {}", over.display())
     })?;
+    Ok(())
+}
+
+/// Whether no two files that are written have one name. Numbers of frames stand in place of a name's, so that two names of
+/// frames are one or have nothing in common.
+fn check_twice(args: &Grow, files: &Files<'_>) -> anyhow::Result<()> {
+    let outs: Vec<&PathBuf> = files.iter().map(|(_, out)| *out).chain(&args.leaves).collect();
+    let mut seen: HashMap<PathBuf, &PathBuf> = HashMap::new();
+    for out in outs {
+        // A folder that there is not is made, or refused, by the name that it has.
+        let folder = out.parent().and_then(|folder| {
+            if folder.as_os_str().is_empty() { Path::new(".") } else { folder }.canonicalize().ok()
+        });
+        let place =
+            folder.zip(out.file_name()).map_or_else(|| out.clone(), |(folder, name)| folder.join(name));
+        for number in 0..=args.siblings.unwrap_or(0) {
+            let place = if number == 0 { place.clone() } else { numbered(&place, number) };
+            if let Some(other) = seen.insert(place.clone(), out) {
+                let (name, place) = (out.display(), place.display());
+                want(false, || {
+                    format!(
+                        "{} and {name} would both be written to {place}: give one another name",
+                        other.display()
+                    )
+                })?;
+            }
+        }
+    }
     Ok(())
 }
 
@@ -177,6 +207,34 @@ mod tests {
     struct Line {
         #[command(flatten)]
         grow: Grow,
+    }
+
+    #[test]
+    fn help_names_all_that_is_written() {
+        let help = <Line as clap::CommandFactory>::command().render_long_help().to_string();
+        let known: Vec<&str> = grow::ENDINGS.split([' ', ',']).filter(|word| word.contains('.')).collect();
+        assert!(known.len() == 8 && known.iter().all(|ending| help.contains(ending)), "{help}");
+    }
+
+    #[test]
+    fn no_name_is_written_twice() {
+        for (line, wanted) in [
+            ("oak.glb oak-1.glb --siblings 1", Some("oak.glb and oak-1.glb would both be written to ")),
+            ("oak.glb oak-2.glb --siblings 1", None),
+            ("oak.glb oak.glb", Some("oak.glb and oak.glb would both")),
+            ("oak.glb ./oak.glb", Some("oak.glb and ./oak.glb would both")),
+            ("oak.glb oak.usda oak.csv --siblings 3", None),
+            ("a.csv --leaves a.csv", Some("a.csv and a.csv would both")),
+            ("a.csv --leaves a-3.csv --siblings 2", None),
+            ("a.csv --leaves a-2.csv --siblings 2", Some("a.csv and a-2.csv would both")),
+            ("none/%04d.ply none/%04d.ply", Some("would both be written to none/%04d.ply")),
+            ("%04d.ply %04d.obj --siblings 2", None),
+        ] {
+            let args = Line::parse_from(format!("grow p.honami {line}").split(' ')).grow;
+            let found = check_names(&args, &files(&args).unwrap(), 40).map_err(|error| error.to_string());
+            assert_eq!(found.is_err(), wanted.is_some(), "{line}: {found:?}");
+            assert!(found.err().is_none_or(|error| error.contains(wanted.unwrap_or(""))), "{line}");
+        }
     }
 
     #[test]

@@ -29,3 +29,28 @@ fn more_points_than_the_format_counts_are_refused() {
     let error = PointCache::create(&folder.path().join("a.pc2"), 1 << 31, 2).unwrap_err();
     assert!(matches!(error, PointCacheError::Points(_)));
 }
+
+/// A cache of others differs in nothing but the sign of a nothing.
+#[test]
+fn caches_of_others_are_not_written_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.pc2");
+    for _again in 0..2 {
+        PointCache::create(&path, 1, 0).unwrap().finish().unwrap();
+    }
+    let own = std::fs::read(&path).unwrap();
+    let theirs = [
+        b"POINTCACHE2\0".to_vec(),
+        [1, 1, 0].map(i32::to_le_bytes).concat(),
+        1_f32.to_le_bytes().to_vec(),
+        vec![0; 4],
+    ]
+    .concat();
+    assert_eq!((own.len(), own.iter().zip(&theirs).filter(|(a, b)| a != b).count()), (theirs.len(), 1));
+    for theirs in [theirs.clone(), theirs[..20].to_vec()] {
+        std::fs::write(&path, &theirs).unwrap();
+        let error = PointCache::create(&path, 1, 0).unwrap_err();
+        assert!(matches!(error, PointCacheError::File(crate::table::TableError::Unlike { .. })), "{error}");
+        assert_eq!(std::fs::read(&path).unwrap(), theirs);
+    }
+}

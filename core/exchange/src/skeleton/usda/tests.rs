@@ -43,6 +43,13 @@ fn a_rig_is_told_in_words() {
     let depth = text.chars().fold(0, |depth, c| depth + i32::from(c == '{') - i32::from(c == '}'));
     assert_eq!(depth, 0);
     assert!(written(&[0.0], 1).unwrap().contains("timeCodesPerSecond = 25\n"));
+    // Steps are not the same to the last bit.
+    for (fps, wanted) in [(25.0, "25\n"), (30.0, "30\n"), (30_000.0 / 1001.0, "29.97003\n")] {
+        let times: Vec<f64> = (0..60).map(|frame| 0.1 + f64::from(frame) / fps).collect();
+        let text = written(&times, 1).unwrap();
+        assert!(text.contains(&format!("timeCodesPerSecond = {wanted}")), "{fps}: {text}");
+        assert!(text.contains("endTimeCode = 59\n"), "{fps}");
+    }
 }
 
 #[test]

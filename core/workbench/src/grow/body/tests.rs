@@ -88,3 +88,17 @@ fn frames_are_written_all_or_none() {
     write(&skeleton, 0, kind, &carried, &path).unwrap();
     assert!(folder.path().join("2.ply").exists());
 }
+
+#[test]
+fn names_say_what_is_written() {
+    let kinds = super::super::ENDINGS.split([' ', ',']).filter(|word| word.contains('.'));
+    let kinds: Vec<Out> = kinds
+        .map(|word| Out::of(std::path::Path::new(&format!("a{word}").replace("aout/", ""))).unwrap())
+        .collect();
+    assert_eq!(kinds.len(), 8);
+    assert!((1..8).all(|row| !kinds[..row].contains(&kinds[row])), "{kinds:?}");
+    for name in ["a", "a.ply", "a.obj", "a.gltf", "%04d.glb", "mv/%d.pc2", "%04d.csv", "a%db%d.ply", "%x.ply"]
+    {
+        assert_eq!(Out::of(std::path::Path::new(name)), None, "{name}");
+    }
+}
