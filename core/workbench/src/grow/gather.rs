@@ -132,10 +132,11 @@ fn blind(is_seen: &[bool], first: u32) -> Option<String> {
     let n = is_seen.iter().filter(|is_seen| !**is_seen).count();
     let begin = is_seen.iter().position(|is_seen| !is_seen)?;
     let len = is_seen[begin..].iter().take_while(|is_seen| !**is_seen).count();
-    let gap = format!("{}-{}", first + begin as u32, first + (begin + len - 1) as u32);
+    let (from, to) = (first + begin as u32, first + (begin + len) as u32 - 1);
+    let gap = if from == to { format!("frame {from}") } else { format!("frames {from}-{to}") };
     let more = if n > len { format!(" and in {} more", n - len) } else { String::new() };
     Some(format!(
-        "nothing of any group is seen in frames {gap}{more}: groups go straight there from the frame before to the frame after"
+        "nothing of any group is seen in {gap}{more}: groups go straight there from the frame before to the frame after"
     ))
 }
 

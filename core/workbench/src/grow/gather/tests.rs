@@ -11,9 +11,9 @@ fn frames_are_those_in_which_something_is_seen() {
         ("....", None, 0..0, None),
         ("####", Some(0..4), 0..4, None),
         ("..#..", Some(2..3), 0..1, None),
-        (".###..##.", Some(1..8), 0..3, Some("4..6")),
-        ("..##.###..", Some(2..8), 3..6, Some("4..5")),
-        ("##.##...#", Some(0..9), 0..2, Some("2..3 and in 3 more")),
+        (".###..##.", Some(1..8), 0..3, Some("frames 4-5")),
+        ("..##.###..", Some(2..8), 3..6, Some("frame 4")),
+        ("##.##...#", Some(0..9), 0..2, Some("frame 2 and in 3 more")),
     ];
     for (seen, wanted, run, gap) in cases {
         let is_seen: Vec<bool> = seen.chars().map(|c| c == '#').collect();
@@ -22,7 +22,7 @@ fn frames_are_those_in_which_something_is_seen() {
         let Some(frames) = frames else { continue };
         let within = &is_seen[frames.start as usize..frames.end as usize];
         assert_eq!(unbroken(within), run, "{seen}");
-        let note = gap.map(|gap| format!("nothing of any group is seen in frames {gap}{across}"));
+        let note = gap.map(|gap| format!("nothing of any group is seen in {gap}{across}"));
         assert_eq!(blind(within, frames.start), note, "{seen}");
     }
 }
