@@ -61,6 +61,36 @@ fn a_session_is_done_again_and_says_the_same() {
     assert_eq!(labels[0], labels[1]);
 }
 
+/// Hand work on a skeleton, which grows by its plugin before it is worked on.
+const SHAPING: &str = r#"{"t_s":1.0,"action":"skeleton","in":"review","frame":0,"track":3}
+{"t_s":2.0,"action":"place-root","in":"review","frame":0,"track":3}
+{"t_s":2.5,"action":"right","in":"place","frame":0,"track":3,"count":4}
+{"t_s":3.0,"action":"accept","in":"place","frame":0,"track":3}
+{"t_s":3.5,"action":"panel-skeleton","in":"review","frame":0,"track":3}
+{"t_s":4.0,"action":"up","in":"review","frame":0,"track":3,"count":9}
+{"t_s":4.5,"action":"shape-bone","in":"review","frame":0,"track":3}
+{"t_s":5.0,"action":"right","in":"shape","frame":0,"track":3,"count":6}
+{"t_s":5.5,"action":"more-groups","in":"shape","frame":0,"track":3}
+{"t_s":6.0,"action":"accept","in":"shape","frame":0,"track":3}
+"#;
+
+#[test]
+fn a_skeleton_shaped_in_a_session_is_shaped_again() {
+    let (bench, before) = bench();
+    let clip = serde_json::from_str::<serde_json::Value>(&before).unwrap()["clip"].clone();
+    bench.json("cluster p.honami --groups 3");
+    fs::write(bench.path("s.jsonl"), head(&bench, &clip) + SHAPING).unwrap();
+    let done = bench.json("replay p.honami s.jsonl");
+    assert_eq!((&done["difference"], &done["done"]), (&json!(null), &json!(10)), "{done}");
+    let edits = bench.log("p.honami", "edit");
+    let labels: Vec<&str> = edits.iter().rev().map(|edit| edit["label"].as_str().unwrap()).collect();
+    let [bone, root, ..] = labels[..] else { panic!("{labels:?}") };
+    assert!(root.starts_with("root placed at ") && bone.ends_with(": plane 30°, gain 1.1"), "{labels:?}");
+    assert!(bone.starts_with("fork 1"), "the first bone is the one nearest to the root: {bone}");
+    let grown = bench.json("grow p.honami");
+    assert!(grown["notes"].to_string().contains("1 bone shaped by hand"), "{grown}");
+}
+
 #[test]
 fn it_stops_where_it_goes_another_way() {
     let (bench, head) = bench();
