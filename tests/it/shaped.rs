@@ -94,10 +94,14 @@ fn hand_work_is_listed_kept_undone_and_counts_wherever_a_skeleton_does() {
     assert_eq!((bones.len(), &bare["root"]), (7, &Value::Null), "4 groups make 3 forks: {bare}");
     assert_eq!((&bones[0]["bone"], &bones[0]["level"]), (&"fork 1-4".into(), &0.into()));
     assert!(bones.iter().any(|bone| bone["length_px"].as_f64().is_some_and(|length| length > 1.0)), "{bare}");
-    let done = bench.json("shape p.honami --root 80,115 --group 2 --plane 30 --lean -10");
-    let labels: Vec<&str> =
-        done["edits"].as_array().unwrap().iter().map(|e| e["label"].as_str().unwrap()).collect();
-    assert_eq!(labels, ["root placed at 80.0, 115.0", "group 2: plane 30°, lean -10°"]);
+    // The same root again is nothing to do where a bone is shaped.
+    for (line, label) in [
+        ("shape p.honami --root 80,115", "root placed at 80.0, 115.0"),
+        ("shape p.honami --root 80,115 --group 2 --plane 30 --lean -10", "group 2: plane 30°, lean -10°"),
+    ] {
+        let done = bench.json(line);
+        assert_eq!((&done["edits"][0]["label"], &done["edits"][1]), (&label.into(), &Value::Null), "{done}");
+    }
     let text = bench.text("shape p.honami");
     let lines: Vec<&str> = text.lines().collect();
     assert_eq!(lines[0], "root at 80.0, 115.0, by hand");
@@ -154,6 +158,11 @@ fn hand_work_is_listed_kept_undone_and_counts_wherever_a_skeleton_does() {
     assert_eq!(bench.text("shape p.honami").lines().next(), Some("root at 70.0, 100.0, by hand"));
     bench.text("shape p.honami --release");
     assert_eq!(listed(&bench), bare);
+    // Two steps are one edit.
+    let said = bench.text("shape p.honami --root 70,100 --group 2 --gain 2");
+    assert!(said.ends_with("  root placed at 70.0, 100.0; group 2: gain 2"), "{said}");
+    assert!(bench.edit("p.honami", "undo\n").text().contains("undo: root placed"));
+    assert_eq!(listed(&bench), bare);
 }
 
 #[test]
@@ -167,6 +176,8 @@ fn what_cannot_be_shaped_says_why() {
     let bench = grouped();
     for (line, code, wanted) in [
         ("shape p.honami --group 9 --plane 3", 1, "no bone bears 9 and nothing else: there are fork 1-4; "),
+        ("shape p.honami --root 80,115 --group 9 --plane 3", 1, "no bone bears 9 and nothing else"),
+        ("shape p.honami --root 80,115 --group 3 --plane 181", 1, "turned by -180 to 180 degrees, not 181"),
         ("shape p.honami --group 1-3,4,9 --plane 3", 1, "no bone bears 1-4,9 and nothing else"),
         ("shape p.honami --group 0 --plane 3", 2, "wanted groups as 3, 3,4 or 1-4, got 0"),
         ("shape p.honami --group 3", 2, "--group goes with --plane, --lean or --gain"),
@@ -187,4 +198,5 @@ fn what_cannot_be_shaped_says_why() {
     }
     let edits = bench.log("p.honami", "edit");
     assert!(edits.iter().all(|edit| !edit["label"].as_str().unwrap().contains("group 3")), "{edits:?}");
+    assert!(edits.iter().all(|edit| !edit["label"].as_str().unwrap().contains("80.0, 115.0")), "{edits:?}");
 }

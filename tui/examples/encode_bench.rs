@@ -11,6 +11,7 @@ use std::time::Instant;
 
 use anyhow::Context as _;
 use honami_model::clip::{Clip, FrameTimes};
+use honami_model::document::ClusteringId;
 use honami_model::hierarchy::{Dendrogram, Merge};
 use honami_model::track::{Quality, Sample, Source, Span, Status, TrackId};
 use honami_tui::app::groups::Groups;
@@ -112,7 +113,7 @@ fn cuts(columns: u16, rows: u16) -> anyhow::Result<()> {
     for n_groups in 2..100 {
         let mut bytes = Vec::new();
         let start = Instant::now();
-        let groups = (tracks.clone(), tree.clone());
+        let groups = (ClusteringId(1), tracks.clone(), tree.clone());
         let groups = Groups::new("by bod".to_owned(), groups, (n_groups, &[]), Vec::new());
         update(&mut state, Msg::Fact(Fact::Groups(Some(Box::new(groups)))));
         encoder.encode(&draw(&state, Some(&shot)), usize::MAX, false, &mut bytes);

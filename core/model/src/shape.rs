@@ -8,12 +8,12 @@ use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
-use crate::brief::Brief;
+use crate::brief::{Brief, counted};
 use crate::document::{ClusteringId, Document};
 use crate::edit::{Edit, Transaction};
 
 /// No bone swings more than so many times as far as it was seen to.
-const MOST_GAIN: f64 = 10.0;
+pub const MOST_GAIN: f64 = 10.0;
 
 /// How a bone differs from how it has grown. All that it bears goes along.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -21,7 +21,7 @@ pub struct Shape {
     /// By how much the plane that it moves in is turned about what is at right angles to the bone in that plane, so that it
     /// points away from the camera: radians, -π to π.
     pub plane_rad: f64,
-    /// By how much it leans otherwise at rest, clockwise in the picture: radians, -π to π.
+    /// By how much it leans otherwise at rest, clockwise as the bone that bears it sees the picture: radians, -π to π.
     pub lean_rad: f64,
     /// How much of its own swing it keeps, beside that of what bears it: 0 (stiff) to 10, 1 as it was seen.
     pub gain: f64,
@@ -94,7 +94,9 @@ fn degrees(rad: f64) -> String {
 /// A bone, as a person speaks of it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bone {
-    /// The node of the shown clustering's dendrogram whose centre it ends at; of a group made by hand its largest.
+    /// The clustering that the node is of.
+    pub clustering: ClusteringId,
+    /// The node of that clustering's dendrogram whose centre it ends at; of a group made by hand its largest.
     pub node: u32,
     /// What it is called: `group 3 bud-left`, `fork 3,4`.
     pub name: String,
@@ -120,6 +122,9 @@ pub enum Refused {
     /// Nothing is grouped.
     #[error("no clustering is shown: bones are those of its groups")]
     NoGroups,
+    /// The bone is of a clustering that is not shown: the node says nothing here.
+    #[error("{0} is a bone of other groups than those shown: choose a bone of these")]
+    OtherGroups(String),
     /// Nothing would change.
     #[error("{0} already")]
     Same(String),
@@ -131,13 +136,16 @@ pub enum Refused {
 /// The transaction of a step.
 ///
 /// # Errors
-/// [`Refused`] where nothing would change, and of bones where nothing is grouped.
+/// [`Refused`] where nothing would change, and of bones where nothing is grouped or other groups are shown.
 pub fn transaction(document: &Document, step: &Step) -> Result<Transaction, Refused> {
     match step {
         Step::Root(root) => place(document, *root),
         Step::Bone(bone, shape) => {
             let shown = document.clustering().ok_or(Refused::NoGroups)?;
-            shape_bone(document, shown.id, bone, *shape)
+            match bone.clustering == shown.id {
+                true => shape_bone(document, bone, *shape),
+                false => Err(Refused::OtherGroups(bone.name.clone())),
+            }
         }
         Step::Release => release(document),
     }
@@ -154,14 +162,9 @@ fn place(document: &Document, root: Option<[f64; 2]>) -> Result<Transaction, Ref
     }
 }
 
-fn shape_bone(
-    document: &Document,
-    clustering: ClusteringId,
-    bone: &Bone,
-    shape: Shape,
-) -> Result<Transaction, Refused> {
-    let Bone { node, name, .. } = bone;
-    let was = document.shape(clustering, *node).unwrap_or_default();
+fn shape_bone(document: &Document, bone: &Bone, shape: Shape) -> Result<Transaction, Refused> {
+    let Bone { clustering, node, name, .. } = bone;
+    let was = document.shape(*clustering, *node).unwrap_or_default();
     let label = |told: String| match shape.is_grown() {
         true => format!("{name}: as it grows"),
         false => format!("{name}: {told}"),
@@ -169,7 +172,8 @@ fn shape_bone(
     if shape == was {
         return Err(Refused::Same(label(shape.to_string())));
     }
-    let edit = Edit::ShapeBone { clustering, node: *node, shape: (!shape.is_grown()).then_some(shape) };
+    let edit =
+        Edit::ShapeBone { clustering: *clustering, node: *node, shape: (!shape.is_grown()).then_some(shape) };
     Ok(Transaction::new(label(shape.told(&was)), vec![edit]))
 }
 
@@ -181,11 +185,8 @@ fn release(document: &Document) -> Result<Transaction, Refused> {
         .into_iter()
         .flat_map(|shown| document.shapes(shown.id).map(move |(node, _)| (shown.id, node)));
     edits.extend(shapes.map(|(clustering, node)| Edit::ShapeBone { clustering, node, shape: None }));
-    let bones = match edits.len() - usize::from(root.is_some()) {
-        0 => None,
-        1 => Some("1 bone".to_owned()),
-        n => Some(format!("{n} bones")),
-    };
+    let n_bones = edits.len() - usize::from(root.is_some());
+    let bones = (n_bones > 0).then(|| counted(n_bones, "bone"));
     let what: Vec<String> = [root, bones].into_iter().flatten().collect();
     if what.is_empty() {
         return Err(Refused::NothingDone);

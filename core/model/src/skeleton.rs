@@ -216,6 +216,12 @@ impl Skeleton {
         Ok(self)
     }
 
+    /// The same, carrying nothing.
+    #[must_use]
+    pub fn without_leaves(self) -> Self {
+        Self { leaves: Vec::new(), ..self }
+    }
+
     /// The same elsewhere: its root in `foot`, so many times as large, turned about the upright, counterclockwise from above,
     /// radians. Bones turn as they did.
     ///

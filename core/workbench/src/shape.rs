@@ -7,7 +7,7 @@ use honami_model::edit::Transaction;
 use honami_model::shape::transaction;
 use honami_store::Project;
 
-pub use honami_model::shape::{Bone, Shape, Step};
+pub use honami_model::shape::{Bone, MOST_GAIN, Refused, Shape, Step};
 
 use crate::error::WorkbenchError;
 use crate::grow::{Usual, check_root, named_bones, usual};

@@ -121,17 +121,17 @@ table! {
     Left "left" ["h" "Left"] [Review "" Place "1 px" Move "1 px" Form "change" Dial "turn" Slide "1 frame" Sketch "steer" Shape "plane"]
         "left: the previous frame, one pixel, or a smaller value; at a bone, its plane 5° back"
     Down "down" ["j" "Down"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "narrower" History "" Start "" Sketch "steer" Shape "lean"]
-        "down: the next track, one pixel, or the next row; in the queue, the prints and the skeleton, their next row"
+        "down: the next track, one pixel, or the next row; in the queue, the prints and the skeleton, their next row; at a bone, it leans 5° clockwise"
     Up "up" ["k" "Up"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "wider" History "" Start "" Sketch "steer" Shape "lean"]
-        "up: the previous track, one pixel, or the previous row; in the queue, the prints and the skeleton, the row before"
+        "up: the previous track, one pixel, or the previous row; in the queue, the prints and the skeleton, the row before; at a bone, it leans 5° counterclockwise"
     Right "right" ["l" "Right"] [Review "" Place "1 px" Move "1 px" Form "change" Dial "turn" Slide "1 frame" Sketch "steer" Shape "plane"]
         "right: the next frame, one pixel, or a larger value; at a bone, its plane 5° on"
-    FineLeft "fine-left" ["H" "Shift-Left"] [Place ".25" Move ".25" Form "" Slide ".25" Sketch "" Shape ".5°"] "a quarter of a pixel left, or a tenth of a value's range down"
-    FineDown "fine-down" ["J" "Shift-Down"] [Place ".25" Move ".25" Sketch "" Shape ".5°"] "a quarter of a pixel down"
-    FineUp "fine-up" ["K" "Shift-Up"] [Place ".25" Move ".25" Sketch "" Shape ".5°"] "a quarter of a pixel up"
-    FineRight "fine-right" ["L" "Shift-Right"] [Place ".25" Move ".25" Form "" Slide ".25" Sketch "" Shape ".5°"] "a quarter of a pixel right, or a tenth of a value's range up"
+    FineLeft "fine-left" ["H" "Shift-Left"] [Place ".25" Move ".25" Form "" Slide ".25" Sketch "" Shape ".5°"] "a quarter of a pixel left, or a tenth of a value's range down; at a bone, its plane half a degree back"
+    FineDown "fine-down" ["J" "Shift-Down"] [Place ".25" Move ".25" Sketch "" Shape ".5°"] "a quarter of a pixel down; at a bone, it leans half a degree clockwise"
+    FineUp "fine-up" ["K" "Shift-Up"] [Place ".25" Move ".25" Sketch "" Shape ".5°"] "a quarter of a pixel up; at a bone, it leans half a degree counterclockwise"
+    FineRight "fine-right" ["L" "Shift-Right"] [Place ".25" Move ".25" Form "" Slide ".25" Sketch "" Shape ".5°"] "a quarter of a pixel right, or a tenth of a value's range up; at a bone, its plane half a degree on"
     Accept "accept" ["Enter"] [Place "place" Move "keep" Form "run" Menu "choose" Prompt "done" Review "accept" Dial "keep" History "go there" Slide "keep" Start "open" Sketch "keep" Shape "keep"]
-        "accept: keep, place, run or go; reviewing: the open item, else open the track's, or make a key-frame; in the prints, go to the line's frame; in the skeleton, shape the bone"
+        "accept: keep, place, run or go; reviewing: in the prints, go to the line's frame; else the open item; in the skeleton, shape the bone; else open the track's, or make a key-frame"
     Back "back" ["Esc" "Ctrl-c"] [Place "back" Move "back" Form "back" Menu "back" Prompt "back" Label "back" Review "" Dial "back" History "back" Slide "back" Start "" Sketch "back" Shape "back"]
         "back: leave what is open, undone; while reviewing, stop the clip, the job or what grows, see the skeleton from the front, give up the range, then the picks, then the two runs"
     // Time.
@@ -197,8 +197,8 @@ table! {
     WaitOn "wait-on" ["W"] [Review ""] "wait for a plugin that gives no sign of life"
     EndPlugin "end-plugin" ["I"] [Review ""] "end the process of a plugin that gives no sign of life; another goes on where it was"
     RunClusterer "cluster" ["c"] [Review "cluster"] "group the tracks by their movement"
-    MoreGroups "more-groups" ["+" "="] [Review "" Dial "gain" Sketch "step" Shape "gain"] "one group more; at the dial, more gain; while drawing, a step twice as large"
-    FewerGroups "fewer-groups" ["-"] [Review "" Dial "gain" Sketch "step" Shape "gain"] "one group fewer; at the dial, less gain; while drawing, a step half as large"
+    MoreGroups "more-groups" ["+" "="] [Review "" Dial "gain" Sketch "step" Shape "gain"] "one group more; at the dial, more gain; while drawing, a step twice as large; at a bone, it swings a tenth more"
+    FewerGroups "fewer-groups" ["-"] [Review "" Dial "gain" Sketch "step" Shape "gain"] "one group fewer; at the dial, less gain; while drawing, a step half as large; at a bone, it swings a tenth less"
     MergeGroups "merge-groups" ["G m"] [Review ""] "merge the selected track's group with another: they stay one wherever the cut is"
     SplitGroup "split-group" ["G s"] [Review ""] "split the selected track's group in two, as it was merged"
     TakeIntoGroup "take-into-group" ["G t"] [Review ""] "take the picked tracks, else the selected one, into another group"

@@ -128,6 +128,9 @@ pub struct Here {
     /// What was drawn, and how late that was: links are as they are.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sketched: Option<Vec<Stroke>>,
+    /// The skeleton was not there yet: how long it takes to grow is up to the machine.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub growing: bool,
 }
 
 /// What the mouse did, and where.

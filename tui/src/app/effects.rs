@@ -618,7 +618,7 @@ impl World {
                 let document = project.document();
                 let mut groups = Groups::new(
                     what,
-                    (clustering.tracks, clustering.dendrogram),
+                    (shown.id, clustering.tracks, clustering.dendrogram),
                     (shown.k, document.held_groups(shown.id)),
                     clustering.outlier_frames,
                 );

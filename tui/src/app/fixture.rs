@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use honami_model::clip::{Clip, FrameTimes};
 use honami_model::correct::{Correction, Layers};
-use honami_model::document::{Key, Origin, RunId, Track};
+use honami_model::document::{ClusteringId, Key, Origin, RunId, Track};
 use honami_model::edit::Edit;
 use honami_model::hierarchy::{Dendrogram, Merge};
 use honami_model::history::{Entry, EntryId};
@@ -30,6 +30,9 @@ use super::tracks::TrackRow;
 use super::update::{Effect, Fact, Msg, update};
 use super::view::Shot;
 use crate::term::input::{Mouse, MouseKind};
+
+/// The clustering that is shown.
+pub(super) const CLUSTERING: ClusteringId = ClusteringId(1);
 
 /// The state that tests begin with.
 pub(super) fn state() -> State {
@@ -291,8 +294,12 @@ pub(super) fn grove(state: &mut State, k: u32) {
         height *= 2.2;
     }
     let dendrogram = Dendrogram::new(n, merges).expect("a tree");
-    state.groups =
-        Some(Groups::new("by bod".to_owned(), (tracks, dendrogram), (k, &[]), vec![30, 31, 32, 77]));
+    state.groups = Some(Groups::new(
+        "by bod".to_owned(),
+        (CLUSTERING, tracks, dendrogram),
+        (k, &[]),
+        vec![30, 31, 32, 77],
+    ));
 }
 
 pub(super) fn groups(k: u32) -> Groups {
@@ -300,7 +307,7 @@ pub(super) fn groups(k: u32) -> Groups {
     let tracks = [1, 2, 7].map(TrackId).to_vec();
     Groups::new(
         "by movement".to_owned(),
-        (tracks, Dendrogram::new(3, merges).expect("a tree")),
+        (CLUSTERING, tracks, Dendrogram::new(3, merges).expect("a tree")),
         (k, &[]),
         vec![90, 91],
     )

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use honami_model::document::ClusteringId;
 use honami_model::hierarchy::{self, Dendrogram};
 use honami_model::track::TrackId;
 
@@ -10,6 +11,8 @@ use honami_model::track::TrackId;
 pub struct Groups {
     /// How it was made, as the title says it.
     pub what: String,
+    /// Which it is.
+    pub clustering: ClusteringId,
     /// Its tracks, in the dendrogram's order of leaves.
     pub tracks: Vec<TrackId>,
     /// The hierarchy.
@@ -41,14 +44,14 @@ impl Groups {
     #[must_use]
     pub fn new(
         what: String,
-        (tracks, dendrogram): (Vec<TrackId>, Dendrogram),
+        (clustering, tracks, dendrogram): (ClusteringId, Vec<TrackId>, Dendrogram),
         (k, held): (u32, &[Vec<u32>]),
         outlier_frames: Vec<u32>,
     ) -> Self {
         let shown = dendrogram.groups(k, held);
         let of = tracks.iter().copied().zip(shown.of.iter().copied()).collect();
         let (names, held, chart) = (vec![None; shown.len()], held.to_vec(), Chart::of(&dendrogram));
-        Self { what, tracks, dendrogram, shown, names, held, outlier_frames, chart, of }
+        Self { what, clustering, tracks, dendrogram, shown, names, held, outlier_frames, chart, of }
     }
 
     /// The groups at another cut.

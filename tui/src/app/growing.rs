@@ -70,6 +70,13 @@ impl Growing {
     }
 }
 
+impl Drop for Growing {
+    fn drop(&mut self) {
+        // Nobody waits for it any more.
+        self.stop.0.store(true, Ordering::Relaxed);
+    }
+}
+
 impl Grower {
     pub(super) fn of(session: &Session) -> Result<Self, WorkbenchError> {
         let plugin = session.registry.find(Kind::Structure, BUILDER)?.clone();
@@ -92,5 +99,21 @@ impl Grower {
     /// What becomes of a revision, at once.
     pub(super) fn fact(&self, revision: u64) -> Fact {
         Fact::Grown(revision, self.grow(&Stop::default()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::term::signals;
+
+    #[test]
+    fn what_nobody_waits_for_stops() {
+        let (waker, _woken) = signals::pair().unwrap();
+        let growing = Growing::new(waker);
+        let stop = Arc::clone(&growing.stop);
+        assert!(matches!(stop.report(0, 1, "growing"), Flow::Continue));
+        drop(growing);
+        assert!(matches!(stop.report(0, 1, "growing"), Flow::Stop));
     }
 }

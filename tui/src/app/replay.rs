@@ -64,7 +64,7 @@ pub fn replay(session: Session, log: &str, tell: &mut dyn FnMut(usize, &Notice))
         head.origin.project,
         origin.clip
     );
-    let mut player = Player { world, state, woken };
+    let mut player = Player { world, state, woken, asked: None };
     let mut done = Replay { n_done: 0, revision: origin.revision, difference: None };
     if origin.revision == head.origin.revision {
         player.sit_down(&head);
@@ -87,6 +87,8 @@ struct Player {
     state: State,
     /// Becomes readable when a job has news.
     woken: UnixStream,
+    /// The skeleton that has not grown yet.
+    asked: Option<u64>,
 }
 
 impl Player {
@@ -138,7 +140,7 @@ impl Player {
             self.wait_for_ghost().map_err(|error| error.to_string())?;
         }
         self.compare();
-        self.grow()?;
+        self.grow(line)?;
         for effect in again(&mut self.state, line)? {
             self.carry_out(effect);
         }
@@ -154,9 +156,12 @@ impl Player {
         }
     }
 
-    /// Grows the skeleton, where it is shown: whoever did the next thing had seen it.
-    fn grow(&mut self) -> Result<(), String> {
-        if let Some(revision) = Skeletal::request(&mut self.state) {
+    /// Grows the skeleton, where it is shown, unless whoever did the next thing was quicker.
+    fn grow(&mut self, line: &Line) -> Result<(), String> {
+        self.asked = Skeletal::request(&mut self.state).or(self.asked);
+        let is_seen = line.here.as_ref().is_some_and(|here| !here.growing);
+        let is_wanted = |revision: &mut u64| is_seen && *revision == self.state.skeleton.revision;
+        if let Some(revision) = self.asked.take_if(is_wanted) {
             let grower = Grower::of(self.world.session()).map_err(|error| error.to_string())?;
             drop(update(&mut self.state, Msg::Fact(grower.fact(revision))));
         }

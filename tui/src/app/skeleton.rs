@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use honami_model::brief::counted;
 use honami_model::document::Document;
 use honami_model::skeleton::Skeleton;
 use honami_model::turn::angle;
@@ -27,6 +28,8 @@ pub struct Skeletal {
     pub hand: Hand,
     /// What has grown; what was before, until another has.
     pub bones: Option<Arc<Bones>>,
+    /// Whether that is of groups that were others: it is grey then, and nothing is done to it.
+    pub is_past: bool,
     /// Where its joints are, as hands have shaped it.
     pub pose: Option<Arc<Pose>>,
     /// The node of the bone that is chosen; without one, that of the selected track's group is.
@@ -90,6 +93,8 @@ pub struct Bones {
     pub growth: Growth,
     /// Rows of the bones, copies apart.
     pub own: Vec<usize>,
+    /// Half-way between the outermost places, right and away, pixels: what the view goes round, however bones are shaped.
+    middle: [f32; 2],
 }
 
 /// Where all joints are, and what is to be said of their bones.
@@ -99,10 +104,11 @@ pub struct Pose {
     places: Vec<[f32; 3]>,
     n_joints: usize,
     first: u32,
-    /// Half-way between the outermost places, right and away: what the view goes round.
+    /// What the view goes round, right and away.
     pub middle: [f32; 2],
-    /// How far each bone turns about how it is at rest, root mean square, degrees.
-    pub swing_deg: Vec<f64>,
+    /// How far each bone moves about how it is at rest, with what bears it, root mean square, degrees: the bones in their
+    /// order, copies apart.
+    pub moves_deg: Vec<f64>,
 }
 
 impl Bones {
@@ -111,13 +117,9 @@ impl Bones {
     pub fn of(growth: Growth) -> Self {
         let copy_of = |row: usize| growth.bones.copy_of.get(row).copied().flatten();
         let own = (1..growth.skeleton.joints().len()).filter(|row| copy_of(*row).is_none()).collect();
-        // A skeleton without leaves is one as well.
-        let bare = growth.skeleton.clone().with_leaves(Vec::new());
-        let growth = match bare {
-            Ok(skeleton) => Growth { skeleton, ..growth },
-            Err(_) => growth,
-        };
-        Self { growth, own }
+        let growth = Growth { skeleton: growth.skeleton.without_leaves(), ..growth };
+        let middle = middle(&places(&growth.skeleton));
+        Self { growth, own, middle }
     }
 
     /// The bone that ends at a joint; `None` where the structure builder has not told what it is of.
@@ -138,13 +140,12 @@ impl Bones {
     /// What cannot be shaped.
     pub fn pose(&self, shape_of: impl Fn(u32) -> Shape) -> Result<Arc<Pose>, WorkbenchError> {
         let shaped = grow::shape(&self.growth, |bone| shape_of(bone.node))?;
-        Ok(Arc::new(Pose::of(&shaped, self.growth.frames.start)))
+        Ok(Arc::new(Pose::of(&shaped, self)))
     }
 
     /// What it is and what it took: `skeleton: 9 bones of 4 groups, diener, 0.2 s`.
     #[must_use]
     pub fn words(&self, hand: &Hand) -> String {
-        let counted = |n: usize, one: &str| if n == 1 { format!("1 {one}") } else { format!("{n} {one}s") };
         let id = &self.growth.provenance.plugin_id;
         let n_shaped = hand.shapes.keys().filter(|node| self.row_of(**node).is_some()).count();
         let root = hand.root.map(|_| "the root".to_owned());
@@ -161,6 +162,11 @@ impl Bones {
             id.rsplit('.').next().unwrap_or(id),
             self.growth.seconds
         );
+        let n_without = hand.shapes.len() - n_shaped;
+        if n_without > 0 {
+            let shaped = counted(n_without, "bone");
+            words.push_str(&format!(" · {shaped} shaped by hand, but not there in these groups"));
+        }
         for note in &self.growth.notes {
             words.push_str(&format!(" · {note}"));
         }
@@ -169,22 +175,21 @@ impl Bones {
 }
 
 impl Pose {
-    fn of(skeleton: &Skeleton, first: u32) -> Self {
+    fn of(skeleton: &Skeleton, bones: &Bones) -> Self {
         let frames = 0..skeleton.times().len();
-        let place = |frame: u32| skeleton.places(skeleton.directions(frame));
-        let places: Vec<[f32; 3]> = frames.clone().flat_map(place).map(|at| at.map(|v| v as f32)).collect();
-        let middle = [0, 1].map(|axis| {
-            let along = || places.iter().map(|at| at[axis]);
-            f32::midpoint(along().fold(f32::INFINITY, f32::min), along().fold(f32::NEG_INFINITY, f32::max))
-        });
-        let swing = |row: usize| {
+        let moves = |row: usize| {
             let squares = frames.clone().map(|frame| {
                 angle(skeleton.rest()[row], skeleton.directions(frame)[row]).to_degrees().powi(2)
             });
             (squares.sum::<f64>() / f64::from(frames.end.max(1))).sqrt()
         };
-        let n_joints = skeleton.joints().len();
-        Self { places, n_joints, first, middle, swing_deg: (0..n_joints).map(swing).collect() }
+        Self {
+            places: places(skeleton),
+            n_joints: skeleton.joints().len(),
+            first: bones.growth.frames.start,
+            middle: bones.middle,
+            moves_deg: bones.own.iter().copied().map(moves).collect(),
+        }
     }
 
     /// Where all joints are in a frame of the clip; `None` where it has none.
@@ -202,6 +207,20 @@ impl Pose {
     }
 }
 
+/// Joint after joint in frame after frame: right, away, up, pixels.
+fn places(skeleton: &Skeleton) -> Vec<[f32; 3]> {
+    let place = |frame: u32| skeleton.places(skeleton.directions(frame));
+    (0..skeleton.times().len()).flat_map(place).map(|at| at.map(|v| v as f32)).collect()
+}
+
+/// Half-way between the outermost places, right and away.
+fn middle(places: &[[f32; 3]]) -> [f32; 2] {
+    [0, 1].map(|axis| {
+        let along = || places.iter().map(|at| at[axis]);
+        f32::midpoint(along().fold(f32::INFINITY, f32::min), along().fold(f32::NEG_INFINITY, f32::max))
+    })
+}
+
 impl Skeletal {
     /// What it grows from is another now.
     pub fn outdate(&mut self) {
@@ -210,7 +229,8 @@ impl Skeletal {
 
     /// There is nothing to grow from.
     pub fn wither(&mut self) {
-        (self.bones, self.pose, self.awaited, self.asked, self.azimuth) = (None, None, None, None, 0);
+        (self.bones, self.pose, self.awaited, self.asked) = (None, None, None, None);
+        (self.is_past, self.azimuth) = (false, 0);
     }
 
     /// What was done to it by hand is this now: roots change what grows.
@@ -244,10 +264,18 @@ impl Skeletal {
         if is_in_picture || state.skeleton.pose.is_none() { 0 } else { state.skeleton.azimuth }
     }
 
+    /// Whether it grows, or is about to.
+    #[must_use]
+    pub fn is_growing(state: &State) -> bool {
+        let skeleton = &state.skeleton;
+        let is_asked = skeleton.asked == Some(skeleton.revision);
+        skeleton.is_on && state.groups.is_some() && (skeleton.awaited.is_some() || !is_asked)
+    }
+
     /// The row of the bone that is chosen among those listed or is being shaped, else of that of the selected track's group.
     #[must_use]
     pub fn current(state: &State) -> Option<usize> {
-        let bones = state.skeleton.bones.as_deref()?;
+        let bones = state.skeleton.bones.as_deref().filter(|_| !state.skeleton.is_past)?;
         let is_listed = state.panel == Some(Panel::Skeleton) || matches!(state.mode, Mode::Shape(_));
         let chosen = state.skeleton.chosen.filter(|_| is_listed).and_then(|node| bones.row_of(node));
         chosen.or_else(|| {

@@ -1,7 +1,9 @@
 //! `shape`: hand work on skeletons, kept in the project.
 
 use honami_model::document::Document;
-use honami_workbench::shape::{self, Bone, Listed, Shape, Step};
+use honami_model::edit::Transaction;
+use honami_workbench::WorkbenchError;
+use honami_workbench::shape::{self, Bone, Listed, Refused, Shape, Step};
 use honami_workbench::store::{Access, Project};
 use serde_json::{Value, json};
 
@@ -19,10 +21,7 @@ pub(super) fn shape(args: &Shaping) -> anyhow::Result<Answer> {
     }
     there(&args.project)?;
     let mut project = Project::open(&args.project, Access::Write)?;
-    let mut done = Vec::new();
-    if let Some(place) = args.root {
-        done.push(keep(&mut project, &Step::Root(Some(place.0)))?);
-    }
+    let mut steps: Vec<Step> = args.root.map(|place| Step::Root(Some(place.0))).into_iter().collect();
     if let Some(groups) = &args.group {
         let Listed { bone, shape: was, .. } = shape::bone(&project, &groups.0)?;
         let [plane, lean, gain] = turns;
@@ -31,27 +30,32 @@ pub(super) fn shape(args: &Shaping) -> anyhow::Result<Answer> {
             lean_rad: lean.map_or(was.lean_rad, f64::to_radians),
             gain: gain.unwrap_or(was.gain),
         };
-        done.push(keep(&mut project, &Step::Bone(bone, shape))?);
+        steps.push(Step::Bone(bone, shape));
     }
     if let Some(what) = &args.release {
-        let step = match what {
+        steps.push(match what {
             Released::All => Step::Release,
             Released::Root => Step::Root(None),
             Released::Bone(groups) => Step::Bone(shape::bone(&project, &groups.0)?.bone, Shape::default()),
-        };
-        done.push(keep(&mut project, &step)?);
+        });
     }
-    let text = done.iter().map(|(id, label)| format!("{id}  {label}")).collect::<Vec<_>>().join("\n");
-    let edits: Vec<Value> = done.iter().map(|(id, label)| json!({ "id": id, "label": label })).collect();
-    let json = json!({ "edits": edits, "revision": project.revision() });
-    Ok(Answer { json, text, done: true })
+    let transaction = together(&project, &steps)?;
+    let label = transaction.label.clone();
+    let id = project.commit(transaction)?;
+    let json = json!({ "edits": [{ "id": id, "label": label }], "revision": project.revision() });
+    Ok(Answer { json, text: format!("{id}  {label}"), done: true })
 }
 
-/// Commits a step; returns its number in the undo tree and what it says.
-fn keep(project: &mut Project, step: &Step) -> anyhow::Result<(honami_model::history::EntryId, String)> {
-    let transaction = shape::prepare(project, step)?;
-    let label = transaction.label.clone();
-    Ok((project.commit(transaction)?, label))
+/// Steps as one edit: all of them or none. What is so already is left out, where anything else is to be done.
+fn together(project: &Project, steps: &[Step]) -> Result<Transaction, WorkbenchError> {
+    let mut prepared: Vec<_> = steps.iter().map(|step| shape::prepare(project, step)).collect();
+    let is_same = |one: &Result<_, _>| matches!(one, Err(WorkbenchError::Shape(Refused::Same(_))));
+    if !prepared.iter().all(is_same) {
+        prepared.retain(|one| !is_same(one));
+    }
+    let all = prepared.into_iter().collect::<Result<Vec<Transaction>, _>>()?;
+    let label = all.iter().map(|one| &*one.label).collect::<Vec<_>>().join("; ");
+    Ok(Transaction::new(label, all.into_iter().flat_map(|one| one.edits).collect()))
 }
 
 /// The root, and the bones of the shown groups with what was done to them, each farther in than what bears it.

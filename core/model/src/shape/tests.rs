@@ -12,7 +12,7 @@ fn grouped() -> Document {
 }
 
 fn bud() -> Bone {
-    Bone { node: 7, name: "group 3 bud-left".to_owned(), groups: vec![2] }
+    Bone { clustering: ID, node: 7, name: "group 3 bud-left".to_owned(), groups: vec![2] }
 }
 
 fn degrees_of(plane: f64, lean: f64, gain: f64) -> Shape {
@@ -28,7 +28,7 @@ fn seen(document: &Document) -> String {
 
 #[test]
 fn steps_say_what_they_did_and_are_taken_back() {
-    let fork = || Bone { node: 2, name: "fork 1,2".to_owned(), groups: vec![0, 1] };
+    let fork = || Bone { clustering: ID, node: 2, name: "fork 1,2".to_owned(), groups: vec![0, 1] };
     let mut document = grouped();
     let mut undo = Vec::new();
     for (step, label, wanted) in [
@@ -79,8 +79,16 @@ fn what_would_change_nothing_is_refused() {
         let done = transaction(&shaped, &step).unwrap();
         apply(&mut shaped, &done).unwrap();
     }
+    // Another clustering has a node 7 as well, which is another bone.
+    let mut regrouped = shaped.clone();
+    apply(&mut regrouped, &Transaction::show_clustering(ClusteringId(5), 3)).unwrap();
     for (document, step, wanted) in [
         (&bare, Step::Bone(bud(), shape), "no clustering is shown: bones are those of its groups"),
+        (
+            &regrouped,
+            Step::Bone(bud(), shape),
+            "group 3 bud-left is a bone of other groups than those shown: choose a bone of these",
+        ),
         (&bare, Step::Root(None), "root: as it grows already"),
         (&bare, Step::Release, "nothing of the skeleton was placed or shaped by hand: it is as it grows"),
         (&shaped, Step::Root(Some([1.0, 2.0])), "root placed at 1.0, 2.0 already"),

@@ -92,7 +92,7 @@ pub(super) fn gather(project: &Project, groups: Option<u32>) -> Result<Gathered,
         return Err(StructureError::NothingSeen.into());
     }
     let (unbroken, times) = (unbroken(within), FrameTimes::new(times).map_err(StructureError::from)?);
-    let bones = named(&groups, |node| document.group_name(shown.id, node));
+    let bones = named(shown.id, &groups, |node| document.group_name(shown.id, node));
     Ok(Gathered { tracks, frames, times, unbroken, paths, groups, clustering: shown.id, bones, notes })
 }
 

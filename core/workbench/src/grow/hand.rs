@@ -5,6 +5,7 @@ mod tests;
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use honami_model::brief::counted;
 use honami_model::document::{ClusteringId, Document};
 use honami_model::provenance::Value;
 use honami_model::shape::{Bone, Shape};
@@ -134,7 +135,7 @@ pub(super) fn lay(
     told.extend(root.map(|[x, y]| format!("root placed by hand at {x:.1}, {y:.1}")));
     if !shaped.is_empty() {
         let names: Vec<&str> = shaped.iter().map(|(bone, _)| &*bone.name).collect();
-        told.push(format!("{} shaped by hand: {}", counted(names.len()), names.join("; ")));
+        told.push(format!("{} shaped by hand: {}", counted(names.len(), "bone"), names.join("; ")));
     }
     let mut notes = Vec::new();
     notes.extend((!told.is_empty()).then(|| told.join("; ")));
@@ -156,14 +157,10 @@ fn without(shaped: impl Iterator<Item = u32>, own: &[&Bone], named: &[Bone]) -> 
         ));
     }
     if missing.len() > names.len() {
-        let n = counted(missing.len() - names.len());
+        let n = counted(missing.len() - names.len(), "bone");
         notes.push(format!("{n} shaped by hand, of groups as they were cut or made otherwise"));
     }
     notes
-}
-
-fn counted(n: usize) -> String {
-    if n == 1 { "1 bone".to_owned() } else { format!("{n} bones") }
 }
 
 /// Which joints bear which groups of what was grown here, as plugins tell it: joints, with rows of groups.
@@ -209,8 +206,12 @@ pub(crate) fn usual(project: &Project) -> Result<Usual, WorkbenchError> {
     Ok(Usual { skeleton, bones, n_groups, notes: gathered.notes })
 }
 
-/// The bones that the groups of a tree are known by, a group each.
-pub(super) fn named<'a>(groups: &[Group], name_of: impl Fn(u32) -> Option<&'a str>) -> Vec<Bone> {
+/// The bones that the groups of a clustering's tree are known by, a group each.
+pub(super) fn named<'a>(
+    clustering: ClusteringId,
+    groups: &[Group],
+    name_of: impl Fn(u32) -> Option<&'a str>,
+) -> Vec<Bone> {
     let mut below: Vec<Vec<u32>> = vec![Vec::new(); groups.len()];
     for (row, group) in groups.iter().enumerate().rev() {
         if group.children.is_empty() {
@@ -230,7 +231,7 @@ pub(super) fn named<'a>(groups: &[Group], name_of: impl Fn(u32) -> Option<&'a st
         if let Some(called) = name_of(group.node) {
             name += &format!(" {called}");
         }
-        Bone { node: group.node, name, groups }
+        Bone { clustering, node: group.node, name, groups }
     };
     groups.iter().zip(below).map(bone).collect()
 }

@@ -332,7 +332,9 @@ fn leave(state: &mut State) -> Vec<Effect> {
     let open = match &state.mode {
         Mode::Move(moving) if moving.has_moved() => "a move is not kept: Enter keeps",
         Mode::Sketch(sketching) if !sketching.strokes.is_empty() => "a sketch is not kept: Enter keeps",
-        Mode::Shape(_) => "a bone's shape is not kept: Enter keeps",
+        Mode::Shape(shaping) if shaping.shape != state.skeleton.hand.shape(shaping.bone.node) => {
+            "a bone's shape is not kept: Enter keeps"
+        }
         Mode::Form(_) => "a form has not been run: Enter runs",
         _ => return vec![Effect::Leave],
     };

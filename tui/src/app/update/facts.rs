@@ -185,7 +185,9 @@ pub(super) fn happened(state: &mut State, text: String, is_error: bool) {
 
 fn on_groups(state: &mut State, groups: Option<Groups>) {
     if state.groups != groups {
-        state.skeleton.outdate();
+        let of = |groups: &Option<Groups>| groups.as_ref().map(|groups| groups.clustering);
+        let is_regrouped = of(&state.groups) != of(&groups);
+        skeleton::on_groups(state, is_regrouped);
     }
     if groups.is_none() {
         state.skeleton.wither();

@@ -33,7 +33,7 @@ fn groups_by_hand() {
 fn what_is_held_stays_when_the_cut_moves() {
     let mut state = start("");
     let groups = fixture::groups(3);
-    let tree = (groups.tracks.clone(), groups.dendrogram.clone());
+    let tree = (groups.clustering, groups.tracks.clone(), groups.dendrogram.clone());
     let mut groups = crate::app::groups::Groups::new(groups.what, tree, (2, &[vec![0, 2]]), Vec::new());
     groups.names[0] = Some("left".to_owned());
     state.groups = Some(groups);

@@ -9,6 +9,7 @@ use super::{Action, Context, Effect, Mode, Msg, State, actions, offers, on_text,
 use crate::app::action::TABLE;
 use crate::app::command_log::{Here, Line, Touch, What};
 use crate::app::layout::Lens;
+use crate::app::skeleton::Skeletal;
 use crate::app::state::Notice;
 use crate::term::input::{Mouse, MouseKind};
 
@@ -93,6 +94,7 @@ fn push_line(state: &mut State, what: What, more: impl FnOnce(Here) -> Here) {
         chosen: None,
         judged: None,
         sketched: None,
+        growing: Skeletal::is_growing(state),
     };
     state.log.push(Line { t_s: state.now.as_secs_f64(), what, here: Some(more(here)) });
 }

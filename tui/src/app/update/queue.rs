@@ -71,11 +71,15 @@ pub(super) fn open_rank(state: &mut State, rank: Rank) {
 }
 
 /// What an action means: to accept on a doubtful track whose item is not open is to open that, but for the lines of the
-/// prints, to which it goes; among bones to shape the chosen one. Up and down in the queue go to its items.
+/// prints, to which it goes; among bones, where none is open, to shape the chosen one. Up and down in the queue go to its items.
 pub(super) fn meant(state: &State, action: Action) -> Action {
     let panel = state.panel.filter(|_| matches!(state.mode, Mode::Review));
     match (panel, action) {
-        (Some(Panel::Skeleton), Action::Accept) => return Action::ShapeBone,
+        (Some(Panel::Skeleton), Action::Accept)
+            if state.opened().is_none() && state.skeleton.pose.is_some() =>
+        {
+            return Action::ShapeBone;
+        }
         // Rows of the queue are its items; the current one is opened before one goes on.
         (Some(Panel::Queue), _) if state.versus.is_some() || state.review.queue.is_empty() => {}
         (Some(Panel::Queue), Action::Down | Action::Up)

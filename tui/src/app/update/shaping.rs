@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use honami_workbench::shape::{Shape, Step};
+use honami_workbench::shape::{MOST_GAIN, Shape, Step};
 
 use super::actions::count;
 use super::{Effect, Mode, State, UNDO, complain, edit, say, skeleton};
@@ -12,19 +12,19 @@ use crate::app::skeleton::{ORBIT, Shaping, Skeletal};
 const TURN_DEG: f64 = 5.0;
 /// Steps of the gain from 0 to 1.
 const GAINS: f64 = 10.0;
-/// The largest gain.
-const MOST_GAIN: f64 = 10.0;
 
 /// Has the chosen bone shaped.
 pub(super) fn begin(state: &mut State) -> Vec<Effect> {
     if !edit::is_writable(state) {
         return Vec::new();
     }
+    // What is seen meanwhile is of what was before, whose bones are others perhaps.
+    if Skeletal::is_growing(state) {
+        say(state, "the skeleton is still growing");
+        return Vec::new();
+    }
     let Some(bones) = state.skeleton.bones.clone() else {
-        match state.skeleton.awaited {
-            Some(_) => say(state, "the skeleton is still growing"),
-            None => complain(state, "no skeleton is shown: v k grows it, and P s lists its bones"),
-        }
+        complain(state, "no skeleton is shown: v k grows it, and P s lists its bones");
         return Vec::new();
     };
     let bone = Skeletal::current(state).map(|row| bones.known(row).cloned());
@@ -72,7 +72,7 @@ fn change(state: &mut State, change: impl Fn(Shape) -> Shape) {
     if let Mode::Shape(shaping) = &mut state.mode {
         shaping.shape = change(shaping.shape);
     }
-    skeleton::pose(state);
+    skeleton::preview(state);
 }
 
 /// Keeps the bone as it is seen.

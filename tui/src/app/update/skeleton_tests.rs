@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::tests::{check, line, start};
+use honami_model::document::ClusteringId;
 use honami_workbench::shape::{Shape, Step};
 
 use super::{Effect, Fact, Mode, Msg, State, update};
@@ -112,8 +113,16 @@ fn a_root_is_placed_from_where_it_is() {
     assert!(state.skeleton.bones.is_some(), "it is shown while its root is placed");
     press(&mut state, "Esc G p l");
     assert!(line(&state, &[]).starts_with("root 161 210"), "{}", line(&state, &[]));
-    // The project has it elsewhere: it grows anew, from there.
+    // It is kept where it is moved to, and nowhere else.
     press(&mut state, "Esc");
+    let between = Hand { root: Some([12.3, -3.75]), ..Hand::default() };
+    drop(update(&mut state, Msg::Fact(Fact::Hand(between))));
+    press(&mut state, "G p");
+    assert_eq!(line(&state, &[]), "root 12.3 -3.75 | frame 0 track 1");
+    let asked = press(&mut state, "Enter");
+    assert_eq!(line(&state, &asked), "review | frame 0 track 1 | said the root stays where it is");
+    state.notice = None;
+    // The project has it elsewhere: it grows anew, from there.
     let hand = Hand { root: Some([12.0, 34.0]), ..Hand::default() };
     drop(update(&mut state, Msg::Fact(Fact::Hand(hand.clone()))));
     assert!(Skeletal::request(&mut state).is_some());
@@ -177,7 +186,7 @@ fn bones_are_shaped_by_keys() {
     for (keys, expect) in [
         // The bone of the selected track's group, or the one that is chosen among the bones.
         ("G b", "shape group 1 bud "),
-        ("j j G b", "shape group 2 "),
+        ("j j G b", "shape group 2  | frame 0 track 7"),
         ("P s Enter", "shape group 1 bud "),
         ("P s k Enter", "shape fork 1,2 "),
         ("P s j Enter", "shape group 2 "),
@@ -188,20 +197,38 @@ fn bones_are_shaped_by_keys() {
         ("G b 3 J 2 + -", "shape group 1 bud lean 1.5°, gain 1.1"),
         // There and back is nowhere; a plane turned on comes round, and a gain ends.
         ("G b l j + h k -", "shape group 1 bud "),
+        ("G b l j + h k - Enter", "review | frame 0 track 1 | said group 1 bud stays as it was"),
         ("G b 3 6 l", "shape group 1 bud plane 180°"),
         ("G b 3 7 l", "shape group 1 bud plane -175°"),
         ("G b 2 0 -", "shape group 1 bud gain 0"),
         ("G b 9 9 9 +", "shape group 1 bud gain 10"),
         ("G b 5 . space", "shape group 1 bud  | frame 5 track 1 | play 1"),
         ("G b l Esc", "review"),
-        ("G b l Q", "shape group 1 bud plane 5° | frame 0 track 1 | error a bone's shape is not kept"),
+        (
+            "G b l Q",
+            "shape group 1 bud plane 5° | frame 0 track 1 | error a bone's shape is not kept: Enter keeps, Esc drops, Q again leaves",
+        ),
+        ("G b l h Q", "shape group 1 bud  | frame 0 track 1 | Leave"),
+        // What is open is accepted before bones are shaped, and without a skeleton Enter does what it does elsewhere.
+        (
+            "P s n Enter",
+            "review | frame 70 track 7 | said track 7: frames 40-99, FB LOST (0.85) | track 1 70-79 lost with 1 keys",
+        ),
+        (
+            "P s v k Enter",
+            "review | frame 70 track 1 | said track 1: frames 70-79, LOST (0.85), item 1 of 2 of the track",
+        ),
         ("G b Enter", "review | frame 0 track 1 | said group 1 bud stays as it was"),
-        ("v k G b", "review | frame 0 track 1 | error no skeleton is shown: v k grows it"),
+        (
+            "v k G b",
+            "review | frame 0 track 1 | error no skeleton is shown: v k grows it, and P s lists its bones",
+        ),
     ] {
         let (state, effects) = shaped(keys);
         let line = line(&state, &effects);
-        let is_so = line.starts_with(expect) && (effects.is_empty() || keys.ends_with('Q'));
-        assert!(is_so, "by `{keys}`: {line}");
+        let expect =
+            if expect.contains(" | ") { expect.to_owned() } else { format!("{expect} | frame 0 track 1") };
+        assert_eq!(line, expect, "by `{keys}`");
     }
     check(
         "",
@@ -214,11 +241,19 @@ fn bones_are_shaped_by_keys() {
 /// What is seen while a bone is shaped is what is kept, and until then nothing is.
 #[test]
 fn a_shape_is_its_preview() {
-    let (mut state, _) = shaped("G b 6 l 2 j +");
+    let (mut state, _) = shaped("G b");
+    let before = state.skeleton.pose.clone().unwrap();
+    press(&mut state, "6 l 2 j +");
+    assert!(
+        Arc::ptr_eq(&before, state.skeleton.pose.as_ref().unwrap()),
+        "what is kept is not worked out again"
+    );
+    assert_eq!(before.moves_deg.len(), 3, "the root does not move");
     let Mode::Shape(shaping) = &state.mode else { panic!("not shaping") };
     let (seen, kept) = (shaping.pose.clone(), state.skeleton.pose.clone().unwrap());
     let bits = |pose: &Pose, row: usize| pose.at(7).unwrap()[row].map(f32::to_bits);
     assert_ne!(bits(&seen, 2), bits(&kept, 2));
+    assert_eq!(seen.middle.map(f32::to_bits), kept.middle.map(f32::to_bits), "both are gone round together");
     assert_eq!(bits(&seen, 3), bits(&kept, 3), "of what it does not bear nothing moves");
     let asked = press(&mut state, "Enter");
     let [Effect::Shape(Step::Bone(bone, shape), "u undoes")] = &asked[..] else { panic!("{asked:?}") };
@@ -275,4 +310,62 @@ fn a_skeleton_is_gone_round() {
         let off = [at[0] - seen[0], at[1] - seen[1], far - behind];
         assert!(off.iter().all(|v| v.abs() < 1e-4), "{azimuth}: {at:?} {far}");
     }
+}
+
+/// The groups as they are told, of a clustering.
+fn regroup(state: &mut State, clustering: u32, k: u32) {
+    let mut groups = fixture::groups(k);
+    groups.clustering = ClusteringId(clustering);
+    drop(update(state, Msg::Fact(Fact::Groups(Some(Box::new(groups))))));
+}
+
+#[test]
+fn bones_of_other_groups_are_neither_shaped_nor_chosen() {
+    let (mut state, _) = shaped("P s k");
+    regroup(&mut state, 1, 3);
+    assert!(state.skeleton.is_past && Skeletal::current(&state).is_none());
+    for _ in ["before it is asked for", "and after"] {
+        press(&mut state, "G b");
+        assert_eq!(line(&state, &[]), "review | frame 0 track 1 | said the skeleton is still growing");
+        // What grows by itself is nothing that Esc stops.
+        press(&mut state, "Esc");
+        assert!(state.skeleton.is_on);
+        Skeletal::request(&mut state);
+    }
+    let revision = state.skeleton.revision;
+    grown(&mut state, revision, Ok(()));
+    assert_eq!((state.skeleton.is_past, state.skeleton.chosen), (false, Some(4)), "of the same dendrogram");
+    // Of another one the node is another; a list may be open over it.
+    let said = "the tracks are grouped otherwise now: the bone's shape is not kept";
+    for (keys, clustering, close, expect) in [
+        ("G b l", 2, "", format!("review | frame 0 track 1 | error {said}")),
+        ("G b l ?", 3, "Esc", "review | frame 0 track 1".to_owned()),
+    ] {
+        state.notice = None;
+        press(&mut state, keys);
+        regroup(&mut state, clustering, 3);
+        assert!(state.notice.as_ref().is_some_and(|notice| notice.is_error && notice.text == said));
+        press(&mut state, close);
+        assert_eq!((line(&state, &[]), state.skeleton.chosen), (expect, None), "after `{keys}`");
+        fixture::skeleton::grow(&mut state);
+    }
+}
+
+#[test]
+fn the_log_says_what_was_done_before_it_had_grown() {
+    let mut state = start("");
+    press(&mut state, "v k G b");
+    fixture::skeleton::grow(&mut state);
+    press(&mut state, "}");
+    let done = state.log.lines().iter().filter_map(|line| line.here.as_ref());
+    assert_eq!(done.map(|here| here.growing).collect::<Vec<_>>(), [false, true, false]);
+}
+
+#[test]
+fn hand_work_without_a_bone_is_told() {
+    let shape = Shape { plane_rad: 0.5, ..Shape::default() };
+    let hand = Hand { root: None, shapes: [(2, shape), (0, shape), (1, shape)].into() };
+    let words = Bones::of(fixture::skeleton::growth()).words(&hand);
+    let wanted = "skeleton: 3 bones of 2 groups, 1 bone by hand, diener, 0.2 s · 2 bones shaped by hand, but not there in these groups";
+    assert_eq!(words, wanted);
 }

@@ -535,8 +535,8 @@ fn accept_word(state: &State) -> Option<&'static str> {
     match state.panel {
         // Frames of lines are seen beside them.
         Some(Panel::Prints) => None,
-        Some(Panel::Skeleton) => state.skeleton.pose.as_ref().map(|_| "shape"),
         _ if state.opened().is_some() => Some("accept"),
+        Some(Panel::Skeleton) if state.skeleton.pose.is_some() => Some("shape"),
         Some(Panel::Queue) if state.versus.is_none() && !state.review.queue.is_empty() => Some("open"),
         _ if state.current_item().is_some() => Some("open"),
         _ => is_confirmed()?.then_some("key-frame"),

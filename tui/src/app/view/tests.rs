@@ -321,7 +321,7 @@ fn screens_of_groups() {
     });
     check("held_80x24", small, "", |state| {
         let groups = fixture::groups(3);
-        let tree = (groups.tracks.clone(), groups.dendrogram.clone());
+        let tree = (groups.clustering, groups.tracks.clone(), groups.dendrogram.clone());
         let mut groups = Groups::new(groups.what, tree, (2, &[vec![0, 2]]), Vec::new());
         groups.names[0] = Some("left limb".to_owned());
         state.groups = Some(groups);
@@ -487,6 +487,13 @@ fn bones_lie_where_the_joints_are() {
         assert_eq!(after[(y * lens.size().0 + x) as usize], style::group(Some(group)), "bone {row}");
     }
     assert_ne!(before, after);
+    // Bones of groups as they were have none of their colours.
+    let [x, y] = [0, 2].map(|axis| f32::midpoint(places[1][axis], places[3][axis]));
+    let (x, y) = lens.pixel_of([x, -y]).unwrap();
+    let mut past = state.clone();
+    past.skeleton.is_past = true;
+    let [r, g, b] = plain(&past)[(y * lens.size().0 + x) as usize];
+    assert!(r == g && g == b, "{r} {g} {b}");
     state.frame = 90;
     assert_eq!(
         plain(&state),

@@ -115,7 +115,7 @@ pub(in crate::cli) struct Shape {
     /// Turn the plane that the bone moves in, so that it points away from the camera (-: towards it): -180 to 180 degrees.
     #[arg(long, value_name = "DEG", requires = "group", allow_negative_numbers = true)]
     pub(in crate::cli) plane: Option<f64>,
-    /// Have the bone lean otherwise at rest, clockwise in the picture: -180 to 180 degrees.
+    /// Have the bone lean otherwise at rest, clockwise as the bone that bears it sees the picture: -180 to 180 degrees.
     #[arg(long, value_name = "DEG", requires = "group", allow_negative_numbers = true)]
     pub(in crate::cli) lean: Option<f64>,
     /// Have the bone swing so many times as far beside what bears it: 0 (stiff) to 10.

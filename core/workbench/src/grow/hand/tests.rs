@@ -46,7 +46,7 @@ fn deep() -> (Grown, Vec<Group>) {
 }
 
 fn names(groups: &[Group]) -> Vec<Bone> {
-    named(groups, |node| (node == 5).then_some("bud"))
+    named(ID, groups, |node| (node == 5).then_some("bud"))
 }
 
 #[test]

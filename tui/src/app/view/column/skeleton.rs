@@ -1,4 +1,4 @@
-//! The bones of the skeleton: what each is of, how long it is, how far it swings, and how hands have shaped it.
+//! The bones of the skeleton: what each is of, how long it is, how far it moves, and how hands have shaped it.
 
 use ratatui::text::{Line, Span};
 
@@ -17,11 +17,12 @@ pub(super) struct BoneList<'a> {
 
 impl<'a> BoneList<'a> {
     pub(super) fn of(state: &'a State) -> Self {
-        let bones = state.skeleton.bones.as_deref().filter(|_| state.skeleton.pose.is_some());
+        let bones = state.skeleton.bones.as_deref();
+        let bones = bones.filter(|_| state.skeleton.pose.is_some() && !state.skeleton.is_past);
         Self { state, rows: bones.map_or(&[], |bones| &bones.own) }
     }
 
-    /// What is known of a bone: its name, its length and how far it swings, pixels and degrees, and its shape.
+    /// What is known of a bone: its name, its length and how far it moves, pixels and degrees, and its shape.
     fn known(&self, i: usize) -> Option<(String, [f64; 2], String)> {
         let (skeleton, row) = (&self.state.skeleton, *self.rows.get(i)?);
         let (bones, pose) = (skeleton.bones.as_deref()?, skeleton.pose.as_deref()?);
@@ -35,7 +36,7 @@ impl<'a> BoneList<'a> {
             (_, None) => (String::new(), pose),
         };
         let length = bones.growth.skeleton.joints()[row].length;
-        Some((name, [length, pose.swing_deg[row]], shape))
+        Some((name, [length, *pose.moves_deg.get(i)?], shape))
     }
 }
 
@@ -48,20 +49,20 @@ impl List for BoneList<'_> {
     }
 
     fn text(&self) -> Option<String> {
-        let (name, [length, swing_deg], shape) = self.known(self.current()?)?;
+        let (name, [length, moves_deg], shape) = self.known(self.current()?)?;
         let by_hand = if shape.is_empty() { shape } else { format!(", by hand {shape}") };
-        Some(format!("{name}: {length:.0} px, swing {swing_deg:.1}°{by_hand}"))
+        Some(format!("{name}: {length:.0} px, moves {moves_deg:.1}°{by_hand}"))
     }
 
     fn heading(&self) -> String {
-        format!("  {:NAME$}    px swing", "bone")
+        format!("  {:NAME$}    px moves", "bone")
     }
 
     fn nothing(&self) -> &'static str {
-        match self.state.skeleton.awaited {
-            Some(_) => "growing …",
-            None if self.state.groups.is_none() => "no groups to grow from: c groups",
-            None => "no skeleton is shown: v k grows it",
+        match &self.state.groups {
+            _ if Skeletal::is_growing(self.state) => "growing …",
+            None => "no groups to grow from: c groups",
+            Some(_) => "no skeleton is shown: v k grows it",
         }
     }
 
@@ -79,7 +80,7 @@ impl List for BoneList<'_> {
     }
 
     fn row(&self, i: usize) -> Line<'static> {
-        let Some((name, [length, swing_deg], shape)) = self.known(i) else { return Line::default() };
+        let Some((name, [length, moves_deg], shape)) = self.known(i) else { return Line::default() };
         let joints = self.state.skeleton.bones.as_deref().map(|bones| bones.growth.skeleton.joints());
         let group = joints.and_then(|joints| joints[self.rows[i]].groups.first()).copied();
         let (mark, style) = match group {
@@ -91,7 +92,7 @@ impl List for BoneList<'_> {
         let shape = if is_brief { "by hand".to_owned() } else { shape };
         Line::from(vec![
             Span::styled(mark, style),
-            Span::raw(format!(" {} {length:>5.0} {swing_deg:>4.1}° ", fitted(&name, NAME))),
+            Span::raw(format!(" {} {length:>5.0} {moves_deg:>4.1}° ", fitted(&name, NAME))),
             Span::styled(shape, style::KEY),
         ])
     }

@@ -25,7 +25,8 @@ impl Canvas<'_> {
         self.note([0.0; 2], NOTHING);
     }
 
-    /// The bones of a frame, where there are some: as they were in grey, where one is being shaped.
+    /// The bones of a frame, where there are some: in grey as they were, where one is being shaped, and where the groups
+    /// are others since.
     pub(super) fn skeleton(&mut self, state: &State, frame: u32) {
         let skeleton = &state.skeleton;
         let (Some(bones), Some(pose)) = (skeleton.bones.as_deref(), skeleton.pose.as_deref()) else { return };
@@ -33,7 +34,8 @@ impl Canvas<'_> {
             self.bones(state, (bones, pose), frame, Some(UNSEEN));
             self.bones(state, (bones, &shaping.pose), frame, None);
         } else {
-            self.bones(state, (bones, pose), frame, None);
+            // The colours are of the groups as they are now.
+            self.bones(state, (bones, pose), frame, skeleton.is_past.then_some(UNSEEN));
         }
     }
 

@@ -1,5 +1,6 @@
 //! Dendrograms in dots: small ones as pictures, and those that have nothing to draw.
 
+use honami_model::document::ClusteringId;
 use honami_model::hierarchy::{Dendrogram, Merge};
 use honami_model::track::TrackId;
 
@@ -15,7 +16,12 @@ fn groups(rows: &[(u32, u32, f64)], k: u32) -> Groups {
         Merge { a, b, height, size }
     };
     let dendrogram = Dendrogram::new(n, rows.iter().map(merge).collect()).unwrap();
-    Groups::new(String::new(), ((0..n).map(TrackId).collect(), dendrogram), (k, &[]), Vec::new())
+    Groups::new(
+        String::new(),
+        (ClusteringId(1), (0..n).map(TrackId).collect(), dendrogram),
+        (k, &[]),
+        Vec::new(),
+    )
 }
 
 fn text(groups: &Groups, size: (u16, u16)) -> Vec<String> {
