@@ -26,7 +26,7 @@ mod headings;
 mod pairs;
 mod steps;
 
-use crate::{MotionError, Positions};
+use crate::{MotionError, Positions, pool};
 use steps::{Movement, Place, Step, Steps};
 
 /// Weights of the two distances, and how unusual a frame may be.
@@ -82,15 +82,22 @@ pub fn composite(
     keep_going: &mut dyn FnMut(f64) -> bool,
 ) -> Result<Composite, MotionError> {
     check(positions, options)?;
+    pool::within(options.n_threads, keep_going, |keep_going| of_all(positions, options, keep_going))
+}
+
+fn of_all(
+    positions: &Positions,
+    options: &Options,
+    keep_going: &mut dyn FnMut(f64) -> bool,
+) -> Result<Composite, MotionError> {
     let n = positions.n_tracks();
     let mut condensed = zeros(n)?;
     let steps = Steps::of(positions);
-    let pool = pairs::Pool::new(n, options.n_threads);
 
     let all: Vec<usize> = (0..steps.len()).collect();
     let (places, movements) = (steps.blocks(Place, &all), headings::moments(&steps));
     let set = |total: &mut f64, _: usize, _: usize, sum: f64| *total = sum;
-    let sums = pool.add::<Place>(&places, &mut condensed, set, &mut |done| keep_going(0.6 * done))?;
+    let sums = pairs::add::<Place>(n, &places, &mut condensed, set, &mut |done| keep_going(0.6 * done))?;
     let place = Spread::of(&steps.place_moments(&sums)).ok_or(MotionError::NeverTogether)?;
     // Without a single pair that moves together, movement tells nothing apart.
     let movement = Spread::of(&movements).unwrap_or_default();
@@ -108,7 +115,7 @@ pub fn composite(
 
     if !out.is_empty() {
         let left_out = steps.blocks(Place, &out);
-        pool.add::<Place>(&left_out, &mut condensed, |total, _, _, sum| *total -= sum, &mut |_| true)?;
+        pairs::add::<Place>(n, &left_out, &mut condensed, |total, _, _, sum| *total -= sum, &mut |_| true)?;
     }
     let (seen, moving) = (steps.counts(&kept, Step::is_seen), steps.counts(&kept, Step::is_moving));
     let finish = |total: &mut f64, i: usize, j: usize, angles: f64| {
@@ -122,7 +129,7 @@ pub fn composite(
         };
     };
     let headings = steps.blocks(Movement, &kept);
-    pool.add::<Movement>(&headings, &mut condensed, finish, &mut |done| keep_going(0.6 + 0.4 * done))?;
+    pairs::add::<Movement>(n, &headings, &mut condensed, finish, &mut |done| keep_going(0.6 + 0.4 * done))?;
     let n_apart = part_the_apart(&mut condensed);
     Ok(Composite {
         n_tracks: n,

@@ -208,7 +208,7 @@ impl Tracks {
         let features = match options.likeness {
             Likeness::Loadings => loadings,
             Likeness::Turned => features::turned(&bod, &topoi),
-            Likeness::Steps => features::steps(&bod, &topoi),
+            Likeness::Steps => features::steps(table, &bod, &topoi),
         };
         // Tracks are made of 4 components at least; those below the noise have no weight in loadings.
         let n_used = match options.likeness {

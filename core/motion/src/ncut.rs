@@ -31,8 +31,9 @@ use affinity::Tracks;
 pub(crate) use divide::divide;
 pub(crate) use graph::Graph;
 
-/// An eigenvector with a larger residual was not solved in time.
-pub const RESIDUAL: f64 = 1e-6;
+/// A vector z of length 1 is an eigenvector when |A z - theta z| is no more than this, for theta in -1..1: theta is then right
+/// to its square over the distance to the next one. One with a larger residual was not solved in time.
+pub const RESIDUAL: f64 = 1e-7;
 
 /// Which group a hierarchy opens next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,7 +93,7 @@ pub struct Ncut {
     pub n_groups: usize,
     /// Components that denoised tracks are made of.
     pub n_components: Option<usize>,
-    /// The largest |A z - theta z| of an eigenvector z of length 1; above 1e-7 it was not solved in time, and its cut is
+    /// The largest |A z - theta z| of an eigenvector z of length 1; above [`RESIDUAL`] it was not solved in time, and its cut is
     /// one that may not be the best.
     pub residual: f64,
     /// Positions that were not seen, and are filled.

@@ -1,7 +1,5 @@
 //! Positions of several tracks over the same frames, with gaps.
 
-use honami_model::track::Span;
-
 /// Where n tracks are in T frames; a position is there only where the feature was seen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Positions {
@@ -16,21 +14,6 @@ impl Positions {
     #[must_use]
     pub fn new(n_tracks: usize, n_frames: usize) -> Self {
         Self { n_tracks, n_frames, at: vec![None; n_tracks * n_frames] }
-    }
-
-    /// The seen samples (tracked or newborn) of spans, frame 0 to the last one that any covers.
-    #[must_use]
-    pub fn of_spans(spans: &[&Span]) -> Self {
-        let n_frames = spans.iter().map(|span| span.frames().end as usize).max().unwrap_or(0);
-        let mut positions = Self::new(spans.len(), n_frames);
-        for (track, span) in spans.iter().enumerate() {
-            for (sample, frame) in span.samples.iter().zip(span.first_frame as usize..) {
-                if sample.status.is_seen() {
-                    positions.set(track, frame, [sample.x, sample.y]);
-                }
-            }
-        }
-        positions
     }
 
     /// Tracks of their first frame and their samples from there on, one a frame, `None` where it was not seen; also the

@@ -1,10 +1,13 @@
 //! Tracks as a table that can be decomposed: the same frames for all, each track less its mean, gaps filled.
 //!
-//! Frames in which fewer than two tracks are seen are left out. What a track lacks of the others is filled with what
+//! Frames in which fewer than two tracks are seen are left out; what goes from frame to frame goes within runs of frames that
+//! follow one another, never over what is left out. What a track lacks of the others is filled with what
 //! the components tell: gaps start at the track's mean, then they and the mean are made anew from the strongest
 //! components, weaker ones from round to round down to the noise, until the gaps change no more (iterated SVD with a
 //! falling threshold: Troyanskaya et al., Bioinformatics 17, 2001; Mazumder, Hastie and Tibshirani, J. Mach. Learn. Res.
 //! 11, 2010). So a track that starts late goes on as what it moved with; one that is seen once stands still.
+
+use std::ops::Range;
 
 use super::Bod;
 use crate::{MotionError, Positions};
@@ -25,6 +28,8 @@ pub struct Table {
     n_tracks: usize,
     /// Frame of each column among those of the positions, ascending.
     frames: Vec<usize>,
+    /// Its columns, in order, in runs without a seam.
+    runs: Vec<Range<usize>>,
     /// x of every track less its mean, then y: 2 N series of T numbers, pixels.
     series: Vec<f64>,
     /// Mean of every series, pixels.
@@ -75,7 +80,9 @@ impl Table {
         let is_known = |track| frames.iter().any(|&frame| positions.get(track, frame).is_some());
         let is_known = (0..n_tracks).map(is_known).collect();
         let rounding_px = largest * f64::from(f32::EPSILON) / 2.0;
-        let mut table = Self { n_tracks, frames, series, means, is_known, n_filled: gaps.len(), rounding_px };
+        let runs = runs(&frames);
+        let mut table =
+            Self { n_tracks, frames, runs, series, means, is_known, n_filled: gaps.len(), rounding_px };
         table.fill(&gaps, keep_going)?;
         Ok(table)
     }
@@ -145,6 +152,17 @@ impl Table {
         &self.frames
     }
 
+    /// The columns in runs: within each all frames are as far apart as most are.
+    pub(crate) fn runs(&self) -> &[Range<usize>] {
+        &self.runs
+    }
+
+    /// From column to column within runs, what a series goes: one number less than it has, for every run; always one at least.
+    pub(crate) fn steps(&self, series: &[f64]) -> Vec<f64> {
+        let of_run = |run: &Range<usize>| series[run.clone()].windows(2).map(|pair| pair[1] - pair[0]);
+        self.runs.iter().flat_map(of_run).collect()
+    }
+
     /// Number of positions that were not seen in these frames, and are filled.
     #[must_use]
     pub fn n_filled(&self) -> usize {
@@ -185,6 +203,23 @@ impl Table {
         }
         positions
     }
+}
+
+/// Frames in runs that end where the next frame is not as far as most are from the one before them: where the clip is seen
+/// in every tenth frame, these follow one another.
+fn runs(frames: &[usize]) -> Vec<Range<usize>> {
+    let apart: Vec<usize> = frames.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let mut sorted = apart.clone();
+    sorted.sort_unstable();
+    let usual = sorted[sorted.len() / 2];
+    let seams = apart.iter().zip(1..).filter(|(apart, _)| **apart != usual).map(|(_, column)| column);
+    let mut runs = Vec::new();
+    let mut first = 0;
+    for end in seams.chain([frames.len()]) {
+        runs.push(first..end);
+        first = end;
+    }
+    runs
 }
 
 /// Writes values less their mean, 0 where there is none, and returns the mean.

@@ -273,6 +273,57 @@ fn flutter_is_what_is_left_and_whitening_makes_it_flat() {
     assert_eq!(residual(&few, &Bod::new(&few)), None);
 }
 
+/// A wave of whole cycles in each of two runs, which jumps in phase from one to the other, loses the root of the power at its
+/// frequency and nothing else; what is left after the strongest is that of the longer run alone.
+#[test]
+fn over_a_seam_there_are_no_frequencies() {
+    let runs = [0..128, 200..264];
+    let wave = |track: usize, frame: usize| {
+        let jump = if frame >= 200 { 2.0 } else { 0.0 };
+        (std::f64::consts::TAU * frame as f64 / 8.0 + jump + track as f64).sin()
+    };
+    let is_seen = |frame: &usize| runs.iter().any(|run| run.contains(frame));
+    let seen: Vec<usize> = (0..264).filter(is_seen).collect();
+    let at = |track: usize, frame: usize| is_seen(&frame).then(|| [wave(track, frame), 0.0]);
+    let table = table(&tracks(5, 264, at));
+    assert_eq!((table.frames(), table.runs()), (&*seen, &[0..128, 128..192][..]));
+    let power: Vec<f64> = (0..=64).map(|k| if k == 16 { 25.0 } else { 1.0 + f64::from(k % 3) }).collect();
+    let white = whitened(&table, &Residual { power, share: 0.5, own: None });
+    for (track, row) in white.series().chunks(seen.len()).take(5).enumerate() {
+        for (value, &frame) in row.iter().zip(&seen) {
+            // Transforms there and back are as long as the longer run.
+            let wanted = 128.0 * wave(track, frame) / 5.0;
+            assert!((value - wanted).abs() < 1e-3, "track {track} frame {frame}: {value}, wanted {wanted}");
+        }
+    }
+
+    let own = two_swings(LEAVES, CLIP, 0.1, 4);
+    let leaf = |track: usize, frame: usize| {
+        let [x, y] = own(track, frame);
+        let apart = if frame < 150 { 0.0 } else { 30.0 * (track % 7) as f64 };
+        [x + flutter(track, frame, 0) + apart, y + flutter(track, frame, 1)]
+    };
+    let unseen = |frame: usize| (150..170).contains(&frame);
+    let table =
+        self::table(&tracks(LEAVES, CLIP, |track, frame| (!unseen(frame)).then(|| leaf(track, frame))));
+    let bod = Bod::new(&table);
+    let left = residual(&table, &bod).unwrap();
+    let rest: Vec<Vec<f64>> = table
+        .series()
+        .chunks(CLIP - 20)
+        .zip(bod.sum(15, |_| 1.0).chunks(CLIP - 20))
+        .map(|(row, told)| (0..150).map(|k| row[k] - told[k]).collect())
+        .collect();
+    let [all, rest_2] =
+        [table.series().chunks(CLIP - 20).flat_map(|row| &row[..150]).copied().collect(), rest.concat()]
+            .map(|values: Vec<f64>| values.iter().map(|v| v * v).sum::<f64>());
+    assert!((left.share - rest_2 / all).abs() < 1e-9 && left.power.len() == 76, "{}", left.share);
+    // Parseval: power smoothed by Hann's weights has the same sum, but for its ends.
+    let sum: f64 = left.power.iter().sum();
+    let wanted = rest_2 * 150.0 / 2.0 / (2 * LEAVES) as f64;
+    assert!((sum / wanted - 1.0).abs() < 0.05, "{sum} {wanted}");
+}
+
 /// Modes that all leaves share, each at frequencies of its own among those of the flutter, are left as it is and are none.
 #[test]
 fn what_leaves_share_is_no_flutter_nor_is_white_noise() {

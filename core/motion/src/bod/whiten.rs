@@ -6,6 +6,11 @@
 //! What is left may also be modes of the plant, where it has many. Those are shared by tracks: at the frequencies at which
 //! most is left, few directions have it all. Of flutter every track has its own, and all directions have as much as chance
 //! gives them.
+//!
+//! Where frames are missing in which too few tracks are seen, what is left is that of the longest run without a seam, and each
+//! run is taken down for itself: over a seam there are no frequencies.
+
+use std::ops::Range;
 
 use rayon::prelude::*;
 use realfft::RealFftPlanner;
@@ -29,10 +34,11 @@ const MOST_LOUD: usize = 256;
 const MUCH_LEFT: f64 = 0.1;
 const OWN: f64 = 0.72;
 
-/// The spectrum of what is left of tracks without their 15 strongest components.
+/// The spectrum of what is left of tracks without their 15 strongest components, over the longest run of frames that follow one
+/// another, the first of such.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Residual {
-    /// Mean power over all tracks at 0, 1, 2 … cycles in the table's frames, smoothed, px^2; more than 0.
+    /// Mean power over all tracks at 0, 1, 2 … cycles in these frames, smoothed, px^2; more than 0.
     pub power: Vec<f64>,
     /// Share of all motion that is left, 0 to 1.
     pub share: f64,
@@ -52,18 +58,20 @@ impl Residual {
     }
 }
 
-/// What is left without the strongest components; `None` of tables that have no more than twice so many, and of those
-/// in which nothing is left but rounding.
+/// What is left without the strongest components; `None` of tables that have no more than twice so many or no run of more
+/// frames, and of those in which nothing is left but rounding.
 #[must_use]
 pub fn residual(table: &Table, bod: &Bod) -> Option<Residual> {
     let n_frames = table.n_frames();
-    if bod.singular.len() <= 2 * STRONGEST || bod.len() < STRONGEST {
+    let run = longest(table);
+    if bod.singular.len() <= 2 * STRONGEST || run.len() <= 2 * STRONGEST || bod.len() < STRONGEST {
         return None;
     }
     let strongest = bod.sum(STRONGEST, |_| 1.0);
-    let plan = RealFftPlanner::<f64>::new().plan_fft_forward(n_frames);
+    let plan = RealFftPlanner::<f64>::new().plan_fft_forward(run.len());
     let waves_of = |(row, told): (&[f64], &[f64])| {
-        let mut left: Vec<f64> = row.iter().zip(told).map(|(v, told)| v - told).collect();
+        let parts = row[run.clone()].iter().zip(&told[run.clone()]);
+        let mut left: Vec<f64> = parts.map(|(v, told)| v - told).collect();
         let square = left.iter().map(|v| v * v).sum::<f64>();
         let mut waves = plan.make_output_vec();
         // Only wrong lengths fail, and these are the transform's own.
@@ -73,13 +81,14 @@ pub fn residual(table: &Table, bod: &Bod) -> Option<Residual> {
     };
     let rows = table.series().par_chunks(n_frames).zip(strongest.par_chunks(n_frames));
     let (waves, squares): (Vec<Vec<Complex<f64>>>, Vec<f64>) = rows.map(waves_of).unzip();
-    let mut power = vec![0.0; n_frames / 2 + 1];
+    let mut power = vec![0.0; run.len() / 2 + 1];
     for row in &waves {
         power.iter_mut().zip(row).for_each(|(sum, wave)| *sum += wave.norm_sqr() / waves.len() as f64);
     }
     let left: f64 = squares.iter().sum();
-    let all: f64 = table.series().iter().map(|v| v * v).sum();
-    if left <= table.rounding_px().powi(2) * table.series().len() as f64 {
+    let series = || table.series().chunks(n_frames).flat_map(|row| &row[run.clone()]);
+    let all: f64 = series().map(|v| v * v).sum();
+    if left <= table.rounding_px().powi(2) * series().count() as f64 {
         return None;
     }
     let mut power = smoothed(&power);
@@ -122,30 +131,50 @@ pub(super) fn own(waves: &[Vec<Complex<f64>>], power: &[f64], loud: &[usize]) ->
     (squares > 0.0).then(|| evenness * (1.0 + n as f64 / waves.len() as f64))
 }
 
-/// The same tracks with the spectrum of a residual divided out.
+/// The first of the longest runs of frames that follow one another.
+fn longest(table: &Table) -> Range<usize> {
+    table.runs().iter().rev().max_by_key(|run| run.len()).cloned().unwrap_or_default()
+}
+
+/// The same tracks with the spectrum of a residual divided out, of each run of frames for itself.
 #[must_use]
 pub fn whitened(table: &Table, residual: &Residual) -> Table {
-    let n_frames = table.n_frames();
     let mut planner = RealFftPlanner::<f64>::new();
-    let (forward, inverse) = (planner.plan_fft_forward(n_frames), planner.plan_fft_inverse(n_frames));
+    let plans: Vec<_> = table
+        .runs()
+        .iter()
+        .map(|run| (run.clone(), planner.plan_fft_forward(run.len()), planner.plan_fft_inverse(run.len())))
+        .collect();
+    let n_longest = longest(table).len() as f64;
     let mut series = table.series().to_vec();
-    series.par_chunks_mut(n_frames).for_each(|row| {
-        let (mut values, mut waves) = (row.to_vec(), forward.make_output_vec());
-        let mut done = forward.process(&mut values, &mut waves);
-        for (wave, power) in waves.iter_mut().zip(&residual.power) {
-            *wave /= power.sqrt();
+    series.par_chunks_mut(table.n_frames()).for_each(|row| {
+        for (run, forward, inverse) in &plans {
+            let (mut values, mut waves) = (row[run.clone()].to_vec(), forward.make_output_vec());
+            let mut done = forward.process(&mut values, &mut waves);
+            // A transform there and back is as long as its run; and so are the steps of its frequencies.
+            let longer = n_longest / run.len() as f64;
+            for (k, wave) in waves.iter_mut().enumerate() {
+                *wave *= longer / between(&residual.power, longer * k as f64).sqrt();
+            }
+            // These two are real.
+            waves[0].im = 0.0;
+            if run.len().is_multiple_of(2)
+                && let Some(last) = waves.last_mut()
+            {
+                last.im = 0.0;
+            }
+            done = done.and_then(|()| inverse.process(&mut waves, &mut row[run.clone()]));
+            debug_assert!(done.is_ok(), "{done:?}");
         }
-        // These two are real; the mean is 0.
-        waves[0].im = 0.0;
-        if n_frames.is_multiple_of(2)
-            && let Some(last) = waves.last_mut()
-        {
-            last.im = 0.0;
-        }
-        done = done.and_then(|()| inverse.process(&mut waves, row));
-        debug_assert!(done.is_ok(), "{done:?}");
     });
     table.with(series)
+}
+
+/// A list between two of its numbers; beyond the last, the last.
+fn between(list: &[f64], at: f64) -> f64 {
+    let k = (at as usize).min(list.len() - 1);
+    let next = (k + 1).min(list.len() - 1);
+    list[k] + (at - k as f64).min(1.0) * (list[next] - list[k])
 }
 
 /// Means over neighbours with the weights of Hann; at the ends over those there are.

@@ -18,58 +18,36 @@ const RUN: usize = 64;
 /// Blocks of rows between two calls for progress.
 const BATCH: usize = 16;
 
-/// Threads that go through all pairs of n tracks.
-pub(super) struct Pool {
+/// Sums a distance over the steps for every pair of n tracks, and hands each pair's element and sum to `put`.
+///
+/// Returns the sum over all pairs for every step (zeros where the distance does not ask for it).
+pub(super) fn add<D: Distance>(
     n_tracks: usize,
-    /// `None`: the pool that is there.
-    own: Option<rayon::ThreadPool>,
-}
-
-impl Pool {
-    pub(super) fn new(n_tracks: usize, n_threads: usize) -> Self {
-        // A system without threads to spare still has the pool that is there.
-        let build = || rayon::ThreadPoolBuilder::new().num_threads(n_threads).build().ok();
-        Self { n_tracks, own: if n_threads > 0 { build() } else { None } }
-    }
-
-    /// Sums a distance over the steps for every pair, and hands each pair's element and sum to `put`.
-    ///
-    /// Returns the sum over all pairs for every step (zeros where the distance does not ask for it).
-    pub(super) fn add<D: Distance>(
-        &self,
-        blocks: &[Block],
-        condensed: &mut [f64],
-        put: impl Fn(&mut f64, usize, usize, f64) + Sync,
-        keep_going: &mut dyn FnMut(f64) -> bool,
-    ) -> Result<Vec<f64>, MotionError> {
-        let n_tracks = self.n_tracks;
-        let n_pairs = condensed.len() as f64;
-        let mut rows = rows_by_block(condensed, n_tracks);
-        let mut step_sums = vec![0.0; blocks.first().map_or(0, Vec::len)];
-        let mut n_done = 0;
-        for batch in rows.chunks_mut(BATCH) {
-            let mut work = || -> Vec<Vec<f64>> {
-                let sum = |(block, rows): &mut (usize, &mut [f64])| {
-                    let (first, put, distance) = (*block, &put, PhantomData);
-                    let job = BlockRow::<D, _> { blocks, first, n_tracks, rows, put, distance };
-                    pulp::Arch::new().dispatch(job)
-                };
-                batch.par_iter_mut().map(sum).collect()
-            };
-            let sums = match &self.own {
-                Some(pool) => pool.install(work),
-                None => work(),
-            };
-            for sums in sums {
-                step_sums.iter_mut().zip(sums).for_each(|(total, sum)| *total += sum);
-            }
-            n_done += batch.iter().map(|(_, rows)| rows.len()).sum::<usize>();
-            if !keep_going(n_done as f64 / n_pairs) {
-                return Err(MotionError::Stopped);
-            }
+    blocks: &[Block],
+    condensed: &mut [f64],
+    put: impl Fn(&mut f64, usize, usize, f64) + Sync,
+    keep_going: &mut dyn FnMut(f64) -> bool,
+) -> Result<Vec<f64>, MotionError> {
+    let n_pairs = condensed.len() as f64;
+    let mut rows = rows_by_block(condensed, n_tracks);
+    let mut step_sums = vec![0.0; blocks.first().map_or(0, Vec::len)];
+    let mut n_done = 0;
+    for batch in rows.chunks_mut(BATCH) {
+        let sum = |(block, rows): &mut (usize, &mut [f64])| {
+            let (first, put, distance) = (*block, &put, PhantomData);
+            let job = BlockRow::<D, _> { blocks, first, n_tracks, rows, put, distance };
+            pulp::Arch::new().dispatch(job)
+        };
+        let sums: Vec<Vec<f64>> = batch.par_iter_mut().map(sum).collect();
+        for sums in sums {
+            step_sums.iter_mut().zip(sums).for_each(|(total, sum)| *total += sum);
         }
-        Ok(step_sums)
+        n_done += batch.iter().map(|(_, rows)| rows.len()).sum::<usize>();
+        if !keep_going(n_done as f64 / n_pairs) {
+            return Err(MotionError::Stopped);
+        }
     }
+    Ok(step_sums)
 }
 
 /// Splits the condensed matrix where a new block of 16 rows starts.

@@ -149,7 +149,7 @@ fn the_same_bits_with_and_without_the_processors_vectors() {
     let blocks = steps.blocks(Place, &(0..199).collect::<Vec<_>>());
     let put = |total: &mut f64, _: usize, _: usize, sum: f64| *total = sum;
     let (mut dispatched, mut plain) = (vec![0.0; n * (n - 1) / 2], vec![0.0; n * (n - 1) / 2]);
-    pairs::Pool::new(n, 1).add::<Place>(&blocks, &mut dispatched, put, &mut |_| true).expect("sums");
+    pairs::add::<Place>(n, &blocks, &mut dispatched, put, &mut |_| true).expect("sums");
     for (first, rows) in pairs::rows_by_block(&mut plain, n) {
         pairs::block_row::<Place>(&blocks, first, n, rows, &put);
     }

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::pairs::Features;
-use crate::bod::Bod;
+use crate::bod::{Bod, Table};
 
 /// Strongest components of the likeness that no rotation changes.
 const TURNED_MOST: usize = 15;
@@ -71,9 +71,9 @@ pub(super) fn turned(bod: &Bod, topoi: &Topoi) -> Features {
 }
 
 /// Steps without their mean, as what they are of an orthonormal basis: as many complex numbers as components.
-pub(super) fn steps(bod: &Bod, topoi: &Topoi) -> Features {
+pub(super) fn steps(table: &Table, bod: &Bod, topoi: &Topoi) -> Features {
     let step = |k: usize| -> Vec<f64> {
-        let steps: Vec<f64> = bod.chronos(k).windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let steps = table.steps(bod.chronos(k));
         let mean = steps.iter().sum::<f64>() / steps.len() as f64;
         steps.iter().map(|v| bod.singular[k] * (v - mean)).collect()
     };

@@ -54,15 +54,17 @@ fn joined(feature: &DMatrix<f64>, places: &[[f64; 2]], weight: f64) -> Vec<f64> 
     (0..N).flat_map(|i| (i + 1..N).map(move |j| (i, j))).map(|(i, j)| sum[(i, j)]).collect()
 }
 
-/// Recipes R1, G15 and denoised |rho|, word for word.
+/// Recipes R1, G15 and denoised |rho|, word for word, over the frames in which all are seen.
 fn as_written(positions: &Positions, likeness: Likeness, weight: f64) -> Vec<f64> {
-    let at = |track: usize, frame: usize| positions.get(track, frame).unwrap().map(f64::from);
-    let mut table = DMatrix::from_fn(T, 2 * N, |frame, column| at(column % N, frame)[column / N]);
+    let seen: Vec<usize> = (0..T).filter(|&frame| positions.get(0, frame).is_some()).collect();
+    let n_seen = seen.len();
+    let at = |track: usize, k: usize| positions.get(track, seen[k]).unwrap().map(f64::from);
+    let mut table = DMatrix::from_fn(n_seen, 2 * N, |frame, column| at(column % N, frame)[column / N]);
     let means: Vec<f64> = (0..2 * N).map(|column| table.column(column).mean()).collect();
     (0..2 * N).for_each(|column| table.column_mut(column).add_scalar_mut(-means[column]));
     let svd = table.svd(true, true);
     let (u, s, v) = (svd.u.unwrap(), svd.singular_values, svd.v_t.unwrap());
-    let edge = crate::bod::noise::edge(s.as_slice(), T, 2 * N);
+    let edge = crate::bod::noise::edge(s.as_slice(), n_seen, 2 * N);
     let n_above = s.iter().filter(|s| **s > edge).count();
     let loading = |track: usize, k: usize| [v[(k, track)], v[(k, N + track)]];
     let share = |k: usize| (1.0 - (edge / s[k]).powi(2)).max(0.0).sqrt();
@@ -88,11 +90,13 @@ fn as_written(positions: &Positions, likeness: Likeness, weight: f64) -> Vec<f64
         }
         Likeness::Steps => {
             let n = n_above.max(4);
-            let smooth = DMatrix::from_fn(T, 2 * N, |frame, column| {
+            let smooth = DMatrix::from_fn(n_seen, 2 * N, |frame, column| {
                 (0..n).map(|k| u[(frame, k)] * s[k] * v[(k, column)]).sum::<f64>()
             });
             let steps = |column: usize| {
-                let steps = DVector::from_fn(T - 1, |t, _| smooth[(t + 1, column)] - smooth[(t, column)]);
+                let follow = (1..n_seen).filter(|&k| seen[k] == seen[k - 1] + 1);
+                let steps = follow.map(|k| smooth[(k, column)] - smooth[(k - 1, column)]).collect();
+                let steps = DVector::from_vec(steps);
                 let mean = steps.mean();
                 steps.add_scalar(-mean)
             };
@@ -110,8 +114,15 @@ fn as_written(positions: &Positions, likeness: Likeness, weight: f64) -> Vec<f64
 
 #[test]
 fn the_recipes_are_those_that_are_written_down() {
-    for seed in [1, 2] {
-        let positions = branches(0.2, seed);
+    // The second is unseen in the middle, and everything is elsewhere afterwards.
+    for (seed, unseen) in [(1, 0..0), (2, 40..47)] {
+        let mut positions = branches(0.2, seed);
+        for (track, frame) in (0..N).flat_map(|track| (unseen.start..T).map(move |frame| (track, frame))) {
+            if !unseen.is_empty() {
+                let jump = if unseen.contains(&frame) { f32::NAN } else { 3.0 + track as f32 };
+                positions.set(track, frame, positions.get(track, frame).unwrap().map(|v| v + jump));
+            }
+        }
         for (likeness, weight) in [(Likeness::Loadings, 0.6), (Likeness::Turned, 0.5), (Likeness::Steps, 1.0)]
         {
             let (got, wanted) = (of(&positions, likeness, weight), as_written(&positions, likeness, weight));

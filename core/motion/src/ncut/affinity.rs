@@ -28,7 +28,8 @@ impl Tracks {
     /// Of displacements laid out as the table's own. `position_weight` is w_pos.
     pub(super) fn new(table: &Table, displacements: &[f64], position_weight: f64) -> Self {
         let (n_tracks, n_frames) = (table.n_tracks(), table.n_frames());
-        let n_chunks = (n_frames - 1).div_ceil(LANES);
+        let n_steps = n_frames - table.runs().len();
+        let n_chunks = n_steps.div_ceil(LANES);
         let len = n_chunks * LANES;
         let mut steps = vec![0.0; n_tracks * 2 * len];
         // A difference of two positions is off by the digits of both.
@@ -37,8 +38,9 @@ impl Tracks {
         let of = |(track, out): (usize, &mut [f64])| {
             for (axis, out) in out.chunks_mut(len).enumerate() {
                 let row = &displacements[(axis * n_tracks + track) * n_frames..][..n_frames];
-                let all = (row[n_frames - 1] - row[0]) / (n_frames - 1) as f64;
-                out.iter_mut().zip(row.windows(2)).for_each(|(out, pair)| *out = pair[1] - pair[0] - all);
+                let steps = table.steps(row);
+                let mean = steps.iter().sum::<f64>() / n_steps as f64;
+                out.iter_mut().zip(steps).for_each(|(out, step)| *out = step - mean);
             }
             let square: f64 = out.iter().map(|v| v * v).sum();
             let is_still = square <= least;

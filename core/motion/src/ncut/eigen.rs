@@ -14,12 +14,10 @@
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
+use super::RESIDUAL;
 use super::graph::Graph;
 use crate::MotionError;
 
-/// A vector is good when |A z - theta z| is no more than this, for z of length 1 and theta in -1..1: theta is then right to
-/// its square over the distance to the next one.
-const TOLERANCE: f64 = 1e-7;
 /// Graphs of so many nodes are solved whole.
 const WHOLE: usize = 40;
 /// Vectors that are held, how many of them stay when there are so many, and how many are made in all.
@@ -36,7 +34,7 @@ pub(super) struct Second {
     pub(super) lambda: f64,
     /// y, a number a node.
     pub(super) y: Vec<f64>,
-    /// |A z - theta z| of what was found: more than 1e-7 only where 3,000 vectors did not suffice.
+    /// |A z - theta z| of what was found: more than [`RESIDUAL`] only where 3,000 vectors did not suffice.
     pub(super) residual: f64,
 }
 
@@ -119,7 +117,7 @@ fn lanczos(
         rows.push(make_orthogonal(&mut next, &basis).split_off(1));
         length = dot(&next, &next).sqrt();
         n_made += 1;
-        let is_done = n_made == MOST || basis.len() == n || length < TOLERANCE;
+        let is_done = n_made == MOST || basis.len() == n || length < RESIDUAL;
         let is_full = rows.len() == HELD;
         if !(is_done || is_full || rows.len().is_multiple_of(LOOK)) {
             continue;
@@ -130,7 +128,7 @@ fn lanczos(
         let best = largest(&rows);
         let residual = length * best[0].1[rows.len() - 1].abs();
         let sum = |shares: &[f64]| sum(shares, &basis[1..]);
-        if is_done || residual <= TOLERANCE {
+        if is_done || residual <= RESIDUAL {
             return Ok((best[0].0, sum(&best[0].1), residual));
         }
         if is_full {

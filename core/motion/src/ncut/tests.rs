@@ -270,16 +270,35 @@ fn truth() -> Vec<usize> {
     (0..N).map(|track| track % 3).collect()
 }
 
-/// Z1 and the sums written out: all weights of the graph, and which there are.
+/// Z1 and the sums written out: all weights of the graph, and which there are. Where frames are missing all tracks are
+/// elsewhere afterwards: that is no step.
 #[test]
 fn weights_are_those_of_the_formula_and_the_largest_are_kept() {
-    let positions = branches(0.5, 1);
+    let whole: Vec<usize> = (0..T).collect();
+    let halves: Vec<usize> = (0..30).chain(41..T).collect();
+    let thirds: Vec<usize> = (0..T).step_by(3).filter(|frame| !(30..40).contains(frame)).collect();
+    for (frames, apart) in [(whole, 1), (halves, 1), (thirds, 3)] {
+        assert_weights(&frames, apart);
+    }
+}
+
+/// Of tracks that are seen in these frames, of which those so far apart follow one another.
+fn assert_weights(frames: &[usize], apart: usize) {
+    let mut positions = Positions::new(N, T);
+    let all = branches(0.5, 1);
+    for (track, &frame) in (0..N).flat_map(|track| frames.iter().map(move |frame| (track, frame))) {
+        let jump = if frame > 35 && frames.len() < T { 40.0 + (track % 5) as f32 } else { 0.0 };
+        positions.set(track, frame, all.get(track, frame).unwrap().map(|v| v + jump));
+    }
     let at = |track: usize, frame: usize| positions.get(track, frame).unwrap().map(f64::from);
-    let mean = |track: usize| [0, 1].map(|axis| (0..T).map(|t| at(track, t)[axis]).sum::<f64>() / T as f64);
+    let mean = |track: usize| {
+        [0, 1].map(|axis| frames.iter().map(|&t| at(track, t)[axis]).sum::<f64>() / frames.len() as f64)
+    };
+    let follow = || frames.iter().filter(|&&t| frames.contains(&(t + apart)));
     let steps = |track: usize| -> Vec<[f64; 2]> {
-        let step = |t: usize| [0, 1].map(|axis| at(track, t + 1)[axis] - at(track, t)[axis]);
-        let steps: Vec<[f64; 2]> = (0..T - 1).map(step).collect();
-        let mean = [0, 1].map(|axis| steps.iter().map(|v| v[axis]).sum::<f64>() / (T - 1) as f64);
+        let step = |t: usize| [0, 1].map(|axis| at(track, t + apart)[axis] - at(track, t)[axis]);
+        let steps: Vec<[f64; 2]> = follow().map(|&t| step(t)).collect();
+        let mean = [0, 1].map(|axis| steps.iter().map(|v| v[axis]).sum::<f64>() / steps.len() as f64);
         steps.iter().map(|v| [v[0] - mean[0], v[1] - mean[1]]).collect()
     };
     let rho = |i: usize, j: usize| {
