@@ -308,8 +308,7 @@ fn doctor_manual_and_completions_know_every_command() {
     bench.json("man pages");
     let help = bench.text("--help");
     let bash = bench.text("completions bash");
-    let commands =
-        "new track cluster edit compare spectrum export synth demo plugin log doctor completions man";
+    let commands = "new track cluster edit compare components spectrum export synth demo plugin log doctor completions man";
     for command in commands.split(' ') {
         assert!(help.contains(&format!("\n  {command} ")), "{command} is not in:\n{help}");
         assert!(bash.contains(command), "{command} is not in the completions");

@@ -4,6 +4,7 @@
 mod checked;
 mod cli;
 mod compare;
+mod components;
 mod dense;
 mod edit;
 mod exchange;

@@ -3,8 +3,10 @@
 mod args;
 mod begin;
 mod bench;
+mod canvas;
 mod check;
 mod compare;
+mod components;
 mod edit;
 mod ends;
 mod exchange;
@@ -193,6 +195,7 @@ fn run(command: Command, common: &Common) -> anyhow::Result<Outcome> {
             return edit::edit(&args.project, common).map(|()| Outcome::Exit(ExitCode::SUCCESS));
         }
         Command::Compare(args) => compare::compare(&args, common)?,
+        Command::Components(args) => components::components(&args)?,
         Command::Spectrum(args) => spectrum::spectrum(&args)?,
         Command::Simulate(args) => simulate::simulate(&args, common)?,
         Command::Export(args) => exchange::export(&args)?,

@@ -15,11 +15,13 @@ mod product;
 mod table;
 #[cfg(test)]
 mod tests;
+mod topos;
 mod whiten;
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
 pub use table::Table;
+pub use topos::Axis;
 pub use whiten::{Residual, residual, whitened};
 
 use crate::{MotionError, Positions, pool};

@@ -200,6 +200,13 @@ impl Spectrum {
     pub fn peaks(&self, n_max: usize, over_floor: f64) -> Vec<Peak> {
         peaks::find(self, n_max, over_floor)
     }
+
+    /// How broad a peak is: the distance of the frequencies below and above it at which power is half of that at it, Hz. That of
+    /// a steady sway is 1.44 / duration, as the window has it; a clip says nothing of what is narrower.
+    #[must_use]
+    pub fn width_hz(&self, peak: &Peak) -> f64 {
+        peaks::width_hz(self, peak)
+    }
 }
 
 fn largest_gap(times_s: &[f64], step_s: f64) -> SpectrumError {

@@ -106,6 +106,27 @@ pub enum WorkbenchError {
         /// Its short name.
         plugin: String,
     },
+    /// Components need more than a few tracks and frames.
+    #[error(
+        "components of motion need at least {} tracks in {} frames, to tell motion from noise; came {n_tracks} tracks in {n_frames} \
+         frames",
+        crate::components::FEWEST_TRACKS,
+        crate::components::FEWEST_FRAMES
+    )]
+    TooFewToPart {
+        /// Number of tracks.
+        n_tracks: usize,
+        /// Frames in which two or more of them are seen.
+        n_frames: usize,
+    },
+    /// All tracks stand still.
+    #[error("nothing moves: {n_tracks} tracks stand still in all {n_frames} frames")]
+    Still {
+        /// Number of tracks.
+        n_tracks: usize,
+        /// Number of frames.
+        n_frames: usize,
+    },
     /// A clip of one frame.
     #[error("nothing moves in a clip of one frame")]
     OneFrame,

@@ -5,6 +5,7 @@
 
 pub mod cluster;
 pub mod compare;
+pub mod components;
 pub mod correct;
 pub mod dense;
 pub mod doctor;

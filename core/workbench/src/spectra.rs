@@ -94,6 +94,12 @@ pub fn of_project(project: &Project, wanted: Wanted) -> Result<Spectra, Workbenc
 /// # Errors
 /// What the table says of its lines, [`WorkbenchError::NoTimes`], and for a table too short for a spectrum.
 pub fn of_table(path: &Path, wanted: Wanted) -> Result<Spectra, WorkbenchError> {
+    let (times, tracks) = table(path)?;
+    of(&times, &tracks, &BTreeMap::new(), wanted)
+}
+
+/// The times and tracks of a table; frames count from its first.
+pub(crate) fn table(path: &Path) -> Result<Timed, WorkbenchError> {
     let rows = honami_exchange::read::<TrackRow>(path)?.collect::<Result<Vec<_>, _>>()?;
     let mut times = BTreeMap::new();
     for row in &rows {
@@ -113,10 +119,11 @@ pub fn of_table(path: &Path, wanted: Wanted) -> Result<Spectra, WorkbenchError> 
     let rows = rows.into_iter().map(|row| Ok(TrackRow { frame: row.frame - first, ..row }));
     let tracks: Vec<_> =
         honami_exchange::spans(rows, n_frames)?.into_iter().map(|(id, span)| (id, Arc::new(span))).collect();
-    of(&times, &tracks, &BTreeMap::new(), wanted)
+    Ok((times, tracks))
 }
 
-type Cut = (FrameTimes, Vec<(TrackId, Arc<Span>)>);
+/// Times of frames, and tracks in these.
+pub(crate) type Timed = (FrameTimes, Vec<(TrackId, Arc<Span>)>);
 
 fn of(
     times: &FrameTimes,
@@ -176,7 +183,7 @@ fn of(
 }
 
 /// Tracks in the frames between two times, and those times; frames count from the first of them.
-fn cut(times: &FrameTimes, tracks: &[(TrackId, Arc<Span>)], within: Within) -> Result<Cut, WorkbenchError> {
+fn cut(times: &FrameTimes, tracks: &[(TrackId, Arc<Span>)], within: Within) -> Result<Timed, WorkbenchError> {
     if within.from_s.is_none() && within.to_s.is_none() {
         return Ok((times.clone(), tracks.to_vec()));
     }

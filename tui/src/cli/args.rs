@@ -75,6 +75,13 @@ pub(super) enum Command {
     Compare(Compare),
     /// Frequencies of tracks and groups, in Hz from the frame times.
     Spectrum(Spectrum),
+    /// What moves together: where, along which line and how fast, by bi-orthogonal decomposition of the tracks.
+    ///
+    /// A row for each component that stands out of the noise, the strongest first: its share of all motion; its singular value,
+    /// px; the frequency at which it is strongest, and how broad the peak is at half its power; the line along which it goes, 0
+    /// degrees horizontal, 90 vertical, and how straight, 1 where no track goes any other way; how many tracks have half of it;
+    /// and its spectrum, amplitudes from 0 Hz to half the frame rate.
+    Components(Components),
     /// Vibration modes of a plant, and how it, or a forest of it, moves in the wind.
     Simulate(Box<plant::Simulate>),
     /// Write what was measured for other programs; docs/formats.md says what each format keeps.
@@ -274,6 +281,20 @@ pub(super) struct Spectrum {
     /// To this time, seconds.
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = seconds)]
     pub(super) to: Option<f64>,
+}
+
+#[derive(Args, Debug)]
+pub(super) struct Components {
+    /// Project file (.honami), or a table of tracks (.csv) with the time of every frame.
+    pub(super) project: PathBuf,
+    /// Files to write: .svg, maps, curves and spectra; .csv, how far each track goes with each component,
+    /// component,track,x_px,y_px,dx_px,dy_px, and beside it as .chronos.csv how each goes in time,
+    /// component,frame,time_s,chronos. A track's motion is the sum of dx_px, dy_px times chronos.
+    #[arg(value_name = "OUT")]
+    pub(super) out: Vec<PathBuf>,
+    /// So many at most, the strongest first.
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(super) most: u32,
 }
 
 #[derive(Args, Debug)]

@@ -81,6 +81,32 @@ fn a_table_known_by_hand() {
     assert!(close(bod.chronos(1), &[0.5, -0.5, -0.5, 0.5]), "{:?}", bod.chronos(1));
     assert!(close(bod.topos(0)[0], &[root, 0.0]) && close(bod.topos(0)[1], &[root, 0.0]));
     assert!(close(bod.topos(1)[0], &[0.0, 1.0]) && close(bod.topos(1)[1], &[0.0, 0.0]));
+    // 72 + 16 in all; right and down is a line that falls to the right, at 135 degrees.
+    assert!((bod.portion(0) - 72.0 / 88.0).abs() < 1e-12);
+    for (component, degrees) in [(0, 135.0), (1, 0.0)] {
+        let axis = bod.axis(component);
+        // 0 and 180 degrees are one line.
+        let off = (axis.angle_rad.to_degrees() - degrees + 90.0).rem_euclid(180.0) - 90.0;
+        assert!(off.abs() < 1e-9 && axis.straight > 1.0 - 1e-9, "{axis:?}");
+        assert_eq!(bod.n_half(component), 1);
+    }
+}
+
+/// Ten tracks that swing together: the first with 12.25 parts of 21.25; then in all directions alike.
+#[test]
+fn how_many_have_half_of_a_component_and_whether_it_has_a_line() {
+    let swing = |frame: usize| (0.3 * frame as f64).sin();
+    let uneven = tracks(10, 40, |track, frame| {
+        Some([0.0, if track == 0 { 3.5 * swing(frame) } else { swing(frame) }])
+    });
+    let round = tracks(10, 40, |track, frame| {
+        let (sin, cos) = (std::f64::consts::PI * track as f64 / 10.0).sin_cos();
+        Some([cos * swing(frame), sin * swing(frame)])
+    });
+    let [uneven, round] = [uneven, round].map(|positions| Bod::new(&table(&positions)));
+    assert_eq!((uneven.n_half(0), round.n_half(0)), (1, 5));
+    assert!((uneven.axis(0).angle_rad - std::f64::consts::FRAC_PI_2).abs() < 1e-6);
+    assert!(round.axis(0).straight < 1e-5, "{:?}", round.axis(0));
 }
 
 /// Against nalgebra's own decomposition of the table, more frames than coordinates and fewer.

@@ -52,6 +52,21 @@ pub(super) fn find(spectrum: &Spectrum, n_max: usize, over_floor: f64) -> Vec<Pe
         .collect()
 }
 
+pub(super) fn width_hz(spectrum: &Spectrum, peak: &Peak) -> f64 {
+    let power = &spectrum.power_px2;
+    let half = 0.5 * peak.amplitude_px.powi(2);
+    let top = ((peak.hz / spectrum.step_hz).round() as usize).min(power.len() - 1);
+    // Between the last above and the first below, on a straight line; at the end of the band, the end.
+    let crossing = |inner: usize, outer: usize| {
+        let share = (power[inner] - half) / (power[inner] - power[outer]);
+        inner as f64 + share.clamp(0.0, 1.0) * (outer as f64 - inner as f64)
+    };
+    let below = (0..top).rev().find(|&k| power[k] < half).map_or(0.0, |k| crossing(k + 1, k));
+    let end = (power.len() - 1) as f64;
+    let above = (top + 1..power.len()).find(|&k| power[k] < half).map_or(end, |k| crossing(k - 1, k));
+    (above - below) * spectrum.step_hz
+}
+
 fn peak_at(spectrum: &Spectrum, top: usize, cell: f64) -> Peak {
     let power = &spectrum.power_px2;
     // A Hann peak is nearly a parabola in log power.

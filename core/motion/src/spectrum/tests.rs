@@ -60,6 +60,31 @@ fn an_even_clip_gives_frequency_and_amplitude_between_its_bins() {
     }
 }
 
+/// 1.44 bins: the -3 dB bandwidth of Hann's window (Harris, Proc. IEEE 66, 1978, table 1); of a sway that dies away as
+/// exp(-a t), a / π in a long clip.
+#[test]
+fn a_steady_peak_is_as_broad_as_the_window_and_a_damped_one_broader() {
+    let width = |clip: &Clip, track: &[Option<[f32; 2]>]| {
+        let spectrum = clip.analyser().track(track).expect("a spectrum");
+        // What is broad does not stand out of what is around it.
+        spectrum.width_hz(&spectrum.peaks(1, 0.0)[0])
+    };
+    let clip = Clip::even(400, 25.0);
+    let wanted = 1.44 * 25.0 / 400.0;
+    let got = width(&clip, &clip.track(&[(3.21, 5.0)], 0.0, 1));
+    assert!((got / wanted - 1.0).abs() < 0.03, "{got} Hz, wanted {wanted}");
+    let (long, decay) = (Clip::even(1000, 25.0), 6.0);
+    // From the middle of the clip on, where the window is flat.
+    let at = |t: &f64| {
+        let since = t - 20.0;
+        let swing = if since < 0.0 { 0.0 } else { 50.0 * (-decay * since).exp() * (TAU * 5.0 * since).sin() };
+        Some([(100.0 + swing) as f32, 40.0])
+    };
+    let damped: Vec<_> = long.times_s.iter().map(at).collect();
+    let (got, wanted) = (width(&long, &damped), decay / std::f64::consts::PI);
+    assert!((got / wanted - 1.0).abs() < 0.1, "{got} Hz, wanted {wanted}");
+}
+
 #[test]
 fn two_sways_are_told_apart_in_noise() {
     let clip = Clip::even(400, 25.0);

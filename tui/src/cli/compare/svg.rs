@@ -2,10 +2,9 @@
 
 use honami_workbench::compare::{Row, STATIC};
 
-use canvas::{Anchor, Canvas, INK, Pen};
+use crate::cli::canvas::{Anchor, Canvas, INK, Pen};
 
 mod bars;
-mod canvas;
 mod plots;
 
 /// Sizes in pixels.

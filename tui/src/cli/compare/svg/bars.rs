@@ -2,8 +2,8 @@
 
 use honami_workbench::compare::Row;
 
-use super::canvas::{Anchor, Canvas, INK, Pen, QUIET};
 use super::{MARGIN, ROW, WIDTH, pen};
+use crate::cli::canvas::{Anchor, Canvas, INK, Pen, QUIET};
 
 /// Sizes in pixels.
 const LABELS: f64 = 180.0;

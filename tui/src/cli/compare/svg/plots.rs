@@ -2,54 +2,12 @@
 
 use honami_workbench::compare::{Histogram, Row};
 
-use super::canvas::{Anchor, Canvas, INK, Pen, QUIET};
 use super::pen;
+use crate::cli::canvas::{Canvas, Field};
 
 /// Errors on a logarithmic axis, pixels: what is smaller or larger lies on its ends.
 const LOW_PX: f64 = 0.05;
 const HIGH_PX: f64 = 200.0;
-/// Room for the numbers left of an axis, pixels.
-const NUMBERS: f64 = 40.0;
-
-/// The field of a plot inside its numbers.
-struct Field {
-    left: f64,
-    right: f64,
-    top: f64,
-    bottom: f64,
-}
-
-impl Field {
-    /// The field of a plot at a place, under its title.
-    fn new(canvas: &mut Canvas, title: &str, [x, y]: [f64; 2], [width, height]: [f64; 2]) -> Self {
-        canvas.text([x, y - 16.0], Anchor::Start, &Pen::bold(INK, 13.0), title);
-        Self { left: x + NUMBERS, right: x + width, top: y, bottom: y + height }
-    }
-
-    /// The place of a share of the way right and up.
-    fn at(&self, across: f64, up: f64) -> [f64; 2] {
-        [self.left + across * (self.right - self.left), self.bottom - up * (self.bottom - self.top)]
-    }
-
-    /// A faint line across, with its number.
-    fn level(&self, canvas: &mut Canvas, up: f64, number: &str) {
-        let [x, y] = self.at(0.0, up);
-        canvas.line([x, y], self.at(1.0, up), &Pen::grid());
-        canvas.text([x - 8.0, y + 4.0], Anchor::End, &Pen::text(QUIET, 11.0), number);
-    }
-
-    /// A number under the field.
-    fn tick(&self, canvas: &mut Canvas, across: f64, number: &str) {
-        let [x, y] = self.at(across, 0.0);
-        canvas.line([x, y], [x, y + 4.0], &Pen::line(QUIET, 1.0, ""));
-        canvas.text([x, y + 18.0], Anchor::Middle, &Pen::text(QUIET, 11.0), number);
-    }
-
-    fn caption(&self, canvas: &mut Canvas, text: &str) {
-        let [x, y] = self.at(0.5, 0.0);
-        canvas.text([x, y + 38.0], Anchor::Middle, &Pen::text(QUIET, 12.0), text);
-    }
-}
 
 /// Median error against frames since the start; a curve ends with a dot where half of the samples are lost.
 pub(super) fn drift(canvas: &mut Canvas, rows: &[Row], place: [f64; 2], size: [f64; 2]) {

@@ -1,4 +1,4 @@
-//! Lines, boxes and words of an SVG.
+//! Lines, boxes and words of an SVG, and the field of a plot.
 
 use std::fmt::Write as _;
 
@@ -116,5 +116,48 @@ impl Canvas {
         self.put(format_args!(
             "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\" font-size=\"{size}\" fill=\"{colour}\"{weight}>{text}</text>"
         ));
+    }
+}
+
+/// Room for the numbers left of an axis, pixels.
+const NUMBERS: f64 = 40.0;
+
+/// The field of a plot inside its numbers.
+pub(super) struct Field {
+    pub(super) left: f64,
+    pub(super) right: f64,
+    pub(super) top: f64,
+    pub(super) bottom: f64,
+}
+
+impl Field {
+    /// The field of a plot at a place, under its title.
+    pub(super) fn new(canvas: &mut Canvas, title: &str, [x, y]: [f64; 2], [width, height]: [f64; 2]) -> Self {
+        canvas.text([x, y - 16.0], Anchor::Start, &Pen::bold(INK, 13.0), title);
+        Self { left: x + NUMBERS, right: x + width, top: y, bottom: y + height }
+    }
+
+    /// The place of a share of the way right and up.
+    pub(super) fn at(&self, across: f64, up: f64) -> [f64; 2] {
+        [self.left + across * (self.right - self.left), self.bottom - up * (self.bottom - self.top)]
+    }
+
+    /// A faint line across, with its number.
+    pub(super) fn level(&self, canvas: &mut Canvas, up: f64, number: &str) {
+        let [x, y] = self.at(0.0, up);
+        canvas.line([x, y], self.at(1.0, up), &Pen::grid());
+        canvas.text([x - 8.0, y + 4.0], Anchor::End, &Pen::text(QUIET, 11.0), number);
+    }
+
+    /// A number under the field.
+    pub(super) fn tick(&self, canvas: &mut Canvas, across: f64, number: &str) {
+        let [x, y] = self.at(across, 0.0);
+        canvas.line([x, y], [x, y + 4.0], &Pen::line(QUIET, 1.0, ""));
+        canvas.text([x, y + 18.0], Anchor::Middle, &Pen::text(QUIET, 11.0), number);
+    }
+
+    pub(super) fn caption(&self, canvas: &mut Canvas, text: &str) {
+        let [x, y] = self.at(0.5, 0.0);
+        canvas.text([x, y + 38.0], Anchor::Middle, &Pen::text(QUIET, 12.0), text);
     }
 }
