@@ -11,8 +11,8 @@ pub(crate) mod tests;
 
 pub use graft::Grafting;
 pub use own::is_own;
-pub use scene::Piece;
 pub(crate) use scene::{Matrix, TRIANGLES, product};
+pub use scene::{Piece, Tree};
 
 use std::io::Write as _;
 use std::path::Path;

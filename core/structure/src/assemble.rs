@@ -15,7 +15,7 @@ use rand_pcg::Pcg64Mcg;
 
 pub use self::wood::branches;
 use crate::StructureError;
-use crate::bind::{foot, less, used};
+use crate::bind::{foot, less, reach, used};
 
 /// Vertices at least so far from the foot, of the farthest, are where a branch ends.
 const OUTERMOST: f64 = 0.9;
@@ -25,6 +25,8 @@ const MOST: f64 = 0.9;
 const NOTHING: f64 = 1e-6;
 /// Nothing that is smaller can be told from a point, lengths of the library.
 const TINIEST: f64 = 1e-9;
+/// A pivot lies so near a branch at most, and as far at least from its middle, of the diagonal of its box.
+const SLACK: f64 = 0.05;
 /// No branch is slimmer, in widths of its length: a line has no width at all.
 const SLIMMEST: f64 = 1e-3;
 /// Branches whose logarithms of breadth are no more than so much worse than the best are as good.
@@ -72,6 +74,18 @@ impl Branch {
         let axis = tip.map(|v| v / length);
         let breadth = most(vertices.iter().map(|v| beside(*v, axis))) / length;
         Ok(Self { foot, axis, length, breadth })
+    }
+
+    /// Whether a mesh may begin at its pivot, which is where whoever made it holds it: within the mesh's box, or outside by a
+    /// twentieth of the diagonal, and not that near to its middle, where files have it that were centred.
+    #[must_use]
+    pub fn may_begin(mesh: &Mesh, pivot: [f64; 3]) -> bool {
+        let used = used(mesh);
+        let sides: [[f64; 2]; 3] = std::array::from_fn(|axis| reach(&used, axis));
+        let slack = SLACK * norm(sides.map(|[low, high]| high - low));
+        let middle = sides.map(|[low, high]| f64::midpoint(low, high));
+        let is_within = |(v, [low, high]): (f64, [f64; 2])| (low - slack..=high + slack).contains(&v);
+        pivot.into_iter().zip(sides).all(is_within) && norm(less(pivot, middle)) > slack
     }
 
     /// How wide it is, of its length.

@@ -71,7 +71,7 @@ pub fn size(mesh: &Mesh) -> [f64; 2] {
 }
 
 /// The lowest and the highest along an axis.
-fn reach(places: &[[f64; 3]], axis: usize) -> [f64; 2] {
+pub(crate) fn reach(places: &[[f64; 3]], axis: usize) -> [f64; 2] {
     let along = || places.iter().map(|place| place[axis]);
     [along().fold(f64::INFINITY, f64::min), along().fold(f64::NEG_INFINITY, f64::max)]
 }

@@ -24,6 +24,7 @@ mod tests;
 
 use honami_model::brief::Brief;
 use honami_model::clip::TimesError;
+use honami_model::plant::PlantError;
 use honami_model::skeleton::{Skeleton, SkeletonError};
 use honami_model::track::TrackId;
 
@@ -152,13 +153,29 @@ pub enum StructureError {
     NoBranches,
     /// A mesh that goes nowhere from its foot.
     #[error(
-        "a branch goes from its foot (the mean of what of it is lowest) to its tip (the mean of what is farthest from there): \
-         in this one both are one place, {} from the farthest of it", Brief(*farthest)
+        "a branch goes from its foot (its pivot, or the mean of what of it is lowest) to its tip (the mean of what is farthest \
+         from there): in this one both are one place, {} from the farthest of it", Brief(*farthest)
     )]
     NoBranch {
         /// From the foot to the farthest vertex.
         farthest: f64,
     },
+    /// Branches of a plant of nodes for which there is no room.
+    #[error(
+        "the plant has {n_branches} branches, which have {n_nodes} nodes together, each with all that it bears, and {most} are \
+         taken at most: is what goes on thinner than what it bears? A plant of fewer forks is wanted, or a part of it"
+    )]
+    Wood {
+        /// That begin at its forks.
+        n_branches: usize,
+        /// Of all of them.
+        n_nodes: usize,
+        /// At most.
+        most: usize,
+    },
+    /// A branch that is no plant.
+    #[error(transparent)]
+    Plant(#[from] PlantError),
     /// A vertex that is nowhere.
     #[error("vertex {vertex} lies at {place:?}: three numbers from -1e9 to 1e9 were wanted")]
     Vertex {

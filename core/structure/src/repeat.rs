@@ -50,6 +50,19 @@ pub fn repeat(skeleton: &Skeleton, within: Range<u32>) -> Result<(Skeleton, Rang
     Ok((repeated, frames))
 }
 
+/// A loop that ends as it begins: with its first pose once more at a time after its last frame, for what is played from key to
+/// key. It carries no leaves.
+///
+/// # Errors
+/// [`StructureError::Times`] for a time that is not later than the last.
+pub fn closed(skeleton: &Skeleton, time_s: f64) -> Result<Skeleton, StructureError> {
+    let frames = (0..skeleton.times().len()).chain([0]);
+    let directions = frames.flat_map(|frame| skeleton.directions(frame)).copied().collect();
+    let times = skeleton.times().as_slice().iter().copied().chain([time_s]).collect();
+    let joints = skeleton.joints().to_vec();
+    Ok(Skeleton::again(skeleton.root(), joints, directions, FrameTimes::new(times)?)?)
+}
+
 /// How much of the way from the first to the last pose is taken back in a frame.
 fn share(frames: &Range<u32>, frame: u32) -> f64 {
     f64::from(frame - frames.start) / f64::from(frames.end - frames.start)

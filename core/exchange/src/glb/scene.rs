@@ -52,6 +52,15 @@ impl Piece {
     }
 }
 
+/// A tree of nodes that stands in the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tree {
+    /// What its root node is called, or which node it is.
+    pub name: String,
+    /// Where that stands, z up.
+    pub pivot: [f64; 3],
+}
+
 /// A mesh that a node bears.
 #[derive(Clone, Copy, Debug)]
 struct Stand {
@@ -62,6 +71,12 @@ struct Stand {
 }
 
 impl Document {
+    /// Bytes of its numbers.
+    #[must_use]
+    pub fn n_bytes(&self) -> usize {
+        self.numbers.len()
+    }
+
     /// Takes a file apart.
     ///
     /// # Errors
@@ -146,13 +161,29 @@ impl Document {
         Ok((all, pieces?))
     }
 
+    /// The trees of nodes that stand in the scene, in the order in which pieces count them.
+    ///
+    /// # Errors
+    /// [`PlantFileError::Lacks`] for a node whose place is none.
+    pub fn trees(&self) -> Result<Vec<Tree>, PlantFileError> {
+        let tree = |node: usize| {
+            let words = &self.words["nodes"][node];
+            let name = words["name"].as_str().map_or_else(|| format!("node {node}"), str::to_owned);
+            Ok(Tree { name, pivot: laid(placed(&own(words)?, [0.0; 3])) })
+        };
+        self.roots().into_iter().map(tree).collect()
+    }
+
+    fn roots(&self) -> Vec<usize> {
+        let scene = whole(&self.words["scene"]).unwrap_or(0);
+        indices(&self.words["scenes"][scene]["nodes"])
+    }
+
     /// Nodes of the scene that bear a mesh, which, and where they stand.
     fn stands(&self) -> Result<Vec<Stand>, PlantFileError> {
-        let scene = whole(&self.words["scene"]).unwrap_or(0);
-        let roots = indices(&self.words["scenes"][scene]["nodes"]);
         let n_nodes = self.words["nodes"].as_array().map_or(0, Vec::len);
         let mut open: Vec<(usize, usize, Matrix)> =
-            roots.into_iter().enumerate().rev().map(|(tree, node)| (tree, node, NONE)).collect();
+            self.roots().into_iter().enumerate().rev().map(|(tree, node)| (tree, node, NONE)).collect();
         let (mut stands, mut n_seen) = (Vec::new(), 0);
         while let Some((tree, node, before)) = open.pop() {
             n_seen += 1;

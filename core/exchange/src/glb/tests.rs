@@ -74,6 +74,15 @@ fn meshes_are_where_their_nodes_put_them() {
     }
 }
 
+#[test]
+fn trees_are_named_and_stand_where_their_root_nodes_do() {
+    let trees = Document::read(&scene(|_| {})).unwrap().trees().unwrap();
+    let tree = |name: &str, pivot| Tree { name: name.to_owned(), pivot };
+    assert_eq!(trees, [tree("node 0", [10.0, 0.0, 0.0]), tree("leaf", [0.0, 0.0, 5.0])]);
+    let turned = scene(|words| words["nodes"][2]["matrix"] = json!([1, 2]));
+    assert!(Document::read(&turned).unwrap().trees().is_err());
+}
+
 /// Each vertex has a shape that takes it as far again from the origin.
 #[test]
 fn shapes_are_as_much_as_nodes_or_else_meshes_say() {

@@ -57,15 +57,18 @@ pub fn rigged(
     if !colours.is_empty() {
         look_at_weights(&mut document);
     }
+    let named = named(pieces, bindings, &joints.joints);
     let (mut used, mut skins, mut first) = (BTreeSet::new(), BTreeMap::new(), 0);
     let meshes = document.words["meshes"].clone();
     for piece in pieces {
         let mut mesh = meshes[piece.mesh].clone();
+        let (place, named) = (place(piece), named.get(&place(piece)).map_or(&[][..], Vec::as_slice));
         for (k, &n) in piece.counts.iter().enumerate() {
             let (primitive, own) = (&mut mesh["primitives"][k], first..first + n);
-            bind(&mut document, &mut primitive["attributes"], &bindings[own.clone()], &joints.joints);
+            let attributes = &mut primitive["attributes"];
+            bind(&mut document, attributes, &bindings[own.clone()], &joints.joints, named);
             if !colours.is_empty() {
-                colour(&mut document, &mut primitive["attributes"], &colours[own]);
+                colour(&mut document, attributes, &colours[own]);
             }
             // The node was the mirror, and bones carry what they carry whichever node it is of.
             if let Some(triangles) = piece.turned.get(k).filter(|triangles| !triangles.is_empty()) {
@@ -81,12 +84,38 @@ pub fn rigged(
         } else {
             document.put("meshes", mesh)
         };
-        let place = piece.matrix.map(f64::to_bits);
-        let skin = *skins.entry(place).or_insert_with(|| joints.skin(&mut document, &piece.matrix));
+        let skin = *skins.entry(place).or_insert_with(|| joints.skin(&mut document, &piece.matrix, named));
         stand(&mut document, piece.node, mesh, skin);
     }
     list(document.scene()).push(joints.nodes[0].into());
     Ok(document)
+}
+
+/// Where a piece stands: what stands in one place has one skin.
+fn place(piece: &Piece) -> [u64; 16] {
+    piece.matrix.map(f64::to_bits)
+}
+
+/// The joints that the skin of each place names, upwards. The first has all, so that whoever reads the file knows all of them
+/// as bones, the ends of tips, too; others have those alone that carry what stands there: all of all would grow with the
+/// square of branches.
+fn named(pieces: &[Piece], bindings: &[Binding], joints: &Joints) -> BTreeMap<[u64; 16], Vec<usize>> {
+    let whole = pieces.first().map(place);
+    let (mut named, mut first): (BTreeMap<_, BTreeSet<usize>>, usize) = (BTreeMap::new(), 0);
+    for piece in pieces {
+        let own = first..first + piece.n_vertices();
+        first = own.end;
+        let there = named.entry(place(piece)).or_default();
+        if Some(place(piece)) == whole {
+            there.extend(0..joints.names.len());
+            continue;
+        }
+        let bones = bindings[own].iter().flat_map(Binding::shares);
+        there.extend(bones.filter_map(|(bone, _)| joints.joint(bone)));
+    }
+    // Nothing is carried by the root, and a skin has a joint.
+    let least = |there: BTreeSet<usize>| if there.is_empty() { vec![0] } else { there.into_iter().collect() };
+    named.into_iter().map(|(place, there)| (place, least(there))).collect()
 }
 
 /// One look for all meshes, on which the colours of vertices are seen, in place of their own and what only these needed.
@@ -205,19 +234,19 @@ impl Nodes {
         Ok(())
     }
 
-    /// The skin of a mesh that lies so in the scene of these joints.
-    fn skin(&self, document: &mut Document, matrix: &Matrix) -> usize {
-        let places = &self.joints.places;
-        let mut bytes = Vec::with_capacity(64 * places.len());
-        for [x, y, z] in places {
+    /// The skin of a mesh that lies so in the scene, of those joints that are named.
+    fn skin(&self, document: &mut Document, matrix: &Matrix, named: &[usize]) -> usize {
+        let mut bytes = Vec::with_capacity(64 * named.len());
+        for [x, y, z] in named.iter().map(|joint| self.joints.places[*joint]) {
             let back = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, -x, -y, -z, 1.0];
             bytes.extend(product(&back, matrix).iter().flat_map(|v| (*v as f32).to_le_bytes()));
         }
-        let what = json!({ "componentType": F32, "type": "MAT4", "count": places.len() });
+        let what = json!({ "componentType": F32, "type": "MAT4", "count": named.len() });
         let matrices = document.add(OTHER, &bytes, what);
+        let joints: Vec<usize> = named.iter().map(|joint| self.nodes[*joint]).collect();
         document.put(
             "skins",
-            json!({ "joints": self.nodes, "skeleton": self.nodes[0], "inverseBindMatrices": matrices }),
+            json!({ "joints": joints, "skeleton": self.nodes[0], "inverseBindMatrices": matrices }),
         )
     }
 }
@@ -237,10 +266,20 @@ fn times(document: &mut Document, motion: &Skeleton) -> Result<usize, RigError> 
     Ok(document.add(OTHER, &bytes, what))
 }
 
-/// Says of every vertex which joints carry it.
-fn bind(document: &mut Document, attributes: &mut Value, bindings: &[Binding], joints: &Joints) {
+/// Says of every vertex which joints carry it, counted in those that its skin names; what carries nothing of it is the first.
+fn bind(
+    document: &mut Document,
+    attributes: &mut Value,
+    bindings: &[Binding],
+    joints: &Joints,
+    named: &[usize],
+) {
     let count = bindings.len();
-    let bones = bindings.iter().flat_map(|binding| joints.bones(binding));
+    let row = |bone: u16| {
+        let joint = joints.joint(bone.into());
+        joint.and_then(|joint| named.binary_search(&joint).ok()).unwrap_or(0) as u16
+    };
+    let bones = bindings.iter().flat_map(|binding| binding.bones().map(row));
     let bones: Vec<u8> = bones.flat_map(u16::to_le_bytes).collect();
     let what = json!({ "componentType": U16, "type": "VEC4", "count": count });
     attributes["JOINTS_0"] = document.add(ARRAY, &bones, what).into();

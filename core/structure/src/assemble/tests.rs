@@ -196,3 +196,54 @@ fn branches_of_a_plant_begin_at_its_forks() {
     assert!((found[0].nodes()[0].radius - 2.0).abs() < 1e-12, "as thick as the branch, not as the trunk");
     assert_eq!(branches(&Plant::new(trunk.to_vec()).unwrap()).unwrap(), []);
 }
+
+/// A comb of equal radii, a twig first at every node of its back: the back goes on, and is no branch.
+#[test]
+fn of_equals_the_one_that_goes_farthest_goes_on() {
+    let comb = |n: u32, twig: f64| {
+        let mut nodes = vec![Node { parent: None, position: [0.0; 3], radius: 1.0 }];
+        for k in 0..n {
+            let (parent, z) = (Some(nodes.len() as u32 - 1), f64::from(k));
+            nodes.push(Node { parent, position: [2.0, 0.0, z], radius: twig });
+            nodes.push(Node { parent, position: [0.0, 0.0, z + 1.0], radius: 1.0 });
+        }
+        Plant::new(nodes).unwrap()
+    };
+    let found = branches(&comb(10_000, 1.0)).unwrap();
+    // At the last fork the twig goes farther, 2 instead of 1: what is left of the back there is a branch.
+    assert_eq!(found.len(), 10_000);
+    assert!(found.iter().all(|branch| branch.nodes().len() == 2));
+    // Where twigs are thicker the rest of the back is a branch at each: 76 of them reach 25 of 100 or more.
+    let found = branches(&comb(100, 1.5)).unwrap();
+    assert_eq!((found.len(), found[0].nodes().len()), (76, 200));
+    let error = branches(&comb(10_000, 1.5)).unwrap_err();
+    assert_eq!(error, StructureError::Wood { n_branches: 10_000, n_nodes: 100_010_000, most: 1 << 21 });
+}
+
+#[test]
+fn meshes_begin_at_their_pivots_where_these_are_of_them() {
+    // Along x, a leaf hanging down at its end: that is lowest.
+    let twig = mesh(&[[0.0, 0.0, 1.0], [1.0, 0.05, 0.9], [2.0, 0.0, 0.0]]);
+    for (pivot, may) in [
+        ([0.0, 0.0, 1.0], true),
+        ([0.0, 0.0, 1.11], true),
+        ([0.0, 0.0, 1.12], false),
+        ([-5.0, 0.0, 1.0], false),
+        ([1.0, 0.02, 0.5], false),
+        ([1.2, 0.02, 0.5], true),
+        ([0.0; 3], true),
+        ([f64::NAN; 3], false),
+    ] {
+        assert_eq!(Branch::may_begin(&twig, pivot), may, "{pivot:?}");
+    }
+    assert!(!Branch::may_begin(&Mesh::default(), [0.0; 3]));
+    // Held by its beginning it lies along the bone from there, and from its leaf otherwise.
+    let rest = two_bones(&[]);
+    let [stem, leaf] = [[0.0, 0.0, 1.0], [2.0, 0.0, 0.0]];
+    for (begin, foot, tip) in [(Some(stem), stem, leaf), (None, leaf, stem)] {
+        let branch = Branch::of(&twig, begin).unwrap();
+        let graft = assemble(&rest, &[branch], 1, 0).unwrap()[0];
+        near(graft.apply(foot), [1.0, 2.0, 5.0]);
+        near(graft.apply(tip), [5.0, 2.0, 5.0]);
+    }
+}

@@ -6,7 +6,7 @@ use honami_model::track::TrackId;
 
 use super::*;
 
-/// A trunk with an end of three tracks, a fork with two of one, and one more of one; 7 bones and the root, 4 of them ends.
+/// A trunk with an end of three tracks, a fork with two of one, and one more of one; 6 bones and the root, 4 of them ends.
 fn plant() -> Skeleton {
     let joint = |parent: u32, n_tracks: u32, length: f64| Joint {
         parent: Some(parent),

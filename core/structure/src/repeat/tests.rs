@@ -112,3 +112,15 @@ fn a_loop_is_of_the_frames_that_it_may_be_of() {
     let error = repeat(&skeleton, 50..53).unwrap_err();
     assert_eq!(error, StructureError::TooBrief { came: 3, wanted: 4 });
 }
+
+#[test]
+fn what_is_closed_ends_as_it_begins() {
+    let skeleton = swinging(5, |t| 0.1 * t);
+    let found = closed(&skeleton, 0.25).unwrap();
+    assert_eq!(found.times().as_slice()[..5], *skeleton.times().as_slice());
+    assert_eq!((found.times().len(), found.times().get(5)), (6, Some(0.25)));
+    for (frame, of) in [0, 1, 2, 3, 4, 0].into_iter().enumerate() {
+        assert_eq!(found.directions(frame as u32), skeleton.directions(of));
+    }
+    assert!(matches!(closed(&skeleton, 0.16), Err(StructureError::Times(_))));
+}

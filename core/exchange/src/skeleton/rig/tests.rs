@@ -72,8 +72,7 @@ impl Rig {
         let gltf::Gltf { document, blob } = gltf::Gltf::from_slice(&bytes).unwrap();
         let blob = blob.unwrap();
         let data = |_: gltf::Buffer<'_>| Some(blob.as_slice());
-        let (skin, animation) = (document.skins().next().unwrap(), document.animations().next().unwrap());
-        let joints: Vec<gltf::Node<'_>> = skin.joints().collect();
+        let animation = document.animations().next().unwrap();
         let (mut times, mut turns) = (Vec::new(), vec![None; document.nodes().len()]);
         for channel in animation.channels() {
             let reader = channel.reader(data);
@@ -92,7 +91,7 @@ impl Rig {
             turns.into_iter().map(|found| found.unwrap_or_else(|| still.clone())).collect();
         let by: Vec<[f64; 3]> =
             document.nodes().map(|node| node.transform().decomposed().0.map(f64::from)).collect();
-        let pose = |frame: usize| {
+        let pose = |joints: &[gltf::Node<'_>], frame: usize| {
             let chain = |joint: &gltf::Node<'_>| {
                 let mut pose = matrix(turns[joint.index()][frame], by[joint.index()]);
                 let mut at = parents[joint.index()];
@@ -106,6 +105,7 @@ impl Rig {
         };
         let rig = |node: gltf::Node<'_>| {
             let skin = node.skin()?;
+            let joints: Vec<gltf::Node<'_>> = skin.joints().collect();
             assert!(parents[node.index()].is_none() && node.transform().matrix() == UNMOVED);
             let primitive = node.mesh().unwrap().primitives().next().unwrap();
             let reader = primitive.reader(data);
@@ -115,7 +115,7 @@ impl Rig {
             Some(Self {
                 names: joints.iter().map(|joint| joint.name().unwrap().to_owned()).collect(),
                 turns: joints.iter().map(|joint| turns[joint.index()].clone()).collect(),
-                poses: (0..n_frames).map(pose).collect(),
+                poses: (0..n_frames).map(|frame| pose(&joints, frame)).collect(),
                 inverse: inverse.map(|m| m.map(|column| column.map(f64::from))).collect(),
                 times: times.clone(),
                 vertices: reader.read_positions().unwrap().map(|v| v.map(f64::from)).collect(),
@@ -328,6 +328,58 @@ fn meshes_of_others_are_carried_from_where_they_stand() {
             assert_eq!(rigs[k / 3].colours[k % 3], [k as u8, 2 * k as u8, 255, 255]);
         }
     }
+}
+
+/// Branches on a broom of so many bones, each carried by its own and a little by the stem; as a rig, and how large it is.
+fn broom(n: u16) -> (Skeleton, Document, usize) {
+    let twigs = std::iter::repeat_n((1, 2.0), n.into());
+    let angles: Vec<(f64, f64)> =
+        (0..2 * (n + 1)).map(|k| (f64::from(k).sin(), f64::from(k).cos())).collect();
+    let skeleton = skeleton(&std::iter::once((0, 3.0)).chain(twigs).collect::<Vec<_>>(), &angles, 2);
+    let (stem, mut bindings) =
+        (Mesh { positions: vec![[0.0; 3]; 3], triangles: vec![[0, 1, 2]], ..Mesh::default() }, Vec::new());
+    let mut document = Document::of(&stem);
+    let (_, mut pieces) = document.pieces().unwrap();
+    bindings.extend([Binding::new([(1, 1.0), (0, 0.0), (0, 0.0), (0, 0.0)]); 3]);
+    let branch = Document::of(&Mesh { positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0]], ..stem });
+    let piece = branch.pieces().unwrap().1.remove(0);
+    let mut grafting = crate::glb::Grafting::of(&branch);
+    for bone in 2..n + 2 {
+        let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        pieces.push(grafting.graft(&mut document, &piece, axes, [f64::from(bone), 0.0, 0.0]));
+        bindings.extend([Binding::new([(bone, 0.75), (1, 0.25), (0, 0.0), (0, 0.0)]); 3]);
+    }
+    let bound = rigged(document, &pieces, &bindings, &[], &skeleton, &skeleton, None).unwrap();
+    let size = bound.numbers.len() + bound.words.to_string().len();
+    (skeleton, bound, size)
+}
+
+/// The first skin has all joints, those of branches the two that carry them, by which they are where the bones take them; so
+/// that twice as many branches take twice as much.
+#[test]
+fn skins_of_branches_name_what_carries_them() {
+    let (skeleton, bound, size) = broom(60);
+    let rigs = Rig::all(bound);
+    assert_eq!((rigs.len(), rigs[0].names.len()), (61, 62 + 60));
+    let rest = skeleton.places(skeleton.rest());
+    for (bone, rig) in (2..).zip(&rigs[1..]) {
+        assert_eq!(rig.names, ["bone_1".to_owned(), format!("bone_{bone}")]);
+        for frame in 0..2 {
+            let directions = skeleton.directions(frame);
+            let (places, turns) = (skeleton.places(directions), turns(skeleton.rest(), directions));
+            let place = [bone as f64, 2.0, 0.0];
+            let by = |bone: usize, base: usize| -> [f64; 3] {
+                let from = turns[bone].apply(std::array::from_fn(|axis| place[axis] - rest[base][axis]));
+                std::array::from_fn(|axis| places[base][axis] + from[axis])
+            };
+            let (own, stem) = (by(bone, 1), by(1, 0));
+            let wanted = upright(std::array::from_fn(|axis| 0.75 * own[axis] + 0.25 * stem[axis]));
+            let found = rig.vertex(2, frame as usize);
+            assert!(apart(found, wanted) < 1e-3, "bone {bone}, frame {frame}: {found:?} {wanted:?}");
+        }
+    }
+    let ratio = broom(120).2 as f64 / size as f64;
+    assert!(ratio < 2.1, "{ratio} times as large");
 }
 
 /// A mesh that stands in a scene in front of its mirror image: both are written with their outsides outside, of a list, a
