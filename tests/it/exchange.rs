@@ -182,6 +182,31 @@ fn of_every_status() -> Bench {
     bench
 }
 
+/// Of five tracks two are seen once, and then all are.
+#[test]
+fn who_is_seen_too_briefly_to_be_grouped_is_counted() {
+    let bench = Bench::new();
+    bench.synth("clip.y4m", 40, "");
+    for (project, n_moving) in [("some.honami", 3), ("none.honami", 0)] {
+        bench.json(&format!("new {project} clip.y4m"));
+        let mut table = "track,frame,x,y\n".to_owned();
+        for track in 0..5_u32 {
+            for frame in 0..if track < n_moving { 30 } else { 1 } {
+                let x = 20.0 + 9.0 * f64::from(track) + (0.4 * f64::from(frame * (track + 1))).sin();
+                table += &format!("{track},{frame},{x},{}\n", 10 + 20 * track);
+            }
+        }
+        fs::write(bench.path("given.csv"), table).unwrap();
+        bench.json(&format!("import {project} given.csv"));
+    }
+    let said = bench.json("cluster some.honami");
+    assert_eq!(said["tracks"], 3);
+    let told = "2 tracks are seen in fewer than two frames and are in no group";
+    assert!(said["warnings"].as_array().unwrap().contains(&told.into()), "{said}");
+    let none = bench.line("cluster none.honami");
+    assert!(none.code == Some(1) && none.stderr.contains("no track is seen in two frames"), "{none:?}");
+}
+
 /// Readers of other people, each with what it needs: `HONAMI_PYTHON` names a Python that has them.
 #[test]
 fn other_peoples_readers_read_what_is_written() {

@@ -71,6 +71,7 @@ const CASES: &[(&str, i32, &str)] = &[
     ("simulate no.mtg", 1, "no.mtg: No such file"),
     ("synth a.y4m --plant no.mtg", 1, "no.mtg: No such file"),
     ("simulate two.mtg --modes 2 --wind no.csv", 1, "no.csv: No such file"),
+    ("simulate two.mtg --modes 2 --wind 8.5", 2, "\"8.5\" is no wind and no file: there are still"),
     ("simulate two.mtg --modes 2 --wind calm+no/wind", 1, "no/wind: No such file"),
     (
         "simulate rod.obj",
@@ -94,7 +95,7 @@ const CASES: &[(&str, i32, &str)] = &[
     (
         "simulate two.mtg --modes 2 --wind lost.csv",
         1,
-        "line 3: a wind of -9999 m/s, and none is faster than 200",
+        "line 3: a wind of -9999, 2, 0 m/s, and none is faster than 200",
     ),
     (
         "simulate two.mtg --modes 2 --wind calm --method symplectic",

@@ -69,7 +69,8 @@ const CASES: &[Case] = &[
     ("track p.honami --points missing.csv", FAILED, &["missing.csv"]),
     ("track p.honami --points points.csv --detect", USAGE, &["--points", "--detect"]),
     ("track p.honami --points points.csv --region 1,2,3,4", USAGE, &["--points", "--region"]),
-    ("track p.honami --region 500,500,10,10", FAILED, &["no pixel", "region"]),
+    ("track p.honami --region 500,500,10,10", USAGE, &["no pixel of the clip, 160x120,", "500,500,10,10"]),
+    ("track p.honami --detect --mask black.y4m", FAILED, &["all of the mask is black", "black.y4m"]),
     // Results.
     ("cluster p.honami --groups 0", USAGE, &["groups, not 0"]),
     ("cluster p.honami --groups 9999", USAGE, &["groups, not 9999"]),
@@ -92,6 +93,8 @@ const CASES: &[Case] = &[
     ("export bare.honami tracks out.csv", FAILED, &["no tracks yet", "track features first"]),
     ("export p.honami pictures out.csv", USAGE, &["pictures", "tracks"]),
     ("spectrum p.honami --track 9999", USAGE, &["track 9999"]),
+    ("spectrum brief.csv --track 1", FAILED, &["track 1 is seen in fewer than 8 frames"]),
+    ("spectrum brief.csv --track 2", USAGE, &["track 2 is not there"]),
     ("spectrum points.csv", FAILED, &["points.csv", "`track` is missing"]),
     ("spectrum bare.honami", FAILED, &["no tracks yet"]),
     ("components bare.honami", FAILED, &["no tracks yet"]),
@@ -131,6 +134,15 @@ fn wrong_input_is_told_in_one_line_and_leaves_nothing_behind() {
     fs::create_dir(bench.path("empty")).unwrap();
     let clip = fs::read(bench.path("clip.y4m")).unwrap();
     fs::write(bench.path("cut.y4m"), &clip[..30]).unwrap();
+    let [luma, chroma] = [vec![0_u8; 160 * 120], vec![128; 160 * 120 / 2]];
+    let head = b"YUV4MPEG2 W160 H120 F25:1 Ip A1:1 C420jpeg\nFRAME\n";
+    fs::write(bench.path("black.y4m"), [&head[..], &luma, &chroma].concat()).unwrap();
+    let row = |track, frame: u32| {
+        format!("{track},{frame},{},{},5\n", f64::from(frame) / 25.0, f64::from(frame * 7 % 5))
+    };
+    let brief: String =
+        (0..20).map(|frame| row(0, frame)).chain((3..10).map(|frame| row(1, frame))).collect();
+    fs::write(bench.path("brief.csv"), format!("track,frame,time_s,x,y\n{brief}")).unwrap();
     for (name, text) in [
         ("text.honami", "dear diary"),
         ("points.csv", "id,x,y\n0,10,10\n"),

@@ -39,6 +39,8 @@ pub struct ClusterRequest {
 pub struct ClusterJob {
     clusterer: Clusterer,
     tracks: Tracks,
+    /// Tracks that are seen too briefly to be among them.
+    n_brief: usize,
     /// From the first in which a track is seen to the last.
     n_frames: usize,
     provenance: Provenance,
@@ -75,7 +77,7 @@ pub struct ClusterOutcome {
 /// Loads the clusterer and gathers the shown tracks.
 ///
 /// # Errors
-/// [`WorkbenchError::NoTracks`], [`WorkbenchError::Groups`], and when the plugin or its parameters are not what they must be.
+/// [`WorkbenchError::NoTracks`], [`WorkbenchError::NoMovement`], [`WorkbenchError::Groups`], and when the plugin or its parameters are not what they must be.
 pub fn prepare(session: &Session, request: &ClusterRequest) -> Result<ClusterJob, WorkbenchError> {
     let plugin = session.registry.find(Kind::Clusterer, &request.plugin)?;
     let shown = session.project.shown_all()?;
@@ -94,8 +96,9 @@ pub fn prepare(session: &Session, request: &ClusterRequest) -> Result<ClusterJob
     }
     let n_tracks = tracks.len();
     if n_tracks == 0 {
-        return Err(WorkbenchError::NoTracks);
+        return Err(if shown.is_empty() { WorkbenchError::NoTracks } else { WorkbenchError::NoMovement });
     }
+    let n_brief = shown.len() - n_tracks;
     if let Some(groups) = request.groups.filter(|&k| k == 0 || k as usize > n_tracks) {
         return Err(WorkbenchError::Groups { groups, n_tracks });
     }
@@ -104,7 +107,7 @@ pub fn prepare(session: &Session, request: &ClusterRequest) -> Result<ClusterJob
     let provenance = stamp(session.project.revision(), "cluster", plugin, &request.params, origin);
     let plugin = plugin.short_name.clone();
     let n_frames = frames.map_or(0, |(first, last)| (last - first) as usize);
-    Ok(ClusterJob { clusterer, tracks, n_frames, provenance, groups: request.groups, plugin })
+    Ok(ClusterJob { clusterer, tracks, n_brief, n_frames, provenance, groups: request.groups, plugin })
 }
 
 impl ClusterJob {
@@ -124,6 +127,7 @@ impl ClusterJob {
         };
         let dendrogram = found.dendrogram;
         let little = scarce(self.tracks.len(), self.n_frames);
+        let left_out = left_out(self.n_brief);
         let outliers = found.frames.iter().filter(|note| note.outlier);
         let clustering = Clustering {
             provenance: self.provenance,
@@ -131,9 +135,18 @@ impl ClusterJob {
             cut: self.groups.unwrap_or_else(|| dendrogram.clearest_cut(MAX_GUESS)),
             dendrogram,
             outlier_frames: outliers.filter_map(|note| u32::try_from(note.frame).ok()).collect(),
-            notes: ear.warnings().into_iter().chain(little).collect(),
+            notes: ear.warnings().into_iter().chain(left_out).chain(little).collect(),
         };
         Ok(ClusterDone { clustering, plugin: self.plugin, seconds: begun.elapsed().as_secs_f64() })
+    }
+}
+
+/// A sentence where tracks are seen too briefly to be grouped.
+fn left_out(n_brief: usize) -> Option<String> {
+    match n_brief {
+        0 => None,
+        1 => Some("1 track is seen in fewer than two frames and is in no group".to_owned()),
+        n => Some(format!("{n} tracks are seen in fewer than two frames and are in no group")),
     }
 }
 

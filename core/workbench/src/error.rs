@@ -194,9 +194,26 @@ pub enum WorkbenchError {
         /// The mask.
         path: PathBuf,
     },
-    /// No pixel is left to detect in.
-    #[error("no pixel of the clip lies in the region or the mask: features cannot be detected there")]
-    EmptyArea,
+    /// A mask with nothing to detect in.
+    #[error("all of the mask is black: features are detected where it is not: {}", path.display())]
+    EmptyMask {
+        /// The mask.
+        path: PathBuf,
+    },
+    /// A region with nothing to detect in.
+    #[error("no pixel of the clip, {}x{}, lies in the region {x},{y},{w},{h}: features cannot be detected there", of.0, of.1)]
+    EmptyRegion {
+        /// Pixels, right.
+        x: f64,
+        /// Pixels, down.
+        y: f64,
+        /// Width, pixels.
+        w: f64,
+        /// Height, pixels.
+        h: f64,
+        /// Width and height of the clip.
+        of: (u32, u32),
+    },
     /// A hierarchy cannot be cut into that many groups.
     #[error("{} make 1 to {}, not {groups}", counted(*n_tracks, "track"), counted(*n_tracks, "group"))]
     Groups {
@@ -208,6 +225,9 @@ pub enum WorkbenchError {
     /// There are no tracks.
     #[error("there are no tracks yet: track features first")]
     NoTracks,
+    /// There are tracks, and none has a movement.
+    #[error("no track is seen in two frames, and tracks are grouped by their movement: track longer")]
+    NoMovement,
     /// No clustering is shown.
     #[error("there are no groups yet: cluster the tracks first")]
     NoGroups,
@@ -703,6 +723,7 @@ impl WorkbenchError {
                 | Self::Frames { .. }
                 | Self::Groups { .. }
                 | Self::NoSuchTracks
+                | Self::EmptyRegion { .. }
                 | Self::FarRoot { .. }
                 | Self::Unit { .. }
                 | Self::NoCarried { .. }
@@ -712,7 +733,8 @@ impl WorkbenchError {
                     Grown::Shift(_)
                         | Grown::Copies
                         | Grown::Root { .. }
-                        | Grown::NoLevel { .. }
+                        // Where none was typed it is 0: no level of this skeleton has two bones.
+                        | Grown::NoLevel { wanted: 1.., .. }
                         | Grown::Threshold { .. }
                         | Grown::TooFewJoints { .. }
                         | Grown::Unit(_)

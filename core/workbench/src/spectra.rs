@@ -1,6 +1,6 @@
 //! Frequencies of tracks and groups, in Hz from the frame times.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -75,8 +75,8 @@ pub struct Spectra {
     pub fps: Option<f64>,
     /// All tracks together, then groups, then tracks.
     pub lines: Vec<Line>,
-    /// Tracks that were seen too briefly to say anything of.
-    pub n_brief: usize,
+    /// Tracks that were seen too briefly to say anything of, in fewer than 8 of the frames that were looked at.
+    pub brief: Vec<TrackId>,
 }
 
 /// Spectra of a project's shown tracks, its groups and all together.
@@ -140,6 +140,8 @@ fn of(
         .iter()
         .filter_map(|(id, span)| Some((*id, analyser.track(&positions(span, times.len())).ok()?)))
         .collect();
+    let told: BTreeSet<TrackId> = spectra.iter().map(|(id, _)| *id).collect();
+    let brief = tracks.iter().map(|(id, _)| *id).filter(|id| !told.contains(id)).collect();
     let spans: BTreeMap<TrackId, &Span> = tracks.iter().map(|(id, span)| (*id, &**span)).collect();
     let fps = spectra.first().and_then(|(_, spectrum)| spectrum.even_fps);
     let swing = |ids: &[TrackId], peaks: &[Peak]| swing_of(&spans, ids, fps?, peaks.first()?.hz);
@@ -177,7 +179,7 @@ fn of(
         nyquist_hz: first.nyquist_hz,
         start_s: times.as_slice()[0],
         fps: first.even_fps,
-        n_brief: tracks.len() - spectra.len(),
+        brief,
         lines,
     })
 }

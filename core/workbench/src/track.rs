@@ -161,7 +161,7 @@ pub fn prepare(session: &mut Session, request: &TrackRequest) -> Result<TrackJob
     let plugin = registry.find(Kind::Tracker, &request.plugin)?;
     let mask = mask(&request.area, clip)?;
     if mask.as_ref().is_some_and(|pixels| pixels.iter().all(|&pixel| pixel == 0)) {
-        return Err(WorkbenchError::EmptyArea);
+        return Err(nowhere(&request.area, clip));
     }
     let (seeds, detect) = match &request.points {
         PointSource::Existing => (existing(session, &request.frames, None)?, None),
@@ -421,6 +421,16 @@ pub(crate) fn mask(area: &Area, clip: &Clip) -> Result<Option<Vec<u8>>, Workbenc
             };
             Ok(Some((0..u64::from(wanted.0) * u64::from(wanted.1)).map(pixel).collect()))
         }
+    }
+}
+
+/// Why nothing is detected in an area without a pixel.
+fn nowhere(area: &Area, clip: &Clip) -> WorkbenchError {
+    let of = (clip.width, clip.height);
+    match area {
+        Area::Mask(path) => WorkbenchError::EmptyMask { path: path.clone() },
+        &Area::Rect([x, y, w, h]) => WorkbenchError::EmptyRegion { x, y, w, h, of },
+        Area::Whole => WorkbenchError::EmptyRegion { x: 0.0, y: 0.0, w: of.0.into(), h: of.1.into(), of },
     }
 }
 

@@ -48,10 +48,10 @@ pub(super) fn spectrum(args: &Spectrum) -> anyhow::Result<Answer> {
         spectra::of_project(&project, wanted)?
     };
     if let Some(track) = args.track {
+        let is_brief = spectra.brief.iter().any(|id| id.0 == track);
+        anyhow::ensure!(!is_brief, "track {track} is seen in fewer than 8 frames: too few for a spectrum");
         spectra.lines.retain(|line| matches!(line.subject, Subject::Track(id) if id.0 == track));
-        want(!spectra.lines.is_empty(), || {
-            format!("track {track} is not there, or is seen in fewer than 8 frames")
-        })?;
+        want(!spectra.lines.is_empty(), || format!("track {track} is not there"))?;
     }
     Ok(describe(&spectra))
 }
@@ -188,7 +188,7 @@ fn describe(spectra: &Spectra) -> Answer {
         "nyquist_hz": spectra.nyquist_hz,
         "resolution_hz": spectra.resolution_hz,
         "lines": lines,
-        "too_brief": spectra.n_brief,
+        "too_brief": spectra.brief.len(),
     });
     Answer { json, text, done: true }
 }

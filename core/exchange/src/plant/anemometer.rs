@@ -71,14 +71,14 @@ fn row(line: usize, text: &str) -> Result<Sample, PlantFileError> {
             )));
         }
     };
-    match wind.iter().find(|v| v.abs() > FASTEST) {
-        Some(wild) => Err(wrong(format!(
-            "a wind of {} m/s, and none is faster than {FASTEST}: where that stands for what is missing, as -999 and -9999 do, \
-             fill it in, or cut it off; where it is of another unit, metres per second are wanted",
-            Brief(*wild)
-        ))),
-        None => Ok((line, time, wind)),
+    if wind.iter().fold(0.0, |speed: f64, v| speed.hypot(*v)) > FASTEST {
+        let [x, y, z] = wind.map(Brief);
+        return Err(wrong(format!(
+            "a wind of {x}, {y}, {z} m/s, and none is faster than {FASTEST}: where that stands for what is missing, as -999 \
+             and -9999 do, fill it in, or cut it off; where it is of another unit, metres per second are wanted"
+        )));
     }
+    Ok((line, time, wind))
 }
 
 /// Seconds from row to row, which are as even as can be; the median is what is usual, also beside a gap.

@@ -317,14 +317,20 @@ pub(crate) fn room(copies: usize, nodes: usize, modes: usize) -> Result<usize, W
     if bytes > there { Err(WorkbenchError::Memory { copies, nodes, bytes, there }) } else { Ok(bytes) }
 }
 
-/// Whether there is room for the wind of a frame: three numbers a copy and step.
+/// Whether there is room for the wind of a frame.
 ///
 /// # Errors
 /// [`WorkbenchError::WindMemory`].
 pub(super) fn room_of_winds(motion: &Motion) -> Result<(), WorkbenchError> {
     let (copies, steps, there) = (motion.n_copies, motion.n_substeps, free());
-    let bytes = copies.saturating_mul(steps as usize).saturating_mul(size_of::<[f32; 3]>());
+    let bytes = bytes_of_winds(copies, steps as usize);
     if bytes > there { Err(WorkbenchError::WindMemory { copies, steps, bytes, there }) } else { Ok(()) }
+}
+
+/// Of a frame: a time a step, and three numbers a copy and step.
+pub(super) fn bytes_of_winds(copies: usize, steps: usize) -> usize {
+    let of_step = copies.saturating_mul(size_of::<[f32; 3]>()).saturating_add(size_of::<f64>());
+    steps.saturating_mul(of_step)
 }
 
 /// Memory that may be taken, bytes.

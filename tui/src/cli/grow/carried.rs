@@ -170,8 +170,10 @@ fn tell(assembled: &Assembled, library: &Library, seed: u64, bound: &Bound, answ
     let [n_vertices, n_triangles] = bound.sizes();
     let [least, most] = scales.map(|scale| Brief(rounded(scale)));
     answer.text += &format!(
-        "\nbranches: on {n_grafts} bones, {n_used} of the library's {n_branches}, {least} to {most} times as large, seed {seed}; \
-         {n_vertices} vertices, {n_triangles} triangles"
+        "\nbranches: on {}, {n_used} of the library's {n_branches}, {least} to {most} times as large, seed {seed}; {}, {}",
+        counted(*n_grafts, "bone"),
+        counted(n_vertices, "vertex"),
+        counted(n_triangles, "triangle")
     );
     let of_file = |(path, note): &(PathBuf, String)| format!("{}: {note}", path.display());
     let mut notes: Vec<String> = library.notes.iter().map(of_file).collect();

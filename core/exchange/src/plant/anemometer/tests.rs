@@ -40,11 +40,20 @@ fn what_is_no_recording_is_named_with_its_line() {
 
 #[test]
 fn no_wind_is_as_fast_as_what_stands_for_a_missing_value() {
-    for wild in ["-9999", "-999", "999.9", "1e300", "200.1"] {
-        let said = parse(&format!("t,x,y\n0,1,2\n1,1,{wild}")).unwrap_err().to_string();
-        let begins = said.starts_with("line 3: a wind of ") && said.contains(wild);
+    for (wild, told) in [
+        ("1,-9999", "1, -9999, 0"),
+        ("1,-999", "1, -999, 0"),
+        ("999.9,1,1", "999.9, 1, 1"),
+        ("1,1e300", "1, 1e300, 0"),
+        ("200.1,0", "200.1, 0, 0"),
+        // None of these is, and all together are.
+        ("150,150", "150, 150, 0"),
+        ("120,-120,120", "120, -120, 120"),
+    ] {
+        let said = parse(&format!("t,x,y\n0,1,2\n1,{wild}")).unwrap_err().to_string();
+        let begins = said.starts_with(&format!("line 3: a wind of {told} m/s, and none is faster than 200"));
         assert!(begins && said.contains("stands for what is missing, as -999 and -9999 do"), "{said}");
     }
-    let wanted = Recording { step: 1.0, samples: vec![[-135.0, 200.0, 0.0], [0.0; 3]] };
-    assert_eq!(parse("0,-135,200\n1,0,0").unwrap(), wanted);
+    let wanted = Recording { step: 1.0, samples: vec![[-120.0, 160.0, 0.0], [0.0; 3]] };
+    assert_eq!(parse("0,-120,160\n1,0,0").unwrap(), wanted);
 }

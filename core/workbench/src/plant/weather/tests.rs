@@ -200,6 +200,11 @@ fn air_that_flows_by_itself_is_held_back_by_the_trees() {
 fn what_is_no_wind_is_told_what_there_is() {
     let cases = [
         ("breeze", "\"breeze\" is no wind and no file: there are still, steady, calm,"),
+        ("8.5", "\"8.5\" is no wind and no file: there are still,"),
+        ("steady.speed=3", "\"steady.speed=3\" is no wind and no file"),
+        ("wind.", "\"wind.\" is no wind and no file"),
+        ("gusts.csv", "gusts.csv: No such file"),
+        ("logs/8.5", "logs/8.5: No such file"),
         ("wind+", "\"\" is no wind and no file: there are still,"),
         ("wind+breeze:speed=3", "\"breeze:speed=3\" is no wind and no file"),
         ("steady:sped=3", "steady has no \"sped\": it takes speed, towards"),

@@ -93,7 +93,9 @@ fn part(typed: &str) -> Result<Part, WorkbenchError> {
     let Some(weather) = WEATHERS.iter().find(|weather| weather.name == name) else {
         let path = Path::new(typed);
         // What is named as files are is one, also where it is missing.
-        let is_named_so = Path::new(name).extension().is_some() || name.contains('/');
+        let ending = Path::new(name).extension().unwrap_or_default().as_encoded_bytes();
+        let has_ending = !ending.is_empty() && ending.iter().all(u8::is_ascii_alphabetic);
+        let is_named_so = has_ending || name.contains('/');
         if is_named_so || path.exists() {
             return Ok(Part::Recorded(path.to_owned(), recorded(path)?));
         }
