@@ -690,6 +690,22 @@ pub enum WorkbenchError {
         /// At most.
         most: usize,
     },
+    /// Branches for which there is not that memory.
+    #[error(
+        "the branches on all bones have {n_vertices} vertices and {n_triangles} triangles, which take {} MB until they are \
+         written, and there are {}: branches of fewer are wanted, or fewer groups",
+        bytes / 1_000_000, there / 1_000_000
+    )]
+    BranchesMemory {
+        /// On all bones.
+        n_vertices: usize,
+        /// On all bones.
+        n_triangles: usize,
+        /// Wanted.
+        bytes: usize,
+        /// Free.
+        there: usize,
+    },
     /// A point cache of what has no vertices of its own.
     #[error("a .pc2 moves the vertices of one mesh: --onto takes an .obj or a .ply then")]
     NoVertices,

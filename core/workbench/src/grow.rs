@@ -27,7 +27,7 @@ use honami_structure::repeat::repeat;
 pub use honami_structure::siblings::{self, Siblings};
 use honami_structure::tree::Group;
 
-pub use self::assembled::{Assembled, Library};
+pub use self::assembled::{Assembled, Begin, Library};
 pub use self::bound::{Bound, Onto, UNIT};
 use self::gather::gather;
 pub use self::hand::{Bones, Hand, shape};
@@ -84,6 +84,8 @@ pub struct Growth {
     /// Frames of the clip that it moves through: from the first to the last in which anything of a group is seen, or a loop
     /// among them.
     pub frames: Range<u32>,
+    /// When a loop begins anew: the time of the clip's next frame, in seconds.
+    pub again_s: Option<f64>,
     /// Who has grown it, and how.
     pub provenance: Provenance,
     /// What whoever uses it should know, a sentence each.
@@ -134,12 +136,13 @@ pub fn grow(
     let envelope = envelope?;
     let Laid { skeleton, bones, hand, notes: of_hands } =
         lay(skeleton, &bears, (gathered.clustering, &gathered.bones), hands, placed)?;
-    let (skeleton, frames) = match request.is_loop {
+    let (skeleton, frames, again_s) = match request.is_loop {
         true => {
             let (repeated, of) = repeat(&skeleton, gathered.unbroken.clone())?;
-            (repeated, gathered.frames.start + of.start..gathered.frames.start + of.end)
+            let again_s = skeleton.times().get(of.end);
+            (repeated, gathered.frames.start + of.start..gathered.frames.start + of.end, again_s)
         }
-        false => (skeleton, gathered.frames.clone()),
+        false => (skeleton, gathered.frames.clone(), None),
     };
     let joints_of =
         |group: usize| bears.iter().filter(move |pair| pair.1 as usize == group).map(|pair| pair.0);
@@ -172,6 +175,7 @@ pub fn grow(
         n_collapsed,
         n_left_out,
         frames,
+        again_s,
         provenance,
         notes,
         seconds: begun.elapsed().as_secs_f64(),

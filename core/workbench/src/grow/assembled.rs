@@ -3,22 +3,32 @@
 #[cfg(test)]
 mod tests;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use honami_exchange::glb::{Document, Grafting, Piece};
+use honami_exchange::glb::{Document, Grafting, Piece, Tree};
 use honami_exchange::mesh::{MeshFormat, Up};
 use honami_mechanics::{Beams, Options};
 use honami_model::mesh::Mesh;
 use honami_model::skeleton::{Joint, Skeleton};
+use honami_structure::StructureError;
 use honami_structure::assemble::{Branch, Graft, assemble, branches};
 
 use super::body::{bearing, tubes};
 use super::bound::{Bound, Read, in_origin, nodes, read, refused};
 use crate::error::WorkbenchError;
+use crate::plant::sway::free;
 
-/// Vertices of all branches on a plant: gigabytes of memory.
+/// Vertices of all branches on a plant, whatever is free: no reader of what is written takes more.
 const MOST_VERTICES: usize = 1 << 26;
+/// What a vertex and a triangle take until they are written, bytes: places, normals and bindings, and most of it their text in
+/// a `.usda`, which is moved as it grows.
+const VERTEX_BYTES: usize = 400;
+const TRIANGLE_BYTES: usize = 80;
+/// Numbers of the library's scenes are in the plant's, and once more in what is written.
+const SCENES: usize = 2;
+/// Root nodes that are told by their names.
+const MOST_NAMES: usize = 8;
 
 /// Branches to put plants together of.
 #[derive(Clone, Debug)]
@@ -29,9 +39,21 @@ pub struct Library {
     pub notes: Vec<(PathBuf, String)>,
 }
 
+/// Where a branch begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Begin {
+    /// Where whoever made its mesh holds it: the root node of its tree, or the origin of its file.
+    Pivot,
+    /// Where its mesh is lowest, for the pivot is not of it.
+    Lowest,
+    /// At the fork of a plant of nodes.
+    Fork,
+}
+
 #[derive(Clone, Debug)]
 struct Kept {
     branch: Branch,
+    begin: Begin,
     /// z up.
     mesh: Mesh,
     document: usize,
@@ -56,16 +78,19 @@ pub struct Assembled {
 
 impl Library {
     /// Reads files: meshes, each a branch, or of a `.glb` each tree of nodes that stands in its scene; and plants of nodes, of
-    /// which each branch at a fork that is not small becomes tubes. `up` is that of `.obj` and `.ply`.
+    /// which each branch at a fork that is not small becomes tubes. `up` is that of `.obj` and `.ply`. Trees that are no branches
+    /// are left out where others of the file are.
     ///
     /// # Errors
-    /// What is wrong with a file, [`WorkbenchError::Onto`] with what is no branch, [`WorkbenchError::NoFork`], and
+    /// What is wrong with a file, [`WorkbenchError::Onto`] where nothing of it is a branch, [`WorkbenchError::NoFork`], and
     /// [`WorkbenchError::NoMeaning`] for `up` of a library of other files.
     pub fn read(paths: &[PathBuf], up: Option<Up>) -> Result<Self, WorkbenchError> {
         let mut library = Self { documents: Vec::new(), branches: Vec::new(), notes: Vec::new() };
-        let is_typed = paths.iter().any(|path| MeshFormat::of(path).is_some());
+        let takes_up = |path: &PathBuf| MeshFormat::of(path).is_some();
+        let does_any = paths.iter().any(takes_up);
         for path in paths {
-            let up = up.filter(|_| MeshFormat::of(path).is_some() || !is_typed);
+            // Where none does, the first refuses it.
+            let up = up.filter(|_| takes_up(path) || !does_any);
             match read(path, up)? {
                 Some(read) => library.add_mesh(path, read)?,
                 None => library.add_nodes(path)?,
@@ -76,14 +101,42 @@ impl Library {
 
     fn add_mesh(&mut self, path: &Path, read: Read) -> Result<(), WorkbenchError> {
         let Read { mesh, up, document, pieces, notes, .. } = read;
-        self.notes.extend(notes.into_iter().map(|note| (path.to_owned(), note)));
-        let parts = parts(&mesh, pieces);
-        // A scene without a mesh is no branch either, which the first look at it says.
-        let parts = if parts.is_empty() { vec![(Mesh::default(), Vec::new())] } else { parts };
-        for (mesh, pieces) in parts {
-            let branch = Branch::of(&mesh, None).map_err(|error| refused(error, path, up))?;
-            self.keep(branch, mesh, pieces);
+        let trees = document.trees().map_err(|error| error.of(path))?;
+        // A scene without a mesh is no branch either.
+        let (mut why, n_before) = (None, self.branches.len());
+        let (mut left_out, mut lowest) = (Vec::new(), Vec::new());
+        for (tree, mesh, pieces) in parts(&mesh, pieces) {
+            let Tree { name, pivot } = &trees[tree];
+            let is_held = Branch::may_begin(&mesh, *pivot);
+            match Branch::of(&mesh, is_held.then_some(*pivot)) {
+                Ok(branch) if is_held => self.keep(branch, Begin::Pivot, mesh, pieces),
+                Ok(branch) => {
+                    lowest.push(name.as_str());
+                    self.keep(branch, Begin::Lowest, mesh, pieces);
+                }
+                Err(error @ (StructureError::NoMesh | StructureError::NoBranch { .. })) => {
+                    left_out.push(name.as_str());
+                    why = why.or(Some(error));
+                }
+                Err(error) => return Err(refused(error, path, up)),
+            }
         }
+        if self.branches.len() == n_before {
+            return Err(refused(why.unwrap_or(StructureError::NoMesh), path, up));
+        }
+        let mut notes = notes;
+        if !left_out.is_empty() {
+            notes.push(format!("left out, for they have no triangle or go nowhere: {}", told(&left_out)));
+        }
+        if !lowest.is_empty() {
+            // Of a file that is one mesh there is no node to name.
+            let names =
+                if MeshFormat::of(path).is_some() { String::new() } else { format!(": {}", told(&lowest)) };
+            notes.push(format!(
+                "begins where it is lowest, for its pivot is outside it or in its middle{names}"
+            ));
+        }
+        self.notes.extend(notes.into_iter().map(|note| (path.to_owned(), note)));
         self.documents.push(document);
         Ok(())
     }
@@ -91,7 +144,7 @@ impl Library {
     fn add_nodes(&mut self, path: &Path) -> Result<(), WorkbenchError> {
         let measured = nodes(path)?;
         self.notes.extend(measured.notes.into_iter().map(|note| (path.to_owned(), note)));
-        let plants = branches(&measured.plant)?;
+        let plants = branches(&measured.plant).map_err(|error| refused(error, path, None))?;
         if plants.is_empty() {
             return Err(WorkbenchError::NoFork { path: path.to_owned() });
         }
@@ -102,15 +155,15 @@ impl Library {
             let (_, pieces) = document.pieces()?;
             let foot = Some(beams.position(0).into());
             let branch = Branch::of(&mesh, foot).map_err(|error| refused(error, path, None))?;
-            self.keep(branch, mesh, pieces);
+            self.keep(branch, Begin::Fork, mesh, pieces);
             self.documents.push(document);
         }
         Ok(())
     }
 
     /// Of the document that comes next.
-    fn keep(&mut self, branch: Branch, mesh: Mesh, pieces: Vec<Piece>) {
-        self.branches.push(Kept { branch, mesh, document: self.documents.len(), pieces });
+    fn keep(&mut self, branch: Branch, begin: Begin, mesh: Mesh, pieces: Vec<Piece>) {
+        self.branches.push(Kept { branch, begin, mesh, document: self.documents.len(), pieces });
     }
 
     /// How many branches it has.
@@ -118,10 +171,41 @@ impl Library {
     pub fn n_branches(&self) -> usize {
         self.branches.len()
     }
+
+    /// How many of them begin so.
+    #[must_use]
+    pub fn n_that(&self, begin: Begin) -> usize {
+        self.branches.iter().filter(|kept| kept.begin == begin).count()
+    }
 }
 
-/// Parts of a mesh by the trees of nodes that its pieces are of.
-fn parts(mesh: &Mesh, pieces: Vec<Piece>) -> Vec<(Mesh, Vec<Piece>)> {
+/// Names in words, the first ones of many.
+fn told(names: &[&str]) -> String {
+    let more = names.len().saturating_sub(MOST_NAMES);
+    let named = names[..names.len() - more].join(", ");
+    if more > 0 { format!("{named} and {more} more") } else { named }
+}
+
+/// Whether there is memory for so much on a plant, of so many bytes that are there.
+fn check_room(
+    n_vertices: usize,
+    n_triangles: usize,
+    n_scenes: usize,
+    there: usize,
+) -> Result<(), WorkbenchError> {
+    if n_vertices > MOST_VERTICES {
+        return Err(WorkbenchError::TooManyVertices { n_vertices, most: MOST_VERTICES });
+    }
+    let of_triangles = n_triangles.saturating_mul(TRIANGLE_BYTES);
+    let bytes = (n_vertices * VERTEX_BYTES).saturating_add(of_triangles).saturating_add(SCENES * n_scenes);
+    if bytes > there {
+        return Err(WorkbenchError::BranchesMemory { n_vertices, n_triangles, bytes, there });
+    }
+    Ok(())
+}
+
+/// Parts of a mesh by the trees of nodes that its pieces are of, and which these are.
+fn parts(mesh: &Mesh, pieces: Vec<Piece>) -> Vec<(usize, Mesh, Vec<Piece>)> {
     let mut parts: BTreeMap<usize, (Mesh, Vec<Piece>)> = BTreeMap::new();
     let (mut first, mut triangles) = (0, mesh.triangles.iter().peekable());
     for piece in pieces {
@@ -135,7 +219,7 @@ fn parts(mesh: &Mesh, pieces: Vec<Piece>) -> Vec<(Mesh, Vec<Piece>)> {
         own.push(piece);
         first = last;
     }
-    parts.into_values().collect()
+    parts.into_iter().map(|(tree, (mesh, pieces))| (tree, mesh, pieces)).collect()
 }
 
 impl Bound {
@@ -143,7 +227,8 @@ impl Bound {
     /// has other branches.
     ///
     /// # Errors
-    /// [`WorkbenchError::Unit`], [`WorkbenchError::Structure`], [`WorkbenchError::Beams`], [`WorkbenchError::TooManyVertices`].
+    /// [`WorkbenchError::Unit`], [`WorkbenchError::Structure`], [`WorkbenchError::Beams`], [`WorkbenchError::TooManyVertices`],
+    /// [`WorkbenchError::BranchesMemory`].
     pub fn assembled(
         skeleton: &Skeleton,
         library: &Library,
@@ -156,9 +241,10 @@ impl Bound {
         let grafts = assemble(&rest, &known, seed, number)?;
         let of = |graft: &Graft| &library.branches[graft.branch];
         let n_vertices = grafts.iter().map(|graft| of(graft).mesh.positions.len()).sum();
-        if n_vertices > MOST_VERTICES {
-            return Err(WorkbenchError::TooManyVertices { n_vertices, most: MOST_VERTICES });
-        }
+        let n_triangles = grafts.iter().map(|graft| of(graft).mesh.triangles.len()).sum();
+        let scenes: BTreeSet<usize> = grafts.iter().map(|graft| of(graft).document).collect();
+        let n_scenes = scenes.iter().map(|row| library.documents[*row].n_bytes()).sum();
+        check_room(n_vertices, n_triangles, n_scenes, free())?;
         let (mut mesh, mut bindings) = bearing(&rest)?;
         let mut document = if mesh.triangles.is_empty() { Document::empty() } else { Document::of(&mesh) };
         let (_, mut pieces) = document.pieces()?;
@@ -173,9 +259,7 @@ impl Bound {
         }
         let is_used = |row: &usize| grafts.iter().any(|graft| graft.branch == *row);
         let used: Vec<usize> = (0..known.len()).filter(is_used).collect();
-        let mut others: Vec<usize> = used.iter().map(|row| library.branches[*row].document).collect();
-        others.dedup();
-        document.credit(&others.iter().map(|row| &library.documents[*row]).collect::<Vec<_>>());
+        document.credit(&scenes.iter().map(|row| &library.documents[*row]).collect::<Vec<_>>());
         let scales = grafts.iter().map(|graft| graft.scale);
         let is_bare = |(joint, is_tip): &(&Joint, bool)| !is_tip && !joint.groups.is_empty();
         let assembled = Assembled {

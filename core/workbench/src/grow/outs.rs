@@ -1,5 +1,8 @@
 //! What skeletons, and what they carry, are written as.
 
+#[cfg(test)]
+mod tests;
+
 use std::borrow::Cow;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,6 +14,7 @@ use honami_model::mesh::Binding;
 use honami_model::skeleton::Skeleton;
 use honami_structure::blend::{Blend, blended, carries};
 use honami_structure::fewer::Fewer;
+use honami_structure::repeat::closed;
 
 use super::assembled::Library;
 use super::bound::{Bound, coloured};
@@ -47,6 +51,8 @@ pub struct Carried {
     pub blend: Blend,
     /// The bones that rigs have; `None`: all.
     pub fewer: Option<Fewer>,
+    /// When a loop begins anew, seconds: rigs have its first pose there once more, for they are played from key to key.
+    pub again_s: Option<f64>,
     /// Whether vertices are coloured by the bones that carry them.
     pub are_weights_shown: bool,
 }
@@ -135,6 +141,10 @@ pub fn write(
         }
     };
     let motion = bound.standing(skeleton)?;
+    let keys = || match carried.again_s {
+        Some(time_s) => closed(&motion, time_s).map(Cow::Owned),
+        None => Ok(Cow::Borrowed(&motion)),
+    };
     let colours = |bindings: &[Binding]| match carried.are_weights_shown {
         true => coloured(bindings),
         false => Vec::new(),
@@ -149,11 +159,11 @@ pub fn write(
         Out::Rig => {
             let (Bound { document, pieces, rest, .. }, bindings) = (bound, of_rig());
             let colours = colours(&bindings);
-            rigged(document.clone(), pieces, &bindings, &colours, rest, &motion, kept)?.write(path)?;
+            rigged(document.clone(), pieces, &bindings, &colours, rest, &*keys()?, kept)?.write(path)?;
         }
         Out::Usd => {
             let (Bound { mesh, rest, .. }, bindings) = (bound, of_rig());
-            write_usda(path, &usda(mesh, &bindings, &colours(&bindings), rest, &motion, kept)?)?;
+            write_usda(path, &usda(mesh, &bindings, &colours(&bindings), rest, &*keys()?, kept)?)?;
         }
         Out::Frames(format) => {
             let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.exists());

@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 
 use honami_model::brief::{Brief, counted};
 use honami_workbench::WorkbenchError;
-use honami_workbench::grow::{self, Assembled, Blend, Bound, Carried, Fewer, Growth, Library, Onto, Out};
+use honami_workbench::grow::{
+    self, Assembled, Begin, Blend, Bound, Carried, Fewer, Growth, Library, Onto, Out,
+};
 use serde_json::json;
 
 use super::super::args::grow::{self as typed, Grow};
@@ -124,7 +126,8 @@ pub(super) fn carried(args: &Grow, growth: &Growth) -> anyhow::Result<Carried> {
     let library = library.map(|library| (library, seed));
     let fewer = args.joints.map(|most| Fewer::of(&growth.skeleton, most as usize));
     let fewer = fewer.transpose().map_err(WorkbenchError::from)?;
-    Ok(Carried { bound, library, unit, blend, fewer, are_weights_shown: args.weights })
+    let (again_s, are_weights_shown) = (growth.again_s, args.weights);
+    Ok(Carried { bound, library, unit, blend, fewer, again_s, are_weights_shown })
 }
 
 /// Tells of a plant of others.
@@ -175,6 +178,10 @@ fn tell(assembled: &Assembled, library: &Library, seed: u64, bound: &Bound, answ
         counted(n_vertices, "vertex"),
         counted(n_triangles, "triangle")
     );
+    let [pivot, lowest, fork] = [Begin::Pivot, Begin::Lowest, Begin::Fork].map(|begin| library.n_that(begin));
+    let begun = [(pivot, "at pivots"), (lowest, "where lowest"), (fork, "at forks")];
+    let begun = begun.iter().filter(|(n, _)| *n > 0).map(|(n, place)| format!("{n} {place}"));
+    answer.text += &format!("\nthe library's begin: {}", begun.collect::<Vec<_>>().join(", "));
     let of_file = |(path, note): &(PathBuf, String)| format!("{}: {note}", path.display());
     let mut notes: Vec<String> = library.notes.iter().map(of_file).collect();
     if *n_bare > 0 {
@@ -184,6 +191,7 @@ fn tell(assembled: &Assembled, library: &Library, seed: u64, bound: &Bound, answ
     answer.json["branches"] = json!({
         "library": n_branches,
         "used": n_used,
+        "begin": { "pivot": pivot, "lowest": lowest, "fork": fork },
         "bones": n_grafts,
         "scales": scales,
         "seed": seed,

@@ -27,6 +27,9 @@ fn folder() -> (tempfile::TempDir, impl Fn(&str) -> PathBuf) {
         ("stick.swc", "1 1 0 0 0 .2 -1\n2 1 0 0 1 .2 1\n"),
         ("point.obj", "v 1 1 1\nf 1 1 1\n"),
         ("cloud.obj", "v 1 1 1\n"),
+        ("ring.obj", "v 1 0 0\nv 0 0 1\nv -1 0 0\nv 0 0 -1\nf 1 2 3 4\n"),
+        ("apart.obj", "v 50 0 0\nv 50.1 1 0\nv 50 2 0\nf 1 2 3\n"),
+        ("twig.obj", "v 0 0 0\nv 1 -.05 .05\nv 2 -1 0\nf 1 2 3\n"),
     ] {
         std::fs::write(root.join(name), text).unwrap();
     }
@@ -40,6 +43,7 @@ fn carried(bound: Bound) -> Carried {
         unit: 0.5,
         blend: Blend::Linear,
         fewer: None,
+        again_s: None,
         are_weights_shown: false,
     }
 }
@@ -47,7 +51,7 @@ fn carried(bound: Bound) -> Carried {
 #[test]
 fn a_mesh_and_a_scene_of_branches_are_one() {
     let (_folder, at) = folder();
-    // A scene of three trees of nodes, of which each is a branch: grown before, without its bones.
+    // A mesh, which is a branch, and a plant of nodes that has one.
     let grove = Library::read(&[at("shoot.obj"), at("tree.swc")], None).unwrap();
     let skeleton = fork();
     for seed in 0..6 {
@@ -71,7 +75,12 @@ fn a_mesh_and_a_scene_of_branches_are_one() {
             (&same.mesh, &same.bindings, &same.document),
             (&bound.mesh, &bound.bindings, &bound.document)
         );
-        assert_ne!(Bound::assembled(&skeleton, &grove, 0.5, seed, 1).unwrap().mesh, bound.mesh);
+        let other = Bound::assembled(&skeleton, &grove, 0.5, seed, 1).unwrap().mesh;
+        assert_ne!(other, bound.mesh);
+        // Of the same skeleton: what is drawn is the branches.
+        let carried = Carried { library: Some((grove.clone(), seed)), ..carried(bound) };
+        let sibling = carried.of_sibling(&skeleton, 1).unwrap().into_owned();
+        assert_eq!(sibling.bound.unwrap().mesh, other);
     }
 }
 
@@ -95,6 +104,89 @@ fn a_scene_has_as_many_branches_as_trees_of_nodes() {
     assert!((other.branch.breadth() - shoot.branches[0].branch.breadth()).abs() < 1e-6);
     let bound = Bound::assembled(&fork(), &library, 1.0, 3, 0).unwrap();
     write(&fork(), 0, Out::Rig, &carried(bound), &at("out.glb")).unwrap();
+}
+
+/// Those that are none are left out by the names of their root nodes, where others are there; of these it is told which do not
+/// begin where their root nodes stand.
+#[test]
+fn trees_that_are_no_branches_are_left_out() {
+    let (_folder, at) = folder();
+    let upright = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let grove = |names: &[&str]| {
+        let mut grove = Document::empty();
+        for (x, name) in (0..).zip(names) {
+            let Read { document, pieces, .. } = read(&at(&format!("{name}.obj")), None).unwrap().unwrap();
+            let _piece =
+                Grafting::of(&document).graft(&mut grove, &pieces[0], upright, [f64::from(x), 1.0, 2.0]);
+        }
+        let path = at("grove.glb");
+        grove.write(&path).unwrap();
+        // All nodes are called so; those that are wanted are as long.
+        let mut bytes = std::fs::read(&path).unwrap();
+        let find = |bytes: &[u8], from: usize, what: &str| {
+            from + bytes[from..].windows(what.len()).position(|found| found == what.as_bytes()).unwrap()
+        };
+        let mut from = find(&bytes, 0, "\"nodes\":[");
+        for name in names {
+            from = find(&bytes, from, "\"plant\"");
+            bytes[from + 1..from + 6].copy_from_slice(format!("{name:_<5}").as_bytes());
+        }
+        std::fs::write(&path, bytes).unwrap();
+        Library::read(&[path], None)
+    };
+    let library = grove(&["shoot", "ring", "point", "apart"]).unwrap();
+    let notes: Vec<&str> = library.notes.iter().map(|(_, note)| note.as_str()).collect();
+    assert_eq!(
+        notes,
+        [
+            "left out, for they have no triangle or go nowhere: ring_, point",
+            "begins where it is lowest, for its pivot is outside it or in its middle: apart"
+        ]
+    );
+    assert_eq!([Begin::Pivot, Begin::Lowest, Begin::Fork].map(|begin| library.n_that(begin)), [1, 1, 0]);
+    assert!(Bound::assembled(&fork(), &library, 1.0, 3, 0).is_ok());
+    let error = grove(&["point", "ring"]).unwrap_err().to_string();
+    assert!(error.contains("grove.glb: a branch goes from its foot"), "{error}");
+    assert_eq!(told(&["a"; 10]), "a, a, a, a, a, a, a, a and 2 more");
+}
+
+/// A twig along x that droops is held by the origin of its file, and hangs on the bone by that.
+#[test]
+fn meshes_are_held_by_their_pivots() {
+    let (_folder, at) = folder();
+    let library = Library::read(&[at("twig.obj"), at("apart.obj"), at("tree.swc")], None).unwrap();
+    let wanted = (
+        at("apart.obj"),
+        "begins where it is lowest, for its pivot is outside it or in its middle".to_owned(),
+    );
+    assert_eq!(library.notes, [wanted]);
+    assert_eq!([Begin::Pivot, Begin::Lowest, Begin::Fork].map(|begin| library.n_that(begin)), [1, 1, 1]);
+    let twig = Library::read(&[at("twig.obj")], None).unwrap();
+    let bound = Bound::assembled(&fork(), &twig, 1.0, 3, 0).unwrap();
+    let ends = bound.rest.places(bound.rest.rest());
+    let n = bound.mesh.positions.len();
+    for (first, bone) in [(n - 6, 2), (n - 3, 3)] {
+        for (vertex, place) in [(first, ends[1]), (first + 2, ends[bone])] {
+            let found = bound.mesh.positions[vertex];
+            assert!((0..3).all(|k| (found[k] - place[k]).abs() < 1e-9), "{vertex}: {found:?} {place:?}");
+        }
+    }
+}
+
+#[test]
+fn what_memory_is_not_there_for_is_refused_with_both_figures() {
+    assert!(check_room(1_000_000, 2_000_000, 5_000_000, 570_000_000).is_ok());
+    for (n_vertices, there, wanted) in [
+        (
+            1_000_000,
+            569_999_999,
+            "1000000 vertices and 2000000 triangles, which take 570 MB until they are written, and there are 569",
+        ),
+        (1 << 27, usize::MAX, "134217728 vertices, and 67108864 are carried at most"),
+    ] {
+        let error = check_room(n_vertices, 2_000_000, 5_000_000, there).unwrap_err().to_string();
+        assert!(error.contains(wanted), "{error}");
+    }
 }
 
 /// Bones that all begin at the root leave no stem, and the plant is its branches.

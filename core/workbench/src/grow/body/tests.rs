@@ -77,6 +77,7 @@ fn frames_are_written_all_or_none() {
         unit: 1.0,
         blend: Blend::Linear,
         fewer: None,
+        again_s: None,
         are_weights_shown: false,
     };
     let path = folder.path().join("%d.ply");
