@@ -158,7 +158,13 @@ fn hand_work_is_listed_kept_undone_and_counts_wherever_a_skeleton_does() {
     assert_eq!(bench.text("shape p.honami").lines().next(), Some("root at 70.0, 100.0, by hand"));
     bench.text("shape p.honami --release");
     assert_eq!(listed(&bench), bare);
-    // Two steps are one edit.
+}
+
+#[test]
+fn a_root_and_a_bone_are_one_edit() {
+    let bench = grouped();
+    let listed = |bench: &Bench| bench.json("shape p.honami");
+    let bare = listed(&bench);
     let said = bench.text("shape p.honami --root 70,100 --group 2 --gain 2");
     assert!(said.ends_with("  root placed at 70.0, 100.0; group 2: gain 2"), "{said}");
     assert!(bench.edit("p.honami", "undo\n").text().contains("undo: root placed"));

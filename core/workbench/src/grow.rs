@@ -144,16 +144,7 @@ pub fn grow(
         }
         false => (skeleton, gathered.frames.clone(), None),
     };
-    let joints_of =
-        |group: usize| bears.iter().filter(move |pair| pair.1 as usize == group).map(|pair| pair.0);
-    let ends: Vec<usize> =
-        (0..gathered.groups.len()).filter(|&row| gathered.groups[row].children.is_empty()).collect();
-    let n_left_out = ends.iter().filter(|&&row| joints_of(row).next().is_none()).count();
-    let is_collapsed = |(row, group): &(usize, &Group)| {
-        let bearer = group.parent.map_or(Some(0), |parent| joints_of(parent).next());
-        !group.children.is_empty() && joints_of(*row).next().is_some_and(|own| Some(own) == bearer)
-    };
-    let n_collapsed = gathered.groups.iter().enumerate().filter(is_collapsed).count();
+    let Became { n_copies, n_collapsed, n_left_out } = became(&gathered.groups, &bears);
     let mut notes = gathered.notes.clone();
     notes.extend(of_hands);
     notes.extend(ear.warnings());
@@ -171,7 +162,7 @@ pub fn grow(
         bones,
         hand,
         groups: gathered.members(),
-        n_copies: ends.iter().map(|&row| joints_of(row).count()).max().unwrap_or_default(),
+        n_copies,
         n_collapsed,
         n_left_out,
         frames,
@@ -180,6 +171,29 @@ pub fn grow(
         notes,
         seconds: begun.elapsed().as_secs_f64(),
     })
+}
+
+/// What groups have become.
+struct Became {
+    n_copies: usize,
+    n_collapsed: usize,
+    n_left_out: usize,
+}
+
+/// What groups have become, by which joint has become which of them.
+fn became(groups: &[Group], bears: &[(u32, u32)]) -> Became {
+    let joints_of =
+        |group: usize| bears.iter().filter(move |pair| pair.1 as usize == group).map(|pair| pair.0);
+    let ends: Vec<usize> = (0..groups.len()).filter(|&row| groups[row].children.is_empty()).collect();
+    let is_collapsed = |(row, group): &(usize, &Group)| {
+        let bearer = group.parent.map_or(Some(0), |parent| joints_of(parent).next());
+        !group.children.is_empty() && joints_of(*row).next().is_some_and(|own| Some(own) == bearer)
+    };
+    Became {
+        n_copies: ends.iter().map(|&row| joints_of(row).count()).max().unwrap_or_default(),
+        n_collapsed: groups.iter().enumerate().filter(is_collapsed).count(),
+        n_left_out: ends.iter().filter(|&&row| joints_of(row).next().is_none()).count(),
+    }
 }
 
 /// Refuses a root that is farther from the picture than its larger side.

@@ -166,24 +166,15 @@ pub fn write(
             write_usda(path, &usda(mesh, &bindings, &colours(&bindings), rest, &*keys()?, kept)?)?;
         }
         Out::Frames(format) => {
-            let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.exists());
-            if let Some(folder) = folder {
-                let failed = |source| WorkbenchError::Io {
-                    what: "making the folder of frames",
-                    source,
-                    path: folder.into(),
-                };
-                fs::create_dir(folder).map_err(failed)?;
-            }
             // All or none: half of a motion is mixed with what stood there.
             for name in out.names(path, motion.times().len()) {
                 check_frame(&name, format)?;
             }
-            let colours = colours(&bound.bindings);
+            make_folder(path)?;
+            let (triangles, colours) = (&bound.mesh.triangles, colours(&bound.bindings));
             for frame in 0..motion.times().len() {
                 let Some(path) = numbered(path, frame) else { continue };
                 let positions = moved(bound, &motion, frame, carried.blend, bound.up.unwrap_or(format.up()));
-                let triangles = &bound.mesh.triangles;
                 write_frame(&path, format, &Frame { positions: &positions, triangles, colours: &colours })?;
             }
         }
@@ -202,6 +193,15 @@ pub fn write(
         }
     }
     Ok(())
+}
+
+/// Makes the folder of frames where there is none, in one that there is.
+fn make_folder(frames: &Path) -> Result<(), WorkbenchError> {
+    let folder = frames.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.exists());
+    let Some(folder) = folder else { return Ok(()) };
+    let failed =
+        |source| WorkbenchError::Io { what: "making the folder of frames", source, path: folder.into() };
+    fs::create_dir(folder).map_err(failed)
 }
 
 /// Where vertices are in a frame, in the axes of a file.
