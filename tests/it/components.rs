@@ -9,15 +9,26 @@ use serde_json::Value;
 
 const FRAMES: u32 = 200;
 
-/// Writes a table of tracks, 25 frames a second.
-fn table(bench: &Bench, name: &str, tracks: u32, frames: u32, at: impl Fn(u32, f64) -> [f64; 2]) {
+/// Writes a table of tracks, 25 frames a second, that begins with this frame at 0 s.
+fn table_from(
+    first: u32,
+    bench: &Bench,
+    name: &str,
+    tracks: u32,
+    frames: u32,
+    at: impl Fn(u32, f64) -> [f64; 2],
+) {
     let mut text = "track,frame,time_s,x,y\n".to_owned();
     for (track, frame) in (0..tracks).flat_map(|track| (0..frames).map(move |frame| (track, frame))) {
         let time_s = f64::from(frame) / 25.0;
         let [x, y] = at(track, time_s);
-        writeln!(text, "{track},{frame},{time_s},{x},{y}").unwrap();
+        writeln!(text, "{track},{},{time_s},{x},{y}", first + frame).unwrap();
     }
     fs::write(bench.path(name), text).unwrap();
+}
+
+fn table(bench: &Bench, name: &str, tracks: u32, frames: u32, at: impl Fn(u32, f64) -> [f64; 2]) {
+    table_from(0, bench, name, tracks, frames, at);
 }
 
 /// Twelve tracks swing up and down by 4 px at 1.5 Hz, twelve across by 2 px at 4 Hz.
@@ -49,7 +60,7 @@ fn two_swings_are_told_written_and_drawn() {
     for (component, [hz, degrees, share]) in components.iter().zip([[1.5, 90.0, 0.8], [4.0, 0.0, 0.2]]) {
         assert!((number(&component["hz"]) - hz).abs() < 0.01, "{}", component["hz"]);
         let off = number(&component["direction_deg"]) - degrees;
-        assert!((off + 90.0).rem_euclid(180.0) - 90.0 < 1.0, "{off}");
+        assert!(((off + 90.0).rem_euclid(180.0) - 90.0).abs() < 1.0, "{off}");
         assert!((number(&component["share"]) - share).abs() < 0.01, "{}", component["share"]);
         assert_eq!(component["half_in_tracks"], 6);
     }
@@ -79,6 +90,20 @@ fn two_swings_are_told_written_and_drawn() {
     let text = bench.text("components two.csv");
     assert!(text.contains("1.500") && text.contains("4.000") && text.contains('█'), "{text}");
     assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
+}
+
+/// A table of tracks that were followed from frame 100 on: its frames keep their numbers.
+#[test]
+fn frames_are_numbered_as_in_the_table() {
+    let bench = Bench::new();
+    table_from(100, &bench, "late.csv", 24, FRAMES, two_swings);
+    let said = bench.json("components late.csv maps.csv");
+    assert_eq!(said["first_frame"], 100);
+    let chronos = rows(&bench.path("maps.chronos.csv"));
+    let frames: Vec<u32> = chronos.iter().map(|row| row["frame"].parse().unwrap()).collect();
+    assert_eq!(frames, (100..100 + FRAMES).chain(100..100 + FRAMES).collect::<Vec<_>>());
+    table(&bench, "first.csv", 24, FRAMES, two_swings);
+    assert_eq!(bench.json("components first.csv")["first_frame"], 0);
 }
 
 #[test]

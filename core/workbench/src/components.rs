@@ -15,7 +15,7 @@ use honami_store::Project;
 
 use crate::error::WorkbenchError;
 use crate::progress::{Flow, Progress};
-use crate::spectra::{self, OVER_FLOOR, Timed, positions};
+use crate::spectra::{self, OVER_FLOOR, positions};
 
 /// The edge of noise is told from the median of as many singular values as there are frames, or twice as many as tracks.
 pub(crate) const FEWEST_TRACKS: usize = 4;
@@ -52,6 +52,8 @@ pub struct Components {
     pub places: Vec<(TrackId, [f64; 2])>,
     /// Frames in which two or more are seen.
     pub n_frames: usize,
+    /// The frame that times and chronoi begin with: 0, or the first of a table.
+    pub first_frame: u32,
     /// Time of every frame of the clip, seconds.
     pub times_s: Vec<f64>,
     /// Positions that were not seen in these, and are filled from the other tracks.
@@ -84,8 +86,8 @@ pub fn of_project(
 /// # Errors
 /// What the table says of its lines, [`WorkbenchError::NoTimes`], and as [`of_project`].
 pub fn of_table(path: &Path, most: usize, progress: &dyn Progress) -> Result<Components, WorkbenchError> {
-    let (times, tracks): Timed = spectra::table(path)?;
-    of(&times, &tracks, most, progress)
+    let (first_frame, (times, tracks)) = spectra::table(path)?;
+    Ok(Components { first_frame, ..of(&times, &tracks, most, progress)? })
 }
 
 fn of(
@@ -125,6 +127,7 @@ fn of(
     Ok(Components {
         places: tracks.iter().enumerate().filter_map(place).collect(),
         n_frames: table.n_frames(),
+        first_frame: 0,
         times_s: times.as_slice().to_vec(),
         n_filled: table.n_filled(),
         edge_px: bod.edge,

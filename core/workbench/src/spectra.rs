@@ -94,12 +94,12 @@ pub fn of_project(project: &Project, wanted: Wanted) -> Result<Spectra, Workbenc
 /// # Errors
 /// What the table says of its lines, [`WorkbenchError::NoTimes`], and for a table too short for a spectrum.
 pub fn of_table(path: &Path, wanted: Wanted) -> Result<Spectra, WorkbenchError> {
-    let (times, tracks) = table(path)?;
+    let (_, (times, tracks)) = table(path)?;
     of(&times, &tracks, &BTreeMap::new(), wanted)
 }
 
-/// The times and tracks of a table; frames count from its first.
-pub(crate) fn table(path: &Path) -> Result<Timed, WorkbenchError> {
+/// The first frame of a table, and its times and tracks; their frames count from that one.
+pub(crate) fn table(path: &Path) -> Result<(u32, Timed), WorkbenchError> {
     let rows = honami_exchange::read::<TrackRow>(path)?.collect::<Result<Vec<_>, _>>()?;
     let mut times = BTreeMap::new();
     for row in &rows {
@@ -119,7 +119,7 @@ pub(crate) fn table(path: &Path) -> Result<Timed, WorkbenchError> {
     let rows = rows.into_iter().map(|row| Ok(TrackRow { frame: row.frame - first, ..row }));
     let tracks: Vec<_> =
         honami_exchange::spans(rows, n_frames)?.into_iter().map(|(id, span)| (id, Arc::new(span))).collect();
-    Ok((times, tracks))
+    Ok((first, (times, tracks)))
 }
 
 /// Times of frames, and tracks in these.

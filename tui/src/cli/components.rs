@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
+use honami_model::brief::counted;
 use honami_workbench::components::{self, Component, Components};
 use honami_workbench::export;
 use serde_json::json;
@@ -54,12 +55,11 @@ fn is_a(path: &Path, ending: &str) -> bool {
 
 /// `500 tracks, 300 frames: 4 components above the noise (38.2 px), 296 below`.
 fn head(found: &Components) -> String {
-    let n = found.n_above;
-    let components = if n == 1 { "1 component".to_owned() } else { format!("{n} components") };
     format!(
-        "{} tracks, {} frames: {components} above the noise ({:.1} px), {} below",
-        found.places.len(),
-        found.n_frames,
+        "{}, {}: {} above the noise ({:.1} px), {} below",
+        counted(found.places.len(), "track"),
+        counted(found.n_frames, "frame"),
+        counted(found.n_above, "component"),
         found.edge_px,
         found.n_below
     )
@@ -68,7 +68,7 @@ fn head(found: &Components) -> String {
 fn text(found: &Components) -> String {
     let mut text = head(found);
     if found.n_filled > 0 {
-        text += &format!("\n{} positions filled from the other tracks", found.n_filled);
+        text += &format!("\n{} filled from the other tracks", counted(found.n_filled, "position"));
     }
     if found.list.is_empty() {
         return text + "\nnothing stands out of the noise";
@@ -143,7 +143,9 @@ fn topos_table(found: &Components) -> String {
 fn chronos_table(found: &Components) -> String {
     let mut table = "component,frame,time_s,chronos\n".to_owned();
     for (component, number) in found.list.iter().zip(1..) {
-        for (frame, (time_s, value)) in found.times_s.iter().zip(&component.chronos).enumerate() {
+        for (frame, (time_s, value)) in
+            (found.first_frame..).zip(found.times_s.iter().zip(&component.chronos))
+        {
             if let Some(value) = value {
                 writeln!(table, "{number},{frame},{time_s},{value}").unwrap_or_default();
             }
@@ -181,6 +183,7 @@ fn answer(found: &Components, written: &[PathBuf]) -> serde_json::Value {
         "nyquist_hz": first.map(|spectrum| spectrum.nyquist_hz),
         "resolution_hz": first.map(|spectrum| spectrum.resolution_hz),
         "spectrum_step_hz": first.map(|spectrum| spectrum.step_hz),
+        "first_frame": found.first_frame,
         "times_s": found.times_s,
         "tracks": tracks.collect::<Vec<_>>(),
         "components": found.list.iter().zip(1..).map(entry).collect::<Vec<_>>(),

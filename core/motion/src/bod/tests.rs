@@ -300,7 +300,8 @@ fn flutter_is_what_is_left_and_whitening_makes_it_flat() {
 }
 
 /// A wave of whole cycles in each of two runs, which jumps in phase from one to the other, loses the root of the power at its
-/// frequency and nothing else; what is left after the strongest is that of the longer run alone.
+/// frequency and nothing else; what is left after the strongest is that of the longer run alone. The power is that of what has
+/// something of the frame before: what it comes to in fewer frames is known, of n frames n - 1 follow one another.
 #[test]
 fn over_a_seam_there_are_no_frequencies() {
     let runs = [0..128, 200..264];
@@ -313,12 +314,14 @@ fn over_a_seam_there_are_no_frequencies() {
     let at = |track: usize, frame: usize| is_seen(&frame).then(|| [wave(track, frame), 0.0]);
     let table = table(&tracks(5, 264, at));
     assert_eq!((table.frames(), table.runs()), (&*seen, &[0..128, 128..192][..]));
-    let power: Vec<f64> = (0..=64).map(|k| if k == 16 { 25.0 } else { 1.0 + f64::from(k % 3) }).collect();
+    let power = (0..=64).map(|k| 10.0 + 6.0 * (std::f64::consts::TAU * f64::from(k) / 128.0).cos()).collect();
     let white = whitened(&table, &Residual { power, share: 0.5, own: None });
     for (track, row) in white.series().chunks(seen.len()).take(5).enumerate() {
         for (value, &frame) in row.iter().zip(&seen) {
             // Transforms there and back are as long as the longer run.
-            let wanted = 128.0 * wave(track, frame) / 5.0;
+            let followed = if frame < 128 { 1.0 } else { 63.0 / 64.0 };
+            let power = 10.0 + 6.0 * followed * 0.5_f64.sqrt();
+            let wanted = 128.0 * wave(track, frame) / power.sqrt();
             assert!((value - wanted).abs() < 1e-3, "track {track} frame {frame}: {value}, wanted {wanted}");
         }
     }
@@ -348,6 +351,40 @@ fn over_a_seam_there_are_no_frequencies() {
     let sum: f64 = left.power.iter().sum();
     let wanted = rest_2 * 150.0 / 2.0 / (2 * LEAVES) as f64;
     assert!((sum / wanted - 1.0).abs() < 0.05, "{sum} {wanted}");
+}
+
+/// Where every third frame is missing runs are of two frames, the last of one. What is left has next to nothing at 0 cycles, and
+/// much above: a mean of two frames has much of that, and is divided by what it has.
+#[test]
+fn runs_of_one_and_two_frames_are_divided_by_what_is_in_so_few() {
+    let is_seen = |frame: &usize| *frame < 64 || (*frame > 65 && frame % 3 != 2);
+    let seen: Vec<usize> = (0..100).filter(is_seen).collect();
+    let drawn = numbers(3 * 100, 9);
+    let at = |track: usize, frame: usize| is_seen(&frame).then(|| [5.0 * drawn[100 * track + frame], 0.0]);
+    let table = table(&tracks(3, 100, at));
+    let short = &table.runs()[1..];
+    assert_eq!((table.runs()[0].clone(), short.len()), (0..64, 12));
+    assert!(short[..11].iter().all(|run| run.len() == 2) && short[11].len() == 1);
+    // Of each less the one before: 2 - 2 cos; of two frames one follows another.
+    let power = |k: i32| 2.001 - 2.0 * (std::f64::consts::TAU * f64::from(k) / 64.0).cos();
+    let white = whitened(&table, &Residual { power: (0..=32).map(power).collect(), share: 0.5, own: None });
+    let rows = table.series().chunks(seen.len()).zip(white.series().chunks(seen.len()));
+    for (row, white) in rows.take(3) {
+        for run in short {
+            let (before, after) = (&row[run.clone()], &white[run.clone()]);
+            let wanted = match before {
+                [one] => vec![64.0 * one / 2.001_f64.sqrt()],
+                [a, b] => {
+                    let mean = 64.0 * (a + b) / 2.0 / 1.001_f64.sqrt();
+                    let half = 64.0 * (a - b) / 2.0 / 3.001_f64.sqrt();
+                    vec![mean + half, mean - half]
+                }
+                _ => unreachable!(),
+            };
+            let off = after.iter().zip(&wanted).map(|(got, wanted)| (got - wanted).abs()).fold(0.0, f64::max);
+            assert!(off < 1e-9 * 64.0, "{run:?}: {after:?}, wanted {wanted:?}");
+        }
+    }
 }
 
 /// Modes that all leaves share, each at frequencies of its own among those of the flutter, are left as it is and are none.

@@ -8,13 +8,14 @@
 //! gives them.
 //!
 //! Where frames are missing in which too few tracks are seen, what is left is that of the longest run without a seam, and each
-//! run is taken down for itself: over a seam there are no frequencies.
+//! run is taken down for itself: over a seam there are no frequencies. In fewer frames fewer are told apart, so a run is divided
+//! by what that power comes to in as few: of one frame by its mean.
 
 use std::ops::Range;
 
 use rayon::prelude::*;
-use realfft::RealFftPlanner;
 use realfft::num_complex::Complex;
+use realfft::{RealFftPlanner, RealToComplex};
 
 use super::{Bod, Table, product};
 
@@ -140,22 +141,24 @@ fn longest(table: &Table) -> Range<usize> {
 #[must_use]
 pub fn whitened(table: &Table, residual: &Residual) -> Table {
     let mut planner = RealFftPlanner::<f64>::new();
-    let plans: Vec<_> = table
-        .runs()
-        .iter()
-        .map(|run| (run.clone(), planner.plan_fft_forward(run.len()), planner.plan_fft_inverse(run.len())))
-        .collect();
-    let n_longest = longest(table).len() as f64;
+    let n_longest = longest(table).len();
+    let lags = lags(&residual.power, n_longest, &mut planner);
+    let least = residual.power.iter().copied().fold(f64::INFINITY, f64::min);
+    let plan = |run: &Range<usize>| {
+        let (forward, inverse) = (planner.plan_fft_forward(run.len()), planner.plan_fft_inverse(run.len()));
+        // A transform there and back is as long as its run; least is what rounding may take it below.
+        let longer = n_longest as f64 / run.len() as f64;
+        let gain = |power: f64| longer / power.max(least).sqrt();
+        let gains: Vec<f64> = in_fewer(&lags, &*forward).into_iter().map(gain).collect();
+        (run.clone(), forward, inverse, gains)
+    };
+    let plans: Vec<_> = table.runs().iter().map(plan).collect();
     let mut series = table.series().to_vec();
     series.par_chunks_mut(table.n_frames()).for_each(|row| {
-        for (run, forward, inverse) in &plans {
+        for (run, forward, inverse, gains) in &plans {
             let (mut values, mut waves) = (row[run.clone()].to_vec(), forward.make_output_vec());
             let mut done = forward.process(&mut values, &mut waves);
-            // A transform there and back is as long as its run; and so are the steps of its frequencies.
-            let longer = n_longest / run.len() as f64;
-            for (k, wave) in waves.iter_mut().enumerate() {
-                *wave *= longer / between(&residual.power, longer * k as f64).sqrt();
-            }
+            waves.iter_mut().zip(gains).for_each(|(wave, gain)| *wave *= *gain);
             // These two are real.
             waves[0].im = 0.0;
             if run.len().is_multiple_of(2)
@@ -170,11 +173,25 @@ pub fn whitened(table: &Table, residual: &Residual) -> Table {
     table.with(series)
 }
 
-/// A list between two of its numbers; beyond the last, the last.
-fn between(list: &[f64], at: f64) -> f64 {
-    let k = (at as usize).min(list.len() - 1);
-    let next = (k + 1).min(list.len() - 1);
-    list[k] + (at - k as f64).min(1.0) * (list[next] - list[k])
+/// The autocovariance at 0, 1, 2 … frames apart that goes with the power of `n` frames.
+fn lags(power: &[f64], n: usize, planner: &mut RealFftPlanner<f64>) -> Vec<f64> {
+    let inverse = planner.plan_fft_inverse(n);
+    let mut waves: Vec<_> = power.iter().map(|power| Complex::new(power / n as f64, 0.0)).collect();
+    let mut lags = inverse.make_output_vec();
+    let done = inverse.process(&mut waves, &mut lags);
+    debug_assert!(done.is_ok(), "{done:?}");
+    lags
+}
+
+/// The power that series of this autocovariance have in as many frames as a transform takes, in the mean: of `len` frames
+/// `len - m` are `m` before another, and the others as far beyond the end of the run.
+fn in_fewer(lags: &[f64], forward: &dyn RealToComplex<f64>) -> Vec<f64> {
+    let len = forward.len();
+    let at = |m: usize| ((len - m) as f64 * lags[m] + m as f64 * lags[(len - m) % lags.len()]) / len as f64;
+    let (mut folded, mut waves) = ((0..len).map(at).collect::<Vec<_>>(), forward.make_output_vec());
+    let done = forward.process(&mut folded, &mut waves);
+    debug_assert!(done.is_ok(), "{done:?}");
+    waves.iter().map(|wave| wave.re).collect()
 }
 
 /// Means over neighbours with the weights of Hann; at the ends over those there are.

@@ -1,5 +1,6 @@
 //! Components as a drawing: beside each map of where tracks go, how it goes in time and its spectrum. Pure, from numbers to text.
 
+use honami_model::brief::counted;
 use honami_workbench::components::{Component, Components};
 
 use super::{band, degrees};
@@ -30,11 +31,11 @@ pub(super) fn draw(title: &str, found: &Components) -> String {
         let top = TOP + ROW * k as f64;
         let hz = component.peak.as_ref().map_or("no peak".to_owned(), |peak| format!("{:.3} Hz", peak.hz));
         let head = format!(
-            "{}: {:.1} % of all motion, {hz}, along {:.0}°, half of it in {} tracks",
+            "{}: {:.1} % of all motion, {hz}, along {:.0}°, half of it in {}",
             k + 1,
             100.0 * component.share,
             degrees(component),
-            component.n_half
+            counted(component.n_half, "track")
         );
         canvas.text([MARGIN, top + 14.0], Anchor::Start, &Pen::bold(INK, 13.0), &head);
         map(&mut canvas, found, component, top + 28.0);
