@@ -166,7 +166,7 @@ fn a_root_and_a_bone_are_one_edit() {
     let listed = |bench: &Bench| bench.json("shape p.honami");
     let bare = listed(&bench);
     let said = bench.text("shape p.honami --root 70,100 --group 2 --gain 2");
-    assert!(said.ends_with("  root placed at 70.0, 100.0; group 2: gain 2"), "{said}");
+    assert!(said.trim_end().ends_with("  root placed at 70.0, 100.0; group 2: gain 2"), "{said}");
     assert!(bench.edit("p.honami", "undo\n").text().contains("undo: root placed"));
     assert_eq!(listed(&bench), bare);
 }
