@@ -133,7 +133,7 @@ fn what_cannot_be_compared_is_refused() {
         ("compare clip.y4m --with ktl", 2, &["\"ktl\" (did you mean klt?)"]),
         ("compare clip.y4m --with klt --set radis=3", 2, &["\"radis\" (did you mean radius?)"]),
         ("compare clip.y4m --points none.csv", 2, &["no points", "--points"]),
-        ("compare clip.y4m --frames 2..9", 1, &["2..9", "0..4"]),
+        ("compare clip.y4m --frames 2..9", 2, &["2..9", "0..4"]),
         ("compare clip.y4m --svg nowhere/out.svg", 1, &["no folder nowhere"]),
         ("compare clip.y4m pair.y4m", 1, &["clip.y4m"]),
     ] {

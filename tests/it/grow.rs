@@ -228,7 +228,11 @@ fn what_cannot_grow_says_why() {
         ("grow p.honami out.bvh --siblings 0", 2, "0 is not in 1..=9999"),
         ("grow p.honami --siblings 2", 2, "name its file, as out.bvh"),
         ("grow p.honami out.bvh --seed 2", 2, "--seed goes with --siblings or --branches"),
-        ("grow p.honami out.bvh --siblings 2 --groups 1", 1, "no two bones are of one level from 0 on"),
+        (
+            "grow p.honami out.bvh --flat --siblings 2 --groups 1",
+            1,
+            "no two bones are of one level from 0 on",
+        ),
         ("grow p.honami out.bvh --siblings 2 --level 70", 2, "no two bones are of one level from 70 on"),
         ("grow p.honami out.bvh --siblings 2 --threshold 1e6", 2, "is as dense as 1000000 per radian"),
         ("grow p.honami out.bvh --siblings 2 --threshold nan", 2, "is as dense as NaN per radian"),

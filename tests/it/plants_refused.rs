@@ -203,7 +203,7 @@ const CASES: &[(&str, i32, &str)] = &[
     (
         "simulate two.mtg --modes 2 --forest 1000 --fps 0.001 --seconds 4000 --substeps 100000000",
         1,
-        "the winds of 1000 copies in 100000000 steps a frame take 1200000 MB",
+        "the winds of 1000 copies in 100000000 steps a frame take 1200800 MB",
     ),
     (
         "simulate synth::tree:30,1 --modes 2 --forest 100000 --seconds 4e6",

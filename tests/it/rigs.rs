@@ -60,7 +60,7 @@ fn what_is_no_rig_says_why() {
         ("grow p.honami rig.glb --unit=-1", 2, "--unit takes metres of a pixel, more than 0"),
         ("grow p.honami rig.glb --unit nan", 2, "--unit takes metres of a pixel, more than 0"),
         ("grow p.honami rig.bvh --unit 0.01", 2, "--unit goes with a .glb, as out.glb, or with frames"),
-        ("grow p.honami rig.glb --unit 1e-12", 2, "is it the unit?"),
+        ("grow p.honami rig.glb --unit 1e-12", 1, "is it the unit?"),
         (
             "grow p.honami rig.glb --joints 2",
             2,
@@ -384,7 +384,7 @@ fn what_cannot_be_carried_says_why() {
         ),
         ("out.glb --branches stick.swc", 1, "stick.swc: the branches of a plant are what hangs on its forks"),
         ("out.glb --branches dot.obj", 1, "dot.obj: a branch goes from its foot"),
-        ("out.glb --branches good.obj --unit 1e-12", 2, "is it the unit?"),
+        ("out.glb --branches good.obj --unit 1e-12", 1, "is it the unit?"),
         ("out.pc2 --branches good.obj", 2, "a .pc2 has the vertices of an .obj or .ply"),
         ("out.bvh --branches good.obj", 2, "--branches goes with a .glb"),
         ("rig.glb --branches rig.glb", 2, "another name than the plant that is read"),

@@ -192,7 +192,7 @@ fn what_cannot_be_shaped_says_why() {
         ("shape p.honami --group 3 --lean nan", 1, "a bone leans by -180 to 180 degrees, not NaN"),
         ("shape p.honami --group 3 --gain -1", 1, "the gain of a bone is 0 (stiff) to 10, not -1"),
         ("shape p.honami --group 3 --gain 1", 1, "group 3: as it grows already"),
-        ("shape p.honami --root 80,280.5", 1, "a root lies in the picture (160x120 pixels)"),
+        ("shape p.honami --root 80,280.5", 2, "a root lies in the picture (160x120 pixels)"),
         ("shape p.honami --release", 1, "nothing of the skeleton was placed or shaped by hand"),
         ("shape p.honami --release root", 1, "root: as it grows already"),
         ("shape p.honami --release twig", 2, "wanted groups as 3, 3,4 or 1-4, got twig, nor root"),
