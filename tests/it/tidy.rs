@@ -26,6 +26,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("honami-structure", &["honami-model"]),
     ("honami-review", &["honami-model", "honami-vision"]),
     ("honami-synth", &["honami-model"]),
+    ("honami-scene", &["honami-model", "honami-exchange", "honami-mechanics"]),
     ("honami-follow", &["honami-plugin", "honami-vision"]),
     ("honami-tracker-*", &["honami-plugin", "honami-vision", "honami-follow"]),
     ("honami-grouping", &["honami-plugin", "honami-model", "honami-motion"]),
@@ -45,19 +46,26 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "honami-motion",
             "honami-mechanics",
             "honami-review",
+            "honami-scene",
             "honami-structure",
             "honami-synth",
             "honami-vision",
         ],
     ),
     ("honami", &["honami-workbench", "honami-model"]),
+    ("honami-viewer", &["honami-scene", "honami-media", "honami-mechanics", "honami-model"]),
     ("honami-tests", &[]),
     ("xtask", &[]),
 ];
 
 /// Libraries that one package alone may use.
-const ONLY_USER: &[(&str, &str)] =
-    &[("libloading", "honami-host"), ("rusqlite", "honami-store"), ("ratatui", "honami")];
+const ONLY_USER: &[(&str, &str)] = &[
+    ("libloading", "honami-host"),
+    ("rusqlite", "honami-store"),
+    ("ratatui", "honami"),
+    ("wgpu", "honami-viewer"),
+    ("eframe", "honami-viewer"),
+];
 
 /// Folders in which `unsafe` is allowed by name.
 const UNSAFE_IN: &[&str] =

@@ -10,6 +10,7 @@ mod tests;
 use crate::modes::Modes;
 use crate::turning::Turning;
 use nalgebra::{DMatrix, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// Amplitudes, to either side, that the curves are fitted at.
 const SAMPLES: usize = 12;
@@ -17,7 +18,7 @@ const SAMPLES: usize = 12;
 const B_TOLERANCE: f64 = 1e-3;
 
 /// How a node moves with the amplitude of a mode.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Form {
     /// By its share in the mode: branches grow longer.
     Linear,
@@ -30,7 +31,7 @@ pub enum Form {
 }
 
 /// A mode's curves.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Bending {
     form: Form,
     /// One a mode, or one a node; none where it is linear. Per unit of amplitude.

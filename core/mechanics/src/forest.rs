@@ -27,6 +27,7 @@ use crate::wind_basis::WindBasis;
 use honami_model::brief::Brief;
 use nalgebra::{Matrix3, Vector3};
 use pulp::Arch;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::f64::consts::{SQRT_2, TAU};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -35,7 +36,7 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 const SOME: usize = 256;
 
 /// How a copy stands.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stand {
     /// About the upright, anticlockwise from above, radians.
     pub turn: f32,
@@ -52,7 +53,7 @@ impl Default for Stand {
 }
 
 /// How a forest goes on in time.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pace {
     /// Seconds of a step.
     pub step: f64,

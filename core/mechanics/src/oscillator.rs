@@ -4,10 +4,11 @@
 mod tests;
 
 use rustfft::num_complex::Complex;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// Rayleigh's damping (6.11), the air's, and what scales the mass (6.36): chosen while it runs.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Damping {
     /// Of the mass, per second.
     pub alpha: f64,
@@ -38,7 +39,7 @@ pub struct Oscillator {
 }
 
 /// A method to go on in time.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Integrator {
     /// Exact for a force that stays, stable whatever the step.
     #[default]

@@ -6,6 +6,7 @@ use crate::modes::Modes;
 use crate::turning::Turning;
 use crate::wind_basis::WindBasis;
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
 /// Up to so many radians the node that turns most turns in each mode where its curves are fitted: as twigs do where the
 /// top of a tree is moved by 30 % of its height.
@@ -29,7 +30,7 @@ pub struct PullError {
 }
 
 /// A plant ready to be moved: at rest, its modes, what wind does to them and how they bend it.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stirring {
     pub(crate) omegas: Vec<f64>,
     pub(crate) basis: WindBasis,
@@ -42,7 +43,7 @@ pub struct Stirring {
 }
 
 /// How nodes follow their modes.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Following {
     /// Each mode by itself, on straight lines or curves.
     Curves(Vec<Bending>),

@@ -11,10 +11,11 @@ mod tests;
 use crate::beams::Beams;
 use crate::modes::Modes;
 use nalgebra::{Rotation3, Vector3};
+use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// What modes do to the segments of a plant.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Turning {
     /// Of every node but the root: the node before it.
     pub(crate) parents: Vec<u32>,

@@ -10,6 +10,7 @@ mod tests;
 use crate::beams::Beams;
 use crate::modes::Modes;
 use nalgebra::{Matrix3, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// Of air at 20 degrees, kilograms per cubic metre (errata E43: not the density of the wood).
 pub const AIR: f64 = 1.2;
@@ -41,7 +42,7 @@ impl Default for Drag {
 }
 
 /// What wind does to each mode.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WindBasis {
     /// p_i of every mode: modal force by the square of the wind, f_i = |v| v . p_i.
     pub forces: Vec<Vector3<f64>>,

@@ -1,0 +1,70 @@
+//! Scene files whole, cut short, changed, and of others.
+
+use super::{HEAD_BYTES, SceneFileError, read, write};
+use crate::skeleton::{Film, Joint};
+use crate::{Scene, SkeletonScene};
+use std::fs;
+
+fn scene() -> Scene {
+    let film = Film { width: 4, height: 3, n_frames: 1, ..Film::default() };
+    let joints = vec![Joint::default(), Joint { parent: Some(0), ..Joint::default() }];
+    let places = vec![[0.0, 0.0, 0.0], [1.0, 0.0, -2.5]];
+    Scene::Skeleton(SkeletonScene {
+        clip: film,
+        joints,
+        places,
+        times: vec![0.0],
+        ..SkeletonScene::default()
+    })
+}
+
+#[test]
+fn what_was_written_is_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.scene");
+    // Twice: a scene takes the place of a scene.
+    for _ in 0..2 {
+        write(&path, &scene()).unwrap();
+        assert_eq!(read(&path).unwrap(), scene());
+    }
+}
+
+#[test]
+fn nothing_else_is_a_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.scene");
+    write(&path, &scene()).unwrap();
+    let whole = fs::read(&path).unwrap();
+    let told = |bytes: &[u8]| {
+        fs::write(&path, bytes).unwrap();
+        read(&path).unwrap_err()
+    };
+    for n in [1, 5, 8, HEAD_BYTES - 1, HEAD_BYTES, whole.len() - 1] {
+        let error = told(&whole[..n]);
+        assert!(matches!(error, SceneFileError::Short { came, .. } if came == n as u64), "{n}: {error}");
+    }
+    let changed = |at: usize| {
+        let mut bytes = whole.clone();
+        bytes[at] ^= 1;
+        told(&bytes)
+    };
+    assert!(matches!(changed(7), SceneFileError::Version(_)));
+    assert!(matches!(changed(0), SceneFileError::Other(_)));
+    for at in [16, HEAD_BYTES, whole.len() - 1] {
+        assert!(matches!(changed(at), SceneFileError::Changed(_)), "byte {at}");
+    }
+    assert!(matches!(told(&[whole.as_slice(), b"x"].concat()), SceneFileError::Changed(_)));
+    assert!(matches!(told(b""), SceneFileError::Other(_)));
+    assert!(matches!(told(b"track,frame\n"), SceneFileError::Other(_)));
+    fs::remove_file(&path).unwrap();
+    assert!(matches!(read(&path), Err(SceneFileError::Io { .. })));
+}
+
+#[test]
+fn it_takes_the_place_of_nothing_but_a_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("notes.txt");
+    fs::write(&path, "mine").unwrap();
+    assert!(matches!(write(&path, &scene()), Err(SceneFileError::Table(_))));
+    assert_eq!(fs::read(&path).unwrap(), b"mine");
+}
