@@ -52,6 +52,14 @@ pub enum SceneFileError {
     /// Not as it was written.
     #[error("{} is a scene that was changed since it was written; show it with `honami view` anew", .0.display())]
     Changed(PathBuf),
+    /// Of parts that do not go together.
+    #[error("{} is a scene that cannot be drawn: {what}", path.display())]
+    Odd {
+        /// Which.
+        path: PathBuf,
+        /// What does not.
+        what: String,
+    },
 }
 
 /// Writes a scene, all of it or nothing; in place of a scene only.
@@ -102,7 +110,12 @@ pub fn read(path: &Path) -> Result<Scene, SceneFileError> {
     if body.len() as u64 != wanted || Sha256::digest(body)[..] != head[16..] {
         return Err(SceneFileError::Changed(path.to_owned()));
     }
-    postcard::from_bytes(body).map_err(|_garbled| SceneFileError::Version(path.to_owned()))
+    let scene: Scene =
+        postcard::from_bytes(body).map_err(|_garbled| SceneFileError::Version(path.to_owned()))?;
+    match scene.odd() {
+        Some(what) => Err(SceneFileError::Odd { path: path.to_owned(), what }),
+        None => Ok(scene),
+    }
 }
 
 #[cfg(test)]

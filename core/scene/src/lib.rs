@@ -8,7 +8,10 @@ pub mod body;
 pub mod camera;
 pub mod file;
 pub mod forest;
+pub mod grove;
 pub mod skeleton;
+pub mod tubes;
+pub mod weather;
 
 pub use camera::{Camera, Orbit};
 pub use forest::ForestScene;
@@ -22,5 +25,15 @@ pub enum Scene {
     /// The bones behind tracks, over the clip or in space.
     Skeleton(SkeletonScene),
     /// Copies of a plant in the wind.
-    Forest(ForestScene),
+    Forest(Box<ForestScene>),
+}
+
+impl Scene {
+    /// What of it cannot be drawn, in words.
+    pub(crate) fn odd(&self) -> Option<String> {
+        match self {
+            Self::Skeleton(scene) => scene.odd(),
+            Self::Forest(scene) => scene.odd(),
+        }
+    }
 }

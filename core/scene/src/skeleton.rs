@@ -92,3 +92,38 @@ pub struct Carried {
     /// Where it is, a frame each, pixels.
     pub places: Vec<[f32; 3]>,
 }
+
+impl SkeletonScene {
+    /// Frames.
+    #[must_use]
+    pub fn n_frames(&self) -> usize {
+        self.times.len()
+    }
+
+    /// Where all joints are in a frame of the skeleton; none beyond the last.
+    #[must_use]
+    pub fn frame(&self, frame: usize) -> &[[f32; 3]] {
+        let n = self.joints.len();
+        self.places.get(frame * n..(frame + 1) * n).unwrap_or_default()
+    }
+
+    /// What of it cannot be drawn.
+    pub(crate) fn odd(&self) -> Option<String> {
+        let (n_joints, n_frames) = (self.joints.len(), self.times.len());
+        if n_joints == 0 || n_frames == 0 || self.places.len() != n_joints * n_frames {
+            return Some(format!("{} places of {n_joints} joints in {n_frames} frames", self.places.len()));
+        }
+        let is_group = |group: Option<u32>| group.is_none_or(|row| (row as usize) < self.groups.len());
+        let is_before = |row: usize, other: Option<u32>| other.is_none_or(|other| (other as usize) < row);
+        let mut joints = self.joints.iter().enumerate();
+        let is_joint = |(row, joint): (usize, &Joint)| {
+            is_group(joint.group) && is_before(row, joint.parent) && is_before(n_joints, joint.copy_of)
+        };
+        let is_led = joints.all(is_joint);
+        let are_groups = self.groups.iter().all(|group| is_before(n_joints, group.joint));
+        let are_carried =
+            self.leaves.iter().all(|leaf| is_group(leaf.group) && leaf.places.len() == n_frames);
+        (!(is_led && are_groups && are_carried))
+            .then(|| "it names joints or groups that it has not".to_owned())
+    }
+}

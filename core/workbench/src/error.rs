@@ -630,15 +630,9 @@ pub enum WorkbenchError {
         /// What is wrong with it.
         what: String,
     },
-    /// No wind of that name, or not with those values.
-    #[error("{what}")]
-    Weather {
-        /// What is wrong, and what there is.
-        what: String,
-    },
-    /// No air flows over these trees.
+    /// No such wind.
     #[error(transparent)]
-    Air(#[from] honami_mechanics::wind::FlowingError),
+    Weather(#[from] honami_scene::weather::WeatherError),
     /// No skeleton grows from these tracks.
     #[error(transparent)]
     Structure(#[from] honami_structure::StructureError),
@@ -727,11 +721,12 @@ impl WorkbenchError {
     /// Whether other options, numbers or names are wanted than were typed: not another file, nor more room or work.
     #[must_use]
     pub fn is_as_typed(&self) -> bool {
-        use honami_mechanics::wind::FlowingError::{Cells, Numbers};
         use honami_mechanics::{BeamsError, ForestError};
         use honami_structure::StructureError as Grown;
-        if let Self::PlantFile(error) = self {
-            return error.is_as_typed();
+        match self {
+            Self::PlantFile(error) => return error.is_as_typed(),
+            Self::Weather(error) => return error.is_as_typed(),
+            _ => {}
         }
         matches!(
             self,
@@ -756,7 +751,6 @@ impl WorkbenchError {
                         | Grown::Unit(_)
                 )
                 | Self::Onto { source: Grown::Unit(_), .. }
-                | Self::Weather { .. }
                 | Self::Units { .. }
                 | Self::Pixels
                 | Self::Pace { .. }
@@ -771,7 +765,6 @@ impl WorkbenchError {
                 | Self::Beams(BeamsError::Material(_) | BeamsError::Longest(_))
                 | Self::TooManyModes { .. }
                 | Self::Forest(ForestError::Damping { .. })
-                | Self::Air(Numbers { .. } | Cells { .. })
         )
     }
 }

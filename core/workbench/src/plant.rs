@@ -5,15 +5,15 @@ mod circling;
 pub mod film;
 pub mod forms;
 pub mod glb;
-pub mod grove;
 pub mod mover;
 pub mod outs;
+pub mod scene;
 mod sizes;
+pub mod spans;
 pub mod sway;
 #[cfg(test)]
 mod tests;
 pub mod told;
-pub(crate) mod tubes;
 pub mod weather;
 
 use std::fs;

@@ -12,7 +12,7 @@ use honami_workbench::media;
 use honami_workbench::plant::mover::Mover;
 use honami_workbench::plant::sway::Motion;
 use honami_workbench::plant::told::{self, Chosen};
-use honami_workbench::plant::weather::{self, Ground};
+use honami_workbench::plant::weather;
 use honami_workbench::plant::{self, Wish, film};
 use honami_workbench::plugins::{Kind, quoted};
 use honami_workbench::progress::{Flow, Progress};
@@ -72,7 +72,7 @@ fn film(args: &Synth, source: &str, settings: &Settings, common: &Common) -> any
     let told = told::told(&wish, &motion, plugin, Chosen::Only(&typed), &args.set)?;
     let bar = report::Bar::new();
     let plant = plant::vibrate(&told.wish, &bar)?;
-    let wind = weather::read(&weather)?.over(&Ground::of(&plant, &told.motion))?;
+    let wind = weather::read(&weather)?.over(&weather::ground(&plant, &told.motion))?;
     let mover = Mover { host: &options.host, plugin, values: &told.values };
     let film = film::film(&plant, &mover, &*wind, &told.motion, &bar)?;
     let mut answer = describe(&generate::film(settings, &film.filmed, &args.out, &bar)?);

@@ -68,3 +68,24 @@ fn it_takes_the_place_of_nothing_but_a_scene() {
     assert!(matches!(write(&path, &scene()), Err(SceneFileError::Table(_))));
     assert_eq!(fs::read(&path).unwrap(), b"mine");
 }
+
+#[test]
+fn a_scene_whose_parts_do_not_go_together_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.scene");
+    let Scene::Skeleton(whole) = scene() else { unreachable!() };
+    type Spoil = fn(&mut SkeletonScene);
+    let cases: [(&str, Spoil); 4] = [
+        ("1 places of 2 joints in 1 frames", |scene| scene.places.truncate(1)),
+        ("it names", |scene| scene.joints[1].parent = Some(1)),
+        ("it names", |scene| scene.joints[1].group = Some(0)),
+        ("0 places of 2 joints in 0 frames", |scene| (scene.times, scene.places) = Default::default()),
+    ];
+    for (wanted, spoil) in cases {
+        let mut scene = whole.clone();
+        spoil(&mut scene);
+        write(&path, &Scene::Skeleton(scene)).unwrap();
+        let error = read(&path).unwrap_err().to_string();
+        assert!(error.contains(wanted), "{error}");
+    }
+}

@@ -11,7 +11,7 @@ use honami_model::turn::norm;
 use honami_structure::StructureError;
 
 use crate::error::WorkbenchError;
-use crate::plant::tubes::{SIDES, Tubes};
+use honami_scene::tubes::{SIDES, Tubes};
 
 /// The thickest bone has such a radius, of how far the farthest joint is from the root.
 const THICKEST: f64 = 0.02;

@@ -4,9 +4,9 @@ use honami_mechanics::wind::Wind;
 use honami_mechanics::{Forest, Integrator, Pace, Pose, Round, Stirring, Threads};
 
 use super::Vibrating;
-use super::grove::Grove;
 use super::sway::{Motion, free};
 use crate::error::WorkbenchError;
+use honami_scene::grove::Grove;
 
 /// All that it does, and where it is.
 pub(super) struct Circling {

@@ -5,7 +5,6 @@ use honami_mechanics::wind::Wind;
 use honami_synth::Moving as Filmed;
 
 use super::Vibrating;
-use super::grove::Grove;
 use super::mover::{Mover, Moving, Way};
 use super::sway::{Motion, free, room_of_winds};
 use crate::ear::Ear;
@@ -41,7 +40,7 @@ pub fn film(
         return Err(WorkbenchError::FilmMemory { frames, nodes: n_nodes, bytes, there });
     }
     room_of_winds(motion)?;
-    let grove = Grove::new(plant.height, motion);
+    let grove = motion.grove(plant);
     let ear = Ear::new(&mover.plugin.short_name, progress);
     let root = plant.beams.position(0);
     let mut frames: Vec<Vec<Vector>> = Vec::new();

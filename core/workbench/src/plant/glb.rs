@@ -9,11 +9,11 @@ use honami_exchange::plant::{Body, Placed, Sizes, Target, write_glb};
 use honami_mechanics::{Shapes, Stand, Sums, Threads, Vector};
 
 use super::Vibrating;
-use super::grove::Grove;
 use super::mover::{Displacements, rows};
 use super::sway::{Motion, free};
-use super::tubes::{Ring, Tubes};
 use crate::error::WorkbenchError;
+use honami_scene::grove::Grove;
+use honami_scene::tubes::{Ring, Tubes};
 
 /// How far a node may be off in any frame, of the height of the plant.
 pub const NEAR: f64 = 1e-3;

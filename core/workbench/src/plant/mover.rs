@@ -11,10 +11,10 @@ use rayon::prelude::*;
 
 use super::Vibrating;
 use super::circling::Circling;
-use super::grove::Grove;
 use super::sway::Motion;
 use crate::ear::Ear;
 use crate::error::WorkbenchError;
+use honami_scene::grove::Grove;
 
 /// Copies whose wind is worked out at a time.
 const SOME: usize = 256;

@@ -9,13 +9,13 @@ use honami_mechanics::{Damping, ForestError, Form, Integrator, LimitError, Oscil
 
 use super::Vibrating;
 use super::glb::{Gathering, Made};
-use super::grove::Grove;
 use super::mover::{Moving, Played, Way};
 use super::outs::{Files, Outs, check_room, free_in};
 use super::told::{METHODS, word};
 use crate::ear::Ear;
 use crate::error::WorkbenchError;
 use crate::progress::Progress;
+use honami_scene::grove::{Grove, Planting};
 
 /// Steps a second: in shorter ones a state in single precision changes by too few of its last digits.
 const MOST_STEPS: f64 = 1e5;
@@ -121,6 +121,12 @@ impl Motion {
         if pull.abs() <= FARTHEST_PULL { Ok(()) } else { Err(WorkbenchError::Pull { pull }) }
     }
 
+    /// Where copies of a plant stand, and how.
+    pub(super) fn grove(&self, plant: &Vibrating) -> Grove {
+        let Self { n_copies, size_spread, mass_spread, spacing, seed, .. } = *self;
+        Grove::new(plant.height, &Planting { n_copies, size_spread, mass_spread, spacing, seed })
+    }
+
     /// Seconds of a step.
     pub(super) fn step(&self) -> f64 {
         1.0 / (self.fps * f64::from(self.n_substeps))
@@ -219,7 +225,7 @@ pub fn sway(
     let n_keys = motion.n_frames.saturating_add(u32::from(matches!(way, Way::Spectrum)));
     let mut gathering = outs.glb.map(|_path| Gathering::new(plant, motion, n_keys)).transpose()?;
     let mut files = Files::create(plant, motion, outs)?;
-    let grove = Grove::new(plant.height, motion);
+    let grove = motion.grove(plant);
     let ear = Ear::new(way.name(), progress);
     let root = plant.beams.position(0);
     let rest = |node: usize| plant.beams.position(node) - root;

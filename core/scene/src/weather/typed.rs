@@ -8,8 +8,7 @@ use honami_exchange::plant::{PlantFileError, anemometer};
 use honami_mechanics::Vector;
 use honami_mechanics::wind::{Series, Sum, Wind};
 
-use super::{Ground, LONGEST_ROUND_S, Make, N_SAMPLES, STEP_S, Values, WEATHERS, range};
-use crate::error::WorkbenchError;
+use super::{Ground, LONGEST_ROUND_S, Make, N_SAMPLES, STEP_S, Values, WEATHERS, WeatherError, range};
 
 /// Winds that were typed, one after the other; all there is to know of them but what they blow over.
 pub struct Typed(Vec<Part>);
@@ -39,7 +38,7 @@ impl Part {
 }
 
 /// What does not begin again after so many seconds.
-pub(super) fn not_round(name: &str, period: f64) -> WorkbenchError {
+pub(super) fn not_round(name: &str, period: f64) -> WeatherError {
     wrong(format!(
         "{name} is not after {period} s what it was, and what goes round wants a wind that is: steady winds are, gusts are \
          made so, waves where their hz and noise where its second go into these seconds without a rest, a table that lasts \
@@ -47,15 +46,15 @@ pub(super) fn not_round(name: &str, period: f64) -> WorkbenchError {
     ))
 }
 
-fn wrong(what: String) -> WorkbenchError {
-    WorkbenchError::Weather { what }
+fn wrong(what: String) -> WeatherError {
+    WeatherError::Words(what)
 }
 
 /// Reads what was typed: names and files with a + between them. One before a digit is part of a number, or of a name.
 ///
 /// # Errors
-/// [`WorkbenchError::Weather`] says which names and values there are; and what is wrong with a recording.
-pub fn read(typed: &str) -> Result<Typed, WorkbenchError> {
+/// [`WeatherError::Words`] says which names and values there are; and what is wrong with a recording.
+pub fn read(typed: &str) -> Result<Typed, WeatherError> {
     let is_file = |text: &str| Path::new(text).is_file();
     let texts = if is_file(typed) { vec![typed] } else { apart(typed) };
     let parts = texts.into_iter().map(part).collect::<Result<Vec<_>, _>>()?;
@@ -88,7 +87,7 @@ fn apart(typed: &str) -> Vec<&str> {
     texts
 }
 
-fn part(typed: &str) -> Result<Part, WorkbenchError> {
+fn part(typed: &str) -> Result<Part, WeatherError> {
     let (name, given) = typed.split_once(':').unwrap_or((typed, ""));
     let Some(weather) = WEATHERS.iter().find(|weather| weather.name == name) else {
         let path = Path::new(typed);
@@ -133,7 +132,7 @@ fn part(typed: &str) -> Result<Part, WorkbenchError> {
     }
 }
 
-fn number(name: &str, key: &str, value: &str) -> Result<f64, WorkbenchError> {
+fn number(name: &str, key: &str, value: &str) -> Result<f64, WeatherError> {
     if key == "seed" {
         // Any is as good as another.
         let seed = value.trim().parse::<u32>().map(f64::from);
@@ -145,7 +144,7 @@ fn number(name: &str, key: &str, value: &str) -> Result<f64, WorkbenchError> {
     found.ok_or_else(|| wrong(format!("{key} of {name} is a number from {least} to {most}, not {value:?}")))
 }
 
-fn recorded(path: &Path) -> Result<Series, WorkbenchError> {
+fn recorded(path: &Path) -> Result<Series, WeatherError> {
     let text =
         fs::read_to_string(path).map_err(|source| PlantFileError::Io { path: path.to_owned(), source })?;
     let recording = anemometer::parse(&text).map_err(|error| error.of(path))?;
@@ -186,7 +185,7 @@ impl Typed {
     ///
     /// # Errors
     /// What cannot flow over it.
-    pub fn over(&self, ground: &Ground) -> Result<Box<dyn Wind>, WorkbenchError> {
+    pub fn over(&self, ground: &Ground) -> Result<Box<dyn Wind>, WeatherError> {
         if let Some(period) = ground.period().filter(|period| *period > LONGEST_ROUND_S) {
             return Err(wrong(format!(
                 "a wind begins again after {LONGEST_ROUND_S} s at most, not {period} s"

@@ -9,24 +9,24 @@ mod tests;
 use honami_mechanics::{Beams, Vector};
 
 /// Vertices of a ring.
-pub(crate) const SIDES: usize = 6;
+pub const SIDES: usize = 6;
 
 /// A ring of vertices about a node.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Ring {
+pub struct Ring {
     /// Of the beams.
-    pub(crate) node: u32,
+    pub node: u32,
     /// Metres.
-    pub(crate) radius: f64,
+    pub radius: f64,
     /// At right angles to the branch and to each other, of length 1.
-    across: [Vector; 2],
+    pub(crate) across: [Vector; 2],
     /// Segments before and after it: from node to node, and which way by metres of their length.
-    beside: [([u32; 2], Vector); 2],
+    pub(crate) beside: [([u32; 2], Vector); 2],
 }
 
 /// Rings of all branches, branch after branch.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Tubes {
+pub struct Tubes {
     rings: Vec<Ring>,
     /// How many rings each branch has.
     lengths: Vec<usize>,
@@ -35,9 +35,16 @@ pub(crate) struct Tubes {
 impl Tubes {
     /// Of a fork the thickest goes on; the others begin in its middle.
     #[must_use]
-    pub(crate) fn new(beams: &Beams) -> Self {
+    pub fn new(beams: &Beams) -> Self {
+        Self::of(beams, |_all| true)
+    }
+
+    /// Only of nodes that are kept: each with the one that bears it.
+    #[must_use]
+    pub fn of(beams: &Beams, is_kept: impl Fn(u32) -> bool) -> Self {
         let mut next: Vec<Option<u32>> = vec![None; beams.len()];
-        for node in 1..beams.len() as u32 {
+        let kept = || (1..beams.len() as u32).filter(|node| is_kept(*node));
+        for node in kept() {
             let Some(parent) = beams.parent(node as usize) else { continue };
             let best = &mut next[parent as usize];
             if best.is_none_or(|best| beams.radius(node as usize) > beams.radius(best as usize)) {
@@ -45,7 +52,7 @@ impl Tubes {
             }
         }
         let mut tubes = Self::default();
-        for first in 1..beams.len() as u32 {
+        for first in kept() {
             let Some(parent) = beams.parent(first as usize) else { continue };
             // The root is at the foot of the branch that goes on there.
             if parent != 0 && next[parent as usize] == Some(first) {
@@ -84,53 +91,65 @@ impl Tubes {
         self.lengths.push(nodes.len());
     }
 
+    /// How many rings each branch has.
+    #[must_use]
+    pub fn lengths(&self) -> &[usize] {
+        &self.lengths
+    }
+
     /// All rings.
     #[must_use]
-    pub(crate) fn rings(&self) -> &[Ring] {
+    pub fn rings(&self) -> &[Ring] {
         &self.rings
     }
 
     /// Vertices, [`SIDES`] a ring.
     #[must_use]
-    pub(crate) fn n_vertices(&self) -> usize {
+    pub fn n_vertices(&self) -> usize {
         SIDES * self.rings.len()
     }
 
     /// Triangles, anticlockwise as seen from outside: two a side, and a lid on every tip.
     #[must_use]
-    pub(crate) fn triangles(&self) -> Vec<[u32; 3]> {
-        let (mut triangles, mut first) = (Vec::new(), 0);
-        for n_rings in &self.lengths {
-            for _ in 1..*n_rings {
-                for k in 0..SIDES {
-                    let [a, b] = [k, (k + 1) % SIDES].map(|k| (first + k) as u32);
-                    let [c, d] = [a, b].map(|below| below + SIDES as u32);
-                    triangles.extend([[a, b, d], [a, d, c]]);
-                }
-                first += SIDES;
-            }
-            let corner = |k: usize| (first + k) as u32;
-            triangles.extend((2..SIDES).map(|k| [corner(0), corner(k - 1), corner(k)]));
-            first += SIDES;
-        }
-        triangles
+    pub fn triangles(&self) -> Vec<[u32; 3]> {
+        let lengths: Vec<u32> = self.lengths.iter().map(|n| *n as u32).collect();
+        triangles(&lengths, SIDES as u32)
     }
+}
+
+/// Triangles of branches of so many rings, each of so many vertices: anticlockwise as seen from outside, two a side, and a lid
+/// on every tip.
+pub(crate) fn triangles(lengths: &[u32], n_sides: u32) -> Vec<[u32; 3]> {
+    let (mut triangles, mut first) = (Vec::new(), 0);
+    for n_rings in lengths {
+        for _ in 1..*n_rings {
+            for k in 0..n_sides {
+                let [a, b] = [k, (k + 1) % n_sides].map(|k| first + k);
+                let [c, d] = [a, b].map(|below| below + n_sides);
+                triangles.extend([[a, b, d], [a, d, c]]);
+            }
+            first += n_sides;
+        }
+        triangles.extend((2..n_sides).map(|k| [first, first + k - 1, first + k]));
+        first += n_sides;
+    }
+    triangles
 }
 
 impl Ring {
     /// By what it turns when nodes are moved so, radians about an axis.
-    pub(crate) fn turn(&self, moved: impl Fn(u32) -> Vector) -> Vector {
+    pub fn turn(&self, moved: impl Fn(u32) -> Vector) -> Vector {
         let turn = |([base, tip], along): &([u32; 2], Vector)| along.cross(&(moved(*tip) - moved(*base)));
         self.beside.iter().map(turn).sum::<Vector>() / 2.0
     }
 
     /// Nodes at the tips of the segments before and after it.
-    pub(crate) fn tips(&self) -> [u32; 2] {
+    pub fn tips(&self) -> [u32; 2] {
         self.beside.map(|([_, tip], _)| tip)
     }
 
     /// From the node to each vertex, of length 1.
-    pub(crate) fn outward(&self) -> impl Iterator<Item = Vector> {
+    pub fn outward(&self) -> impl Iterator<Item = Vector> {
         let [side, other] = self.across;
         (0..SIDES).map(move |k| {
             let (sin, cos) = (std::f64::consts::TAU * k as f64 / SIDES as f64).sin_cos();

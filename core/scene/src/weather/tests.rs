@@ -1,18 +1,17 @@
 //! Winds as typed.
 
-use super::{Ground, N_SAMPLES, STEP_S, WEATHERS, read};
-use crate::error::WorkbenchError;
+use super::{Ground, N_SAMPLES, STEP_S, WEATHERS, WeatherError, read};
 use honami_mechanics::Vector;
 use honami_mechanics::wind::{Kaimal, Spectrum, Wind};
 
 /// Over a few trees, for two seconds.
-fn blow(typed: &str) -> Result<Box<dyn Wind>, WorkbenchError> {
+fn blow(typed: &str) -> Result<Box<dyn Wind>, WeatherError> {
     let trees = (0..9).map(|k| ([f64::from(k % 3) * 6.0, f64::from(k / 3) * 6.0], 400.0)).collect();
-    read(typed)?.over(&Ground { trees, seconds: 2.0, is_round: false })
+    read(typed)?.over(&Ground::new(trees, 2.0, 1 << 30))
 }
 
 /// A wind that begins again after so many seconds.
-fn round(typed: &str, seconds: f64) -> Result<Box<dyn Wind>, WorkbenchError> {
+fn round(typed: &str, seconds: f64) -> Result<Box<dyn Wind>, WeatherError> {
     read(typed)?.over(&Ground { seconds, ..Ground::default() }.round())
 }
 
