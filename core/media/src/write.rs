@@ -8,14 +8,16 @@ use std::path::{Path, PathBuf};
 use honami_model::picture::{Planes, Range};
 use honami_model::unfinished::Unfinished as Listed;
 
+use crate::convert::rgb_to_planes;
 use crate::error::MediaError;
+use crate::source::Shape;
 
 mod mp4;
 mod png;
 mod y4m;
 
 pub use mp4::Mp4;
-pub use png::PngFolder;
+pub use png::{PngFolder, still};
 pub use y4m::Y4m;
 
 /// What every frame of a movie is like.
@@ -40,6 +42,22 @@ pub trait Movie: Send {
     /// # Errors
     /// [`MediaError::WrongFrame`] when it differs from the format, [`MediaError::Io`] when it cannot be written.
     fn push(&mut self, frame: &Planes<'_>) -> Result<(), MediaError>;
+
+    /// Appends a frame of pixels, red, green, blue, row by row from the top, to a movie in colour and of full range.
+    ///
+    /// # Errors
+    /// As [`push`](Self::push).
+    fn push_rgb(&mut self, pixels: &[[u8; 3]]) -> Result<(), MediaError> {
+        let Format { width, height, .. } = *self.format();
+        let shape = Shape { width, height, colour: true, range: Range::Full };
+        self.format().admit_rgb(pixels)?;
+        let mut frame = vec![0; shape.frame_len()];
+        rgb_to_planes(pixels.as_flattened(), &shape, &mut frame);
+        self.push(&shape.planes(&frame))
+    }
+
+    /// What its frames are like.
+    fn format(&self) -> &Format;
 
     /// Completes the movie and gives it its name.
     ///
@@ -72,6 +90,16 @@ impl Format {
             return Ok(());
         }
         Err(MediaError::Rate { fps: self.fps })
+    }
+
+    /// That there are as many pixels as a frame has.
+    fn admit_rgb(&self, pixels: &[[u8; 3]]) -> Result<(), MediaError> {
+        let wanted = self.width as usize * self.height as usize;
+        if pixels.len() == wanted {
+            return Ok(());
+        }
+        let text = |n: usize| format!("{n} pixels");
+        Err(MediaError::WrongFrame { found: text(pixels.len()), wanted: text(wanted) })
     }
 
     fn admit(&self, frame: &Planes<'_>) -> Result<(), MediaError> {

@@ -101,6 +101,10 @@ impl Movie for Mp4 {
         sent
     }
 
+    fn format(&self) -> &Format {
+        &self.format
+    }
+
     fn finish(mut self: Box<Self>) -> Result<(), MediaError> {
         self.end()?;
         self.unfinished.finish()

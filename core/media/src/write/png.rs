@@ -43,23 +43,55 @@ impl PngFolder {
     }
 }
 
+/// Writes one image: `pixels`, red, green, blue, row by row from the top; all of it or nothing.
+///
+/// # Errors
+/// [`MediaError::WrongFrame`] when there are not as many pixels, [`MediaError::Io`].
+pub fn still(path: &Path, pixels: &[[u8; 3]], width: u32, height: u32) -> Result<(), MediaError> {
+    let format = Format { width, height, fps: 1.0, colour: true, range: Range::Full };
+    format.admit_rgb(pixels)?;
+    let unfinished = Unfinished::beside(path);
+    let written =
+        encode(unfinished.temporary.name(), pixels.as_flattened(), &format, ExtendedColorType::Rgb8);
+    written.map_err(|e| unfinished.fail("write", e))?;
+    unfinished.finish()
+}
+
+impl PngFolder {
+    fn add(&mut self, pixels: &[u8], kind: ExtendedColorType) -> Result<(), MediaError> {
+        let path = self.unfinished.temporary.name().join(format!("frame_{:05}.png", self.n_frames));
+        encode(&path, pixels, &self.format, kind).map_err(|e| self.unfinished.fail("write", e))?;
+        self.n_frames += 1;
+        Ok(())
+    }
+}
+
 impl Movie for PngFolder {
     fn push(&mut self, frame: &Planes<'_>) -> Result<(), MediaError> {
         self.format.admit(frame)?;
-        let path = self.unfinished.temporary.name().join(format!("frame_{:05}.png", self.n_frames));
-        let file = File::create(path).map_err(|e| self.unfinished.fail("write", e))?;
-        let encoder =
-            PngEncoder::new_with_quality(BufWriter::new(file), CompressionType::Fast, FilterType::Adaptive);
         let (pixels, kind) = pixels(frame);
-        let written = encoder.write_image(&pixels, frame.y.width, frame.y.height, kind);
-        written.map_err(|e| self.unfinished.fail("write", std::io::Error::other(e)))?;
-        self.n_frames += 1;
-        Ok(())
+        self.add(&pixels, kind)
+    }
+
+    /// Every pixel as it is.
+    fn push_rgb(&mut self, pixels: &[[u8; 3]]) -> Result<(), MediaError> {
+        self.format.admit_rgb(pixels)?;
+        self.add(pixels.as_flattened(), ExtendedColorType::Rgb8)
+    }
+
+    fn format(&self) -> &Format {
+        &self.format
     }
 
     fn finish(self: Box<Self>) -> Result<(), MediaError> {
         self.unfinished.finish()
     }
+}
+
+fn encode(path: &Path, pixels: &[u8], format: &Format, kind: ExtendedColorType) -> std::io::Result<()> {
+    let file = BufWriter::new(File::create(path)?);
+    let encoder = PngEncoder::new_with_quality(file, CompressionType::Fast, FilterType::Adaptive);
+    encoder.write_image(pixels, format.width, format.height, kind).map_err(std::io::Error::other)
 }
 
 fn pixels(frame: &Planes<'_>) -> (Vec<u8>, ExtendedColorType) {

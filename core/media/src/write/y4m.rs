@@ -38,6 +38,10 @@ impl Movie for Y4m {
         write_frame(&mut self.out, frame).map_err(|e| self.unfinished.fail("write", e))
     }
 
+    fn format(&self) -> &Format {
+        &self.format
+    }
+
     fn finish(mut self: Box<Self>) -> Result<(), MediaError> {
         self.out.flush().map_err(|e| self.unfinished.fail("write", e))?;
         self.unfinished.finish()

@@ -1,0 +1,70 @@
+//! The viewer: scenes drawn by a graphics card, or by a driver that does without one.
+//!
+//! [`gpu`] finds what draws, [`target`] is what is drawn on, [`offscreen`] writes what was drawn into files. What draws a
+//! scene is a [`Picture`](offscreen::Picture).
+
+pub mod args;
+pub mod gpu;
+pub mod lens;
+pub mod offscreen;
+pub mod shaders;
+pub mod target;
+#[cfg(test)]
+mod testing;
+
+use std::io::Write as _;
+
+use anyhow::bail;
+use honami_scene::Scene;
+use serde_json::json;
+
+use args::Args;
+use gpu::Gpu;
+use offscreen::Picture;
+
+/// Does what is asked for.
+///
+/// # Errors
+/// What was not to be had or cannot be written, in one line.
+pub fn run(args: &Args) -> anyhow::Result<()> {
+    if args.adapters {
+        return list(args.json);
+    }
+    let (Some(path), Some(out)) = (&args.scene, &args.offscreen) else { return Ok(()) };
+    let scene = honami_scene::file::read(path)?;
+    let gpu = Gpu::open(args.adapter.as_deref())?;
+    offscreen::run(&gpu, &mut *picture(&gpu, scene)?, out, args)
+}
+
+fn picture(_gpu: &Gpu, scene: Scene) -> anyhow::Result<Box<dyn Picture>> {
+    match scene {
+        Scene::Skeleton(_) | Scene::Forest(_) => bail!("this viewer draws no such scene"),
+    }
+}
+
+/// The adapters there are, the one that would be used first.
+fn list(is_json: bool) -> anyhow::Result<()> {
+    let adapters = gpu::adapters();
+    let mut out = std::io::stdout().lock();
+    if is_json {
+        let row = |info: &wgpu::AdapterInfo| {
+            json!({
+                "name": info.name,
+                "backend": info.backend.to_string(),
+                "driver": format!("{} {}", info.driver, info.driver_info).trim(),
+                "software": info.device_type == wgpu::DeviceType::Cpu,
+            })
+        };
+        let rows: Vec<_> = adapters.iter().map(row).collect();
+        writeln!(out, "{}", json!({ "adapters": rows }))?;
+        return Ok(());
+    }
+    if adapters.is_empty() {
+        bail!(gpu::GpuError::None);
+    }
+    for info in &adapters {
+        let kind = if info.device_type == wgpu::DeviceType::Cpu { "software" } else { "card" };
+        writeln!(out, "{}, {kind}, {} {}", gpu::name(info), info.driver, info.driver_info)?;
+    }
+    Ok(())
+}
