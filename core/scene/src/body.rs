@@ -16,7 +16,7 @@ use light::Light;
 /// From how many heights of the plant on: the shares of its nodes and of its modes that are moved, vertices of a ring, and the
 /// share of its leaves, which are larger by as much.
 const LEVELS: [(f64, f64, f64, u32, f64); 4] =
-    [(0.0, 1.0, 1.0, 6, 1.0), (3.0, 0.3, 1.0, 5, 0.4), (8.0, 0.1, 0.6, 4, 0.12), (20.0, 0.03, 0.2, 3, 0.03)];
+    [(0.0, 1.0, 1.0, 6, 1.0), (5.0, 0.3, 1.0, 5, 0.6), (12.0, 0.1, 0.6, 4, 0.25), (30.0, 0.03, 0.2, 3, 0.08)];
 
 /// A plant as it is drawn. Rows are those of [`Body::order`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -1,5 +1,7 @@
 //! A forest: one plant, how it moves, and where its copies stand in which wind.
 
+pub mod live;
+
 use honami_mechanics::{Pace, Stand, Stirring, Vector};
 use serde::{Deserialize, Serialize};
 

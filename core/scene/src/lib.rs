@@ -9,7 +9,10 @@ pub mod camera;
 pub mod file;
 pub mod forest;
 pub mod grove;
+pub mod raster;
 pub mod skeleton;
+#[cfg(test)]
+mod testing;
 pub mod tubes;
 pub mod weather;
 

@@ -8,13 +8,13 @@ use super::light::Light;
 use super::{Leaf, Ring};
 
 /// Leaves of a plant, where nobody says how many: so many, shared by the ends of its branches.
-const USUAL: f64 = 9000.0;
+const USUAL: f64 = 14_000.0;
 const MOST_OF_END: f64 = 14.0;
 /// Length of a leaf, where nobody says: of the plant's height; no longer than so many metres.
-const LENGTH: f64 = 0.035;
+const LENGTH: f64 = 0.026;
 const LONGEST: f64 = 0.3;
 /// Of its length.
-const BREADTH: f32 = 0.5;
+const BREADTH: f32 = 0.45;
 /// From one leaf to the next about the branch (the golden angle), radians.
 const AROUND: f64 = 2.399_963_229_728_653;
 /// Of the end segment, from its tip, leaves hang on so much.

@@ -1,0 +1,190 @@
+//! A forest that goes on in its wind, step by step, as far as an eye sees it: on processors.
+
+use std::sync::Arc;
+
+use honami_mechanics::wind::Wind;
+use honami_mechanics::{
+    Damping, Detail, DetailError, Details, Forest, ForestError, Pace, Pose, Threads, ThreadsError, Vector,
+    View,
+};
+
+use super::ForestScene;
+use crate::camera::Camera;
+use crate::grove::Grove;
+use crate::weather::{WeatherError, read};
+
+/// The height of a picture, pixels, that levels of detail are made for: of one half as high they begin half as far away.
+const HEIGHT_PX: f64 = 720.0;
+/// Nothing is seen beyond so many metres, nor a plant beyond so many of its heights.
+const FARTHEST: f64 = 5000.0;
+
+/// Why a forest does not go on.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum LiveError {
+    /// A wind that is none.
+    #[error(transparent)]
+    Weather(#[from] WeatherError),
+    /// A forest that cannot be, or its wind.
+    #[error(transparent)]
+    Forest(#[from] ForestError),
+    /// Levels that do not follow one another.
+    #[error(transparent)]
+    Levels(#[from] DetailError),
+    /// Threads that the system does not give.
+    #[error(transparent)]
+    Threads(#[from] ThreadsError),
+}
+
+/// A forest that goes on.
+pub struct Live {
+    scene: Arc<ForestScene>,
+    grove: Grove,
+    forest: Forest,
+    wind: Box<dyn Wind>,
+    threads: Threads,
+    most_bytes: usize,
+    details: Vec<Detail>,
+    motion: Vec<[f32; 3]>,
+}
+
+/// What is seen of one copy now.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen<'a> {
+    /// Which.
+    pub copy: usize,
+    /// Row of its level.
+    pub level: usize,
+    /// How far its nodes are moved, in the axes and the size of the plant: rows of the order, those of the level.
+    pub motion: &'a [[f32; 3]],
+}
+
+impl Live {
+    /// A forest that has felt its wind for as long as the scene says; it takes so many threads, and air that flows so many
+    /// bytes.
+    ///
+    /// # Errors
+    /// [`LiveError`].
+    pub fn new(scene: Arc<ForestScene>, n_threads: usize, most_bytes: usize) -> Result<Self, LiveError> {
+        let threads = Threads::new(n_threads)?;
+        let forest = Forest::new(&scene.stirring, &scene.body.order, &scene.stands, &scene.pace)?;
+        let wind = wind(&scene, &scene.wind, most_bytes)?;
+        let (grove, details) = (scene.grove(), vec![Detail::default(); scene.places.len()]);
+        let steps = (scene.run_in / scene.pace.step).round() as u32;
+        let motion = Vec::new();
+        let mut made = Self { scene, grove, forest, wind, threads, most_bytes, details, motion };
+        for _ in 0..steps {
+            made.step()?;
+        }
+        Ok(made)
+    }
+
+    /// The scene as it was given.
+    #[must_use]
+    pub fn scene(&self) -> &ForestScene {
+        &self.scene
+    }
+
+    /// Where copies stand.
+    #[must_use]
+    pub fn grove(&self) -> &Grove {
+        &self.grove
+    }
+
+    /// Seconds since what is shown began; below 0 before.
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        self.forest.time() - self.scene.run_in
+    }
+
+    /// From now on this wind blows.
+    ///
+    /// # Errors
+    /// [`LiveError::Weather`]; the one before then goes on.
+    pub fn blow(&mut self, words: &str) -> Result<(), LiveError> {
+        self.wind = wind(&self.scene, words, self.most_bytes)?;
+        Ok(())
+    }
+
+    /// From now on it is damped so, and so heavy.
+    ///
+    /// # Errors
+    /// [`LiveError::Forest`]; it then goes on as before.
+    pub fn damp(&mut self, damping: Damping) -> Result<(), LiveError> {
+        let pace = Pace { damping, ..*self.forest.pace() };
+        Ok(self.forest.retune(&pace)?)
+    }
+
+    /// The wind at the crown of a copy now, metres per second.
+    #[must_use]
+    pub fn blowing(&self, copy: usize) -> Vector {
+        self.grove.blowing(&self.wind, copy, self.forest.time())
+    }
+
+    /// A step on.
+    ///
+    /// # Errors
+    /// [`LiveError::Forest`] of a wind that is no number.
+    pub fn step(&mut self) -> Result<(), LiveError> {
+        let (grove, wind, time) = (&self.grove, &self.wind, self.forest.time());
+        let blowing = |copy: usize| grove.blowing(wind, copy, time);
+        Ok(self.forest.step(&blowing, None, &self.threads)?)
+    }
+
+    /// What a camera sees in a picture of so many pixels, the copies in their order.
+    ///
+    /// # Errors
+    /// [`LiveError::Levels`].
+    pub fn seen(&mut self, camera: &Camera, [width, height]: [u32; 2]) -> Result<Vec<Seen<'_>>, LiveError> {
+        let view = view(camera, f64::from(width) / f64::from(height.max(1)));
+        let (farther, levels) = levels(&self.scene, f64::from(height) / HEIGHT_PX)?;
+        let whole = Detail {
+            n_nodes: self.scene.stirring.n_nodes() as u32,
+            n_modes: self.scene.stirring.n_modes() as u32,
+        };
+        let stands = self.grove.places.iter().zip(&self.scene.stands);
+        for (detail, (place, stand)) in self.details.iter_mut().zip(stands) {
+            let scale = f64::from(stand.scale);
+            *detail = farther.of(&self.scene.stirring, &view, place, scale).at_most(whole);
+        }
+        let n: usize = self.details.iter().map(|detail| detail.n_nodes as usize).sum();
+        self.motion.resize(n, [0.0; 3]);
+        let pose = Pose { details: Some(&self.details), motion: &mut self.motion };
+        self.forest.pose(pose, &self.threads);
+        let (mut seen, mut rest) = (Vec::new(), self.motion.as_slice());
+        for (copy, detail) in self.details.iter().enumerate().filter(|(_, detail)| detail.n_nodes > 0) {
+            let (motion, others) = rest.split_at(detail.n_nodes as usize);
+            rest = others;
+            let level = levels.iter().position(|level| level == detail).unwrap_or_default();
+            seen.push(Seen { copy, level, motion });
+        }
+        Ok(seen)
+    }
+}
+
+/// From how far on there is how much of a copy, in a picture so many times as high as usual; and how much there is in all
+/// levels.
+fn levels(scene: &ForestScene, sharper: f64) -> Result<(Details, Vec<Detail>), DetailError> {
+    let levels = &scene.body.levels;
+    let farther: Vec<_> = levels.iter().skip(1).map(|level| (level.from * sharper, level.detail())).collect();
+    Ok((Details::new(&farther)?, levels.iter().map(crate::body::Level::detail).collect()))
+}
+
+/// What a camera sees, as the mechanics has it.
+#[must_use]
+pub fn view(camera: &Camera, aspect: f64) -> View {
+    let eye = Vector::from(camera.eye.map(f64::from));
+    let towards = Vector::from(camera.target.map(f64::from)) - eye;
+    View { eye, towards, angle: f64::from(camera.angle), aspect, far: FARTHEST }
+}
+
+fn wind(scene: &ForestScene, words: &str, most_bytes: usize) -> Result<Box<dyn Wind>, WeatherError> {
+    // Whatever flows by itself begins again after as long as it was worked out for.
+    read(words)?.over(&scene.ground(SECONDS, most_bytes))
+}
+
+/// Seconds for which air that flows is worked out.
+const SECONDS: f64 = 60.0;
+
+#[cfg(test)]
+mod tests;
