@@ -1,5 +1,7 @@
 //! From pixels as stored to planes: luma as coded, chroma at half size (4:2:0), 8 bits each.
 
+use honami_model::picture::Range;
+
 use crate::source::Shape;
 
 /// How the samples of a stored frame are laid out.
@@ -116,15 +118,46 @@ fn halve(from: &[u8], from_width: usize, to: &mut [u8], to_width: usize, across:
     }
 }
 
-/// Full-range BT.601 in 16-bit fixed point, rounded: `Y = .299 R + .587 G + .114 B`, gray stays exactly gray.
+/// Gains of R, G and B in 16-bit fixed point, and what black is.
+struct Gains {
+    luma: [i32; 3],
+    black: i32,
+    cb: [i32; 3],
+    cr: [i32; 3],
+}
+
+/// `Y = .299 R + .587 G + .114 B`, `Cb = (B - Y) / 1.772 + 128`, `Cr = (R - Y) / 1.402 + 128` (BT.601, JFIF 1.02).
+const FULL: Gains = Gains {
+    luma: [19_595, 38_470, 7_471],
+    black: 0,
+    cb: [-11_058, -21_710, 32_768],
+    cr: [32_768, -27_439, -5_329],
+};
+
+/// The same in 219 steps from 16 on, chroma in 224. Gains add up so that gray has no chroma, and white is 235.
+const LIMITED: Gains = Gains {
+    luma: [16_829, 33_039, 6_416],
+    black: 16,
+    cb: [-9_714, -19_070, 28_784],
+    cr: [28_784, -24_103, -4_681],
+};
+
+/// BT.601 in 16-bit fixed point, rounded, in the range of the shape: gray has no chroma, and at full range stays exactly gray.
 ///
-/// Chroma is that of the mean colour of each 2x2 block (JFIF 1.02: `Cb = (B - Y) / 1.772 + 128`, `Cr = (R - Y) / 1.402 + 128`).
+/// Chroma is that of the mean colour of each 2x2 block.
 pub(crate) fn rgb_to_planes(rgb: &[u8], shape: &Shape, frame: &mut [u8]) {
+    let Gains { luma, black, cb, cr } = match shape.range {
+        Range::Full => FULL,
+        Range::Limited => LIMITED,
+    };
+    let weighted = |gains: [i32; 3], colour: [i32; 3]| -> i32 {
+        gains.iter().zip(colour).map(|(gain, value)| gain * value).sum()
+    };
     let width = shape.width as usize;
     let (y, uv) = frame.split_at_mut(shape.luma_len());
     for (pixel, out) in rgb.chunks_exact(3).zip(y.iter_mut()) {
-        let [r, g, b] = [0, 1, 2].map(|c| i32::from(pixel[c]));
-        *out = ((19_595 * r + 38_470 * g + 7_471 * b + 32_768) >> 16) as u8;
+        let colour = [0, 1, 2].map(|c| i32::from(pixel[c]));
+        *out = ((weighted(luma, colour) + (black << 16) + 32_768) >> 16) as u8;
     }
     if !shape.colour {
         return;
@@ -136,7 +169,7 @@ pub(crate) fn rgb_to_planes(rgb: &[u8], shape: &Shape, frame: &mut [u8]) {
         let below = rgb.get((2 * row + 1) * 3 * width..(2 * row + 2) * 3 * width).unwrap_or(top);
         for column in 0..half {
             let (left, right) = (6 * column, (6 * column + 3).min(3 * (width - 1)));
-            let [r, g, b] = [0, 1, 2].map(|c| {
+            let colour = [0, 1, 2].map(|c| {
                 [top[left + c], top[right + c], below[left + c], below[right + c]]
                     .map(i32::from)
                     .iter()
@@ -144,8 +177,8 @@ pub(crate) fn rgb_to_planes(rgb: &[u8], shape: &Shape, frame: &mut [u8]) {
             });
             // Sums of four pixels: two more bits of fraction. 128 in the same scale, and one half to round.
             const BIAS: i32 = (128 << 18) + (1 << 17);
-            u[column] = clamped((-11_058 * r - 21_710 * g + 32_768 * b + BIAS) >> 18);
-            v[column] = clamped((32_768 * r - 27_439 * g - 5_329 * b + BIAS) >> 18);
+            u[column] = clamped((weighted(cb, colour) + BIAS) >> 18);
+            v[column] = clamped((weighted(cr, colour) + BIAS) >> 18);
         }
     }
 }

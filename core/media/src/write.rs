@@ -43,13 +43,13 @@ pub trait Movie: Send {
     /// [`MediaError::WrongFrame`] when it differs from the format, [`MediaError::Io`] when it cannot be written.
     fn push(&mut self, frame: &Planes<'_>) -> Result<(), MediaError>;
 
-    /// Appends a frame of pixels, red, green, blue, row by row from the top, to a movie in colour and of full range.
+    /// Appends a frame of pixels, red, green, blue, row by row from the top, to a movie in colour.
     ///
     /// # Errors
     /// As [`push`](Self::push).
     fn push_rgb(&mut self, pixels: &[[u8; 3]]) -> Result<(), MediaError> {
-        let Format { width, height, .. } = *self.format();
-        let shape = Shape { width, height, colour: true, range: Range::Full };
+        let Format { width, height, range, .. } = *self.format();
+        let shape = Shape { width, height, colour: true, range };
         self.format().admit_rgb(pixels)?;
         let mut frame = vec![0; shape.frame_len()];
         rgb_to_planes(pixels.as_flattened(), &shape, &mut frame);

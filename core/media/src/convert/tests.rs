@@ -37,3 +37,30 @@ fn luma_of_rgb_is_rounded_and_gray_stays_gray() {
         }
     }
 }
+
+/// BT.601 as the standard has it: Y' in 219 steps from 16, chroma in 224 about 128.
+#[test]
+fn limited_range_is_that_of_the_standard() {
+    let shape = Shape { width: 1, height: 1, colour: true, range: Range::Limited };
+    for r in (0..=255).step_by(15) {
+        for g in (0..=255).step_by(15) {
+            for b in (0..=255).step_by(15) {
+                let mut frame = [0; 3];
+                rgb_to_planes(&[r, g, b], &shape, &mut frame);
+                let [red, green, blue] = [r, g, b].map(|c| f64::from(c) / 255.0);
+                let luma = 0.299 * red + 0.587 * green + 0.114 * blue;
+                let want = [
+                    16.0 + 219.0 * luma,
+                    128.0 + 224.0 * (blue - luma) / 1.772,
+                    128.0 + 224.0 * (red - luma) / 1.402,
+                ];
+                for (got, want) in frame.into_iter().zip(want) {
+                    assert!((f64::from(got) - want).abs() < 0.505, "{r} {g} {b}: {frame:?}, {want}");
+                }
+                if r == g && g == b {
+                    assert_eq!(frame[1..], [128, 128], "{r}");
+                }
+            }
+        }
+    }
+}

@@ -191,3 +191,25 @@ fn the_hash_names_content_and_order() {
     let abc = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"; // FIPS 180-2, B.1
     assert_eq!(crate::sha256_of_file(&place.path("abc")).unwrap(), abc);
 }
+
+#[test]
+fn pictures_that_are_written_are_those_that_are_read() {
+    use crate::write::{Format, create};
+    let place = Place::new();
+    let (width, height) = (7, 5);
+    let picture = rgb(width, height, 1);
+    picture.save(place.path("a.png")).unwrap();
+    let want = bytes_of(&place.open("a.png"));
+    let pixels: Vec<[u8; 3]> = picture.pixels().map(|pixel| pixel.0).collect();
+    for name in ["a.y4m", "images"] {
+        let format = Format { width, height, fps: 25.0, colour: true, range: Range::Full };
+        let mut movie = create(&place.path(name), &format).unwrap();
+        let error = movie.push_rgb(&pixels[1..]).unwrap_err().to_string();
+        assert_eq!(error, "a frame of 34 pixels cannot go into a movie of 35 pixels", "{name}");
+        movie.push_rgb(&pixels).unwrap();
+        movie.finish().unwrap();
+        assert_eq!(bytes_of(&place.open(name)), want, "{name}");
+    }
+    let first = image::open(place.path("images/frame_00000.png")).unwrap();
+    assert_eq!(first.into_rgb8(), picture, "images keep every colour");
+}
