@@ -9,6 +9,8 @@ pub mod camera;
 pub mod file;
 pub mod forest;
 pub mod grove;
+pub mod paint;
+pub mod palette;
 pub mod raster;
 pub mod skeleton;
 #[cfg(test)]

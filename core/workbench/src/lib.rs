@@ -54,6 +54,8 @@ pub use honami_mechanics as mechanics;
 pub use honami_media as media;
 /// Motion as colour.
 pub use honami_motion::overlay;
+/// Colours of what is drawn.
+pub use honami_scene::palette;
 /// Projects.
 pub use honami_store as store;
 /// Generated clips.

@@ -15,6 +15,7 @@ use ratatui::style::{Color, Style};
 use ratatui::text::Line;
 
 use honami_model::track::Status;
+use honami_workbench::palette::{self, DARK, KEY, UNSEEN};
 
 use super::braille::{DOTS, braille};
 use super::{put, style};
@@ -44,13 +45,9 @@ const PICTURE: u8 = 1;
 const MARK: u8 = 8;
 
 const WHITE: [u8; 3] = [255, 255, 255];
-/// Round rings and in crosses: they must be seen on petals and on sky.
-const DARK: [u8; 3] = [20, 20, 20];
-const KEY: [u8; 3] = [255, 215, 95];
 /// Round the tracks that are picked.
 const PICKED: [u8; 3] = [80, 255, 120];
 const CURSOR: [u8; 3] = [255, 60, 255];
-const UNSEEN: [u8; 3] = [130, 130, 130];
 
 /// Pixels of a ring of radius 2.
 const RING: [(i64, i64); 12] = [
@@ -184,7 +181,7 @@ impl<'a> Canvas<'a> {
             let at = [sample.x, sample.y];
             match sample.status {
                 Status::Tracked | Status::Newborn => {
-                    let colour = style::group(state.groups.as_ref().and_then(|g| g.of(row.id)));
+                    let colour = palette::group(state.groups.as_ref().and_then(|g| g.of(row.id)));
                     self.mark(at, &[], colour, 'o');
                     self.tint(at, colour);
                 }

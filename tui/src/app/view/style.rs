@@ -1,5 +1,6 @@
 //! The few colours of the chrome: one accent, one for errors; all else is the terminal's own.
 
+use honami_workbench::palette;
 use ratatui::style::{Color, Modifier, Style};
 
 /// What the eye should find first.
@@ -17,31 +18,9 @@ pub const PANEL: Style = Style::new().fg(Color::Indexed(252)).bg(Color::Indexed(
 /// The chosen row of a list, also without colours.
 pub const CHOSEN: Style = Style::new().add_modifier(Modifier::REVERSED);
 
-/// Colours of groups: far from foliage and from each other; they repeat after the last.
-const GROUPS: [[u8; 3]; 12] = [
-    [255, 209, 0],
-    [0, 200, 255],
-    [255, 80, 80],
-    [255, 120, 240],
-    [120, 140, 255],
-    [255, 150, 40],
-    [170, 255, 90],
-    [0, 240, 180],
-    [200, 100, 255],
-    [255, 220, 180],
-    [170, 110, 60],
-    [200, 200, 200],
-];
-
-/// Colour of a group's tracks; of those without a group where `None`.
-#[must_use]
-pub fn group(group: Option<u32>) -> [u8; 3] {
-    group.map_or([90, 220, 255], |g| GROUPS[g as usize % GROUPS.len()])
-}
-
-/// The same as a text colour.
+/// Colour of a group's tracks as that of text; of those without a group where `None`.
 #[must_use]
 pub fn group_text(number: Option<u32>) -> Style {
-    let [r, g, b] = group(number);
+    let [r, g, b] = palette::group(number);
     Style::new().fg(Color::Rgb(r, g, b))
 }

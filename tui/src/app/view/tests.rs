@@ -14,6 +14,7 @@ use crate::app::update::{Fact, Msg, update};
 use honami_model::track::TrackId;
 use honami_workbench::offer::{Errors, LeftOut, Model};
 use honami_workbench::overlay::VelocityField;
+use honami_workbench::palette;
 use honami_workbench::shape::Shape;
 use ratatui::style::{Color, Modifier};
 
@@ -464,7 +465,7 @@ fn marks_lie_where_the_tracks_are() {
     let cell = &frame.cells[(shot.lens.area.x + x as u16, shot.lens.area.y + y as u16 / 2)];
     let below = shot.pixels[(y * shot.lens.size().0 + x) as usize];
     let mixed: Vec<u8> =
-        (0..3).map(|c| ((u16::from(below[c]) + 2 * u16::from(style::group(None)[c])) / 3) as u8).collect();
+        (0..3).map(|c| ((u16::from(below[c]) + 2 * u16::from(palette::group(None)[c])) / 3) as u8).collect();
     assert_eq!([cell.fg, cell.bg][y as usize % 2], Color::Rgb(mixed[0], mixed[1], mixed[2]));
 }
 
@@ -484,7 +485,7 @@ fn bones_lie_where_the_joints_are() {
     for (row, group) in [(2, 0), (3, 1)] {
         let half = |axis: usize| f32::midpoint(places[1][axis], places[row][axis]);
         let (x, y) = lens.pixel_of([half(0), -half(2)]).unwrap();
-        assert_eq!(after[(y * lens.size().0 + x) as usize], style::group(Some(group)), "bone {row}");
+        assert_eq!(after[(y * lens.size().0 + x) as usize], palette::group(Some(group)), "bone {row}");
     }
     assert_ne!(before, after);
     // Bones of groups as they were have none of their colours.

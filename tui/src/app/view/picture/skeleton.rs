@@ -1,14 +1,13 @@
 //! The skeleton: a line a bone, in the colour of the group whose centre its joint is; the chosen bone strong. Seen from
 //! elsewhere than the camera it stands before nothing, so that nobody takes it for what lies in the picture.
 
-use super::{Canvas, DARK, UNSEEN, WHITE};
+use honami_workbench::palette::{self, DARK, FORK, UNSEEN};
+
+use super::{Canvas, WHITE};
 use crate::app::panel::Panel;
 use crate::app::skeleton::{Bones, Pose, Skeletal};
 use crate::app::state::{Mode, State};
-use crate::app::view::style;
 
-/// Bones that end in forks.
-const FORK: [u8; 3] = [235, 235, 235];
 /// What is behind a skeleton that is not seen from the front.
 const NOTHING: [u8; 3] = [26, 26, 26];
 /// Pixels of the root's mark, and round them.
@@ -57,7 +56,7 @@ impl Canvas<'_> {
         {
             let Some(parent) = joints[row].parent else { continue };
             let ((from, near), (to, far)) = (seen(parent as usize), seen(row));
-            let colour = joints[row].groups.first().map_or(FORK, |group| style::group(Some(*group)));
+            let colour = joints[row].groups.first().map_or(FORK, |group| palette::group(Some(*group)));
             // What is behind is darker.
             let is_behind = azimuth != 0 && near + far > 0.0 && !strong;
             let colour = if is_behind { colour.map(|v| v / 5 * 3) } else { colour };
