@@ -49,6 +49,9 @@ pub struct Args {
     /// Draw with the adapter that has this in its name.
     #[arg(long, value_name = "NAME")]
     pub adapter: Option<String>,
+    /// Move a forest on the processor's cores though there is a card, as without one.
+    #[arg(long)]
+    pub cpu: bool,
     /// List what could draw, the best first, which is what does.
     #[arg(long)]
     pub adapters: bool,

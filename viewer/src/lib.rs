@@ -1,9 +1,10 @@
 //! The viewer: scenes drawn by a graphics card, or by a driver that does without one.
 //!
 //! [`gpu`] finds what draws, [`target`] is what is drawn on, [`offscreen`] writes what was drawn into files. What draws a
-//! scene is a [`Picture`](offscreen::Picture).
+//! scene is a [`Picture`].
 
 pub mod args;
+pub mod forest;
 pub mod gpu;
 pub mod lens;
 pub mod offscreen;
@@ -19,6 +20,7 @@ use honami_scene::Scene;
 use serde_json::json;
 
 use args::Args;
+use forest::{By, ForestPicture};
 use gpu::Gpu;
 use offscreen::Picture;
 
@@ -33,12 +35,17 @@ pub fn run(args: &Args) -> anyhow::Result<()> {
     let (Some(path), Some(out)) = (&args.scene, &args.offscreen) else { return Ok(()) };
     let scene = honami_scene::file::read(path)?;
     let gpu = Gpu::open(args.adapter.as_deref())?;
-    offscreen::run(&gpu, &mut *picture(&gpu, scene)?, out, args)
+    offscreen::run(&gpu, &mut *picture(&gpu, scene, args.cpu)?, out, args)
 }
 
-fn picture(_gpu: &Gpu, scene: Scene) -> anyhow::Result<Box<dyn Picture>> {
+/// What draws a scene.
+fn picture(gpu: &Gpu, scene: Scene, is_cpu: bool) -> anyhow::Result<Box<dyn Picture>> {
     match scene {
-        Scene::Skeleton(_) | Scene::Forest(_) => bail!("this viewer draws no such scene"),
+        Scene::Forest(scene) => {
+            let by = if is_cpu { By::Processor } else { By::best(gpu, &scene) };
+            Ok(Box::new(ForestPicture::new(gpu, *scene, by)?))
+        }
+        Scene::Skeleton(_) => bail!("this viewer draws forests only"),
     }
 }
 

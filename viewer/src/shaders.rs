@@ -1,7 +1,14 @@
 //! Shaders by their names, with what several of them share.
 
 /// Files in the folder beside this one.
-const FILES: [(&str, &str); 1] = [("light", include_str!("shaders/light.wgsl"))];
+const FILES: [(&str, &str); 6] = [
+    ("copies", include_str!("shaders/copies.wgsl")),
+    ("cull", include_str!("shaders/cull.wgsl")),
+    ("forest", include_str!("shaders/forest.wgsl")),
+    ("light", include_str!("shaders/light.wgsl")),
+    ("pose", include_str!("shaders/pose.wgsl")),
+    ("step", include_str!("shaders/step.wgsl")),
+];
 
 /// Lines that begin so are followed by the name of another file, which stands in their place.
 const WITH: &str = "// with ";

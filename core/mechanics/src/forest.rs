@@ -8,6 +8,7 @@
 
 mod air;
 mod detail;
+mod numbers;
 mod round;
 mod state;
 #[cfg(test)]
@@ -15,6 +16,7 @@ mod tests;
 mod view;
 
 pub use detail::{Detail, DetailError, Details};
+pub use numbers::{Felt, Numbers};
 pub use round::{Round, Winds};
 pub use state::StateError;
 pub use view::View;

@@ -28,8 +28,8 @@ mod wind_basis;
 pub use beams::{Beams, BeamsError, MOST_NODES, Options};
 pub use bending::{Bending, Form};
 pub use forest::{
-    Blowing, Detail, DetailError, Details, Forest, ForestError, Pace, Pose, Round, Stand, StateError, View,
-    Winds,
+    Blowing, Detail, DetailError, Details, Felt, Forest, ForestError, Numbers, Pace, Pose, Round, Stand,
+    StateError, View, Winds,
 };
 pub use leaves::{Leaves, LeavesError};
 pub use material::{Material, MaterialError};

@@ -150,6 +150,12 @@ impl Stirring {
     pub fn height(&self) -> f64 {
         self.height
     }
+
+    /// Radius of a ball about half the height that holds all nodes, in the wind, too; metres.
+    #[must_use]
+    pub fn reach(&self) -> f64 {
+        self.reach
+    }
 }
 
 /// Amplitudes of the slowest mode, and of those as slow, that move the node which they move most by a metre.

@@ -59,6 +59,27 @@ impl Turning {
         self.segments.len() + 1
     }
 
+    /// Of every node but the root: the node before it.
+    #[must_use]
+    pub fn parents(&self) -> &[u32] {
+        &self.parents
+    }
+
+    /// Of every node but the root: the way to it from there at rest, metres.
+    #[must_use]
+    pub fn segments(&self) -> &[Vector3<f64>] {
+        &self.segments
+    }
+
+    /// Of every node but the root: by what a mode turns its segment a unit of the amplitude, radians about an axis.
+    ///
+    /// # Panics
+    /// When there is no such mode.
+    #[must_use]
+    pub fn turns(&self, mode: usize) -> &[Vector3<f64>] {
+        &self.turns[mode]
+    }
+
     /// Displacements of all nodes of the beams, metres, at an amplitude of one mode.
     ///
     /// # Panics

@@ -6,7 +6,7 @@ const SUNLIGHT = vec3f(2.35, 2.12, 1.78);
 const SKYLIGHT = vec3f(0.62, 0.74, 0.92);
 // What comes back from the ground.
 const GROUNDLIGHT = vec3f(0.26, 0.24, 0.19);
-const HAZE = vec3f(0.80, 0.86, 0.90);
+const HAZE = vec3f(0.62, 0.70, 0.76);
 
 // From all of the sky and the ground, to where a surface looks.
 fn ambient(normal: vec3f) -> vec3f {

@@ -50,12 +50,18 @@ impl Details {
     /// That of a copy at a place, metres, so many times as large as the plant: nothing of what is out of view.
     #[must_use]
     pub fn of(&self, plant: &Stirring, view: &View, place: &Vector3<f64>, scale: f64) -> Detail {
+        self.level(plant, view, place, scale).map_or_else(Detail::default, |level| self.0[level].1)
+    }
+
+    /// Which it is, from the whole plant on; `None` out of view.
+    #[must_use]
+    pub fn level(&self, plant: &Stirring, view: &View, place: &Vector3<f64>, scale: f64) -> Option<usize> {
         let centre = place + Vector3::z() * (plant.height / 2.0 * scale);
         if !view.sees(&centre, plant.reach * scale) {
-            return Detail::default();
+            return None;
         }
         let distance = (view.eye - centre).norm() / scale;
-        self.0.iter().rfind(|(from, _)| distance >= *from).map_or_else(Detail::default, |(_, detail)| *detail)
+        self.0.iter().rposition(|(from, _)| distance >= *from)
     }
 }
 

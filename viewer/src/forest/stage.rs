@@ -1,0 +1,202 @@
+//! Buffers of a forest: what is drawn of which copies. Those who move it write here, and the paint reads.
+
+use bytemuck::{Pod, Zeroable};
+use honami_scene::ForestScene;
+use wgpu::BufferUsages as Uses;
+use wgpu::util::{BufferInitDescriptor, DeviceExt as _};
+
+use super::body::{Part, Parts};
+use crate::gpu::{Gpu, GpuError};
+
+/// From the numbers of one level to the next, bytes: what every adapter can begin a binding at.
+pub(super) const LEVEL_BYTES: u32 = 256;
+/// Bytes of what draws something so many times: how many indices, how many times, the first index, and two that are 0.
+pub(super) const CALL_BYTES: u64 = 20;
+
+/// A copy, as shaders read it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct Copy {
+    place: [f32; 2],
+    /// Sine and cosine of its turn.
+    turn: [f32; 2],
+    scale: f32,
+    /// Of its own, 0 to 1.
+    chance: f32,
+    filler: [u32; 2],
+}
+
+/// A level, as shaders read it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct LevelNumbers {
+    /// Where its list of copies begins.
+    list: u32,
+    first_ring: u32,
+    first_leaf: u32,
+    n_sides: u32,
+    /// From so many metres on, of a copy of the plant's own size.
+    from: f32,
+    n_nodes: u32,
+    n_modes: u32,
+    level: u32,
+}
+
+/// What draws wood, or leaves, of a level.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct Call {
+    n_indices: u32,
+    n_copies: u32,
+    first_index: u32,
+    base_vertex: i32,
+    first_copy: u32,
+}
+
+/// All buffers.
+#[derive(Debug)]
+pub(super) struct Stage {
+    pub(super) n_copies: usize,
+    /// How many displacements there is room for.
+    pub(super) n_rows: usize,
+    pub(super) copies: wgpu::Buffer,
+    /// Of every copy that is drawn: its first displacement.
+    pub(super) firsts: wgpu::Buffer,
+    /// How fast the air is at every copy, metres per second.
+    airs: wgpu::Buffer,
+    /// Of every level, in room for all: which copies are drawn so.
+    pub(super) seen: wgpu::Buffer,
+    /// U: displacements of nodes, metres.
+    pub(super) moved: wgpu::Buffer,
+    rings: wgpu::Buffer,
+    leaves: wgpu::Buffer,
+    pub(super) indices: wgpu::Buffer,
+    /// Of every level, so many [`LEVEL_BYTES`] apart.
+    pub(super) levels: wgpu::Buffer,
+    /// Of every level two calls: its wood, its leaves.
+    pub(super) calls: wgpu::Buffer,
+    parts: Vec<Part>,
+    first_card: u32,
+}
+
+impl Stage {
+    /// Room for all of a forest, or as much as the adapter has.
+    pub(super) fn new(gpu: &Gpu, scene: &ForestScene) -> Result<Self, GpuError> {
+        let parts = Parts::new(&scene.body);
+        let n_copies = scene.places.len();
+        let limits = gpu.device.limits();
+        let most = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size) as usize;
+        let n_rows = (n_copies * scene.body.order.len()).min(most / 12);
+        let made = |label, contents: &[u8], usage| {
+            gpu.device.create_buffer_init(&BufferInitDescriptor { label: Some(label), contents, usage })
+        };
+        let empty = |label, size: usize, usage| {
+            let (size, label) = (size.max(16) as u64, Some(label));
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label,
+                size,
+                usage,
+                mapped_at_creation: false,
+            })
+        };
+        let both = Uses::STORAGE | Uses::COPY_DST | Uses::COPY_SRC;
+        let copies: Vec<Copy> = scene.places.iter().zip(&scene.stands).enumerate().map(copy).collect();
+        let rings = bytemuck::cast_slice(&parts.rings);
+        let needed = [rings.len(), 64 * parts.leaves.len(), 4 * n_copies * scene.body.levels.len()];
+        if let Some(bytes) = needed.into_iter().find(|bytes| *bytes > most) {
+            let (what, most) = (format!("forest of {bytes} bytes in one piece"), format!("{most} bytes"));
+            return Err(GpuError::TooLarge { adapter: gpu.name(), what, most });
+        }
+        // A plant without leaves has a buffer of them nevertheless.
+        let mut leaves = bytemuck::cast_slice(&parts.leaves).to_vec();
+        leaves.resize(leaves.len().max(64), 0);
+        let stage = Self {
+            n_copies,
+            n_rows,
+            copies: made("copies", bytemuck::cast_slice(&copies), Uses::STORAGE),
+            firsts: empty("firsts", 4 * n_copies, both),
+            airs: empty("airs", 4 * n_copies, both),
+            seen: empty("seen", 4 * n_copies * parts.levels.len(), both),
+            moved: empty("moved", 12 * n_rows, both),
+            rings: made("rings", rings, Uses::STORAGE),
+            leaves: made("leaves", &leaves, Uses::STORAGE),
+            indices: made("indices", bytemuck::cast_slice(&parts.indices), Uses::INDEX),
+            levels: made("levels", &levels(scene, &parts), Uses::UNIFORM | Uses::STORAGE),
+            calls: made("calls", &calls(&parts, |_| 0), both | Uses::INDIRECT),
+            parts: parts.levels,
+            first_card: parts.first_card,
+        };
+        gpu.check()?;
+        Ok(stage)
+    }
+
+    /// Levels.
+    pub(super) fn n_levels(&self) -> usize {
+        self.parts.len()
+    }
+
+    /// How fast the air is at every copy, metres per second.
+    pub(super) fn feel(&self, gpu: &Gpu, speeds: impl Iterator<Item = f32>) {
+        gpu.queue.write_buffer(&self.airs, 0, bytemuck::cast_slice(&speeds.collect::<Vec<_>>()));
+    }
+
+    /// Which copies are drawn by which level: a list a level.
+    pub(super) fn list(&self, gpu: &Gpu, lists: &[Vec<u32>]) {
+        for (level, list) in lists.iter().enumerate() {
+            let begin = 4 * (level * self.n_copies) as u64;
+            gpu.queue.write_buffer(&self.seen, begin, bytemuck::cast_slice(list));
+        }
+        let calls = calls_of(&self.parts, self.first_card, |level| lists[level].len() as u32);
+        gpu.queue.write_buffer(&self.calls, 0, &calls);
+    }
+
+    /// What the paint reads, in the order of its bindings.
+    pub(super) fn read(&self) -> [&wgpu::Buffer; 7] {
+        [&self.copies, &self.firsts, &self.airs, &self.seen, &self.moved, &self.rings, &self.leaves]
+    }
+}
+
+fn copy((k, (place, stand)): (usize, (&[f32; 2], &honami_mechanics::Stand))) -> Copy {
+    let (sin, cos) = stand.turn.sin_cos();
+    // As good as by chance: parts of the golden ratio.
+    let chance = (k as f64 * 0.618_033_988_749_895).fract() as f32;
+    Copy { place: *place, turn: [sin, cos], scale: stand.scale, chance, filler: [0; 2] }
+}
+
+fn levels(scene: &ForestScene, parts: &Parts) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    for (k, (level, part)) in (0..).zip(scene.body.levels.iter().zip(&parts.levels)) {
+        let numbers = LevelNumbers {
+            list: k * scene.places.len() as u32,
+            first_ring: part.first_ring,
+            first_leaf: part.first_leaf,
+            n_sides: part.n_sides,
+            from: level.from as f32,
+            n_nodes: level.n_nodes,
+            n_modes: level.n_modes,
+            level: k,
+        };
+        bytes.extend_from_slice(bytemuck::bytes_of(&numbers));
+        bytes.resize((k as usize + 1) * LEVEL_BYTES as usize, 0);
+    }
+    bytes
+}
+
+fn calls(parts: &Parts, n_copies: impl Fn(usize) -> u32) -> Vec<u8> {
+    calls_of(&parts.levels, parts.first_card, n_copies)
+}
+
+fn calls_of(parts: &[Part], first_card: u32, n_copies: impl Fn(usize) -> u32) -> Vec<u8> {
+    let call = |n_indices, first_index, level| Call {
+        n_indices,
+        n_copies: n_copies(level),
+        first_index,
+        base_vertex: 0,
+        first_copy: 0,
+    };
+    let of_level = |(level, part): (usize, &Part)| {
+        [call(part.n_indices, part.first_index, level), call(6 * part.n_leaves, first_card, level)]
+    };
+    let calls: Vec<Call> = parts.iter().enumerate().flat_map(of_level).collect();
+    bytemuck::cast_slice(&calls).to_vec()
+}

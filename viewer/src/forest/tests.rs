@@ -1,0 +1,167 @@
+//! Forests against the simulation that they show, and pictures against pictures.
+
+use super::chains::Chains;
+use super::{By, ForestPicture, view};
+use crate::gpu::{Gpu, adapters, name};
+use crate::offscreen::{Picture as _, Shot};
+use crate::target::{Size, Target};
+use crate::testing;
+use honami_mechanics::{Following, Forest, Pose, Threads};
+use honami_scene::{ForestScene, Orbit};
+
+const SIZE: Size = Size { width: 320, height: 180, samples: 4 };
+
+fn drawn(gpu: &Gpu, scene: &ForestScene, by: By, time: f64) -> Vec<[u8; 3]> {
+    let mut picture = ForestPicture::new(gpu, scene.clone(), by).unwrap();
+    let target = Target::new(gpu, SIZE).unwrap();
+    let shot = Shot { time, camera: picture.orbit().camera() };
+    picture.draw(gpu, &target, &shot).unwrap();
+    target.read(gpu).unwrap()
+}
+
+/// Of one tree from near and of several, on every adapter there is; and neither without its leaves nor a little aside.
+#[test]
+fn a_forest_looks_as_it_did() {
+    if testing::gpu().is_none() {
+        return;
+    }
+    let many = ForestScene { run_in: 1.0, ..testing::forest(250, 6, 12) };
+    let one = ForestScene { run_in: 1.0, ..testing::forest(600, 6, 1) };
+    for info in adapters() {
+        let gpu = Gpu::open(Some(&name(&info))).unwrap();
+        for (name, scene) in [("forest", &many), ("tree", &one)] {
+            let pixels = drawn(&gpu, scene, By::Processor, 0.2);
+            let truth = testing::truth(name, &pixels, SIZE.width);
+            let unlike = testing::unlike(&pixels, &truth);
+            assert!(testing::is_alike(&pixels, &truth), "{name} on {}: {unlike} of it", gpu.name());
+            let mut bare = scene.clone();
+            bare.body.levels.iter_mut().for_each(|level| level.leaves.clear());
+            let mut aside = scene.clone();
+            aside.places.iter_mut().for_each(|at| at[0] += 0.15);
+            for wrong in [bare, aside] {
+                let pixels = drawn(&gpu, &wrong, By::Processor, 0.2);
+                let unlike = testing::unlike(&pixels, &truth);
+                assert!(!testing::is_alike(&pixels, &truth), "{name} on {}: {unlike} of it", gpu.name());
+            }
+        }
+    }
+}
+
+/// Whoever moves it, and in however many pictures it came to be where it is.
+#[test]
+fn the_same_moment_is_the_same_picture() {
+    let Some(gpu) = testing::gpu() else { return };
+    let scene = testing::forest(150, 5, 6);
+    for by in [By::Processor, By::Card] {
+        let once = drawn(&gpu, &scene, by, 0.4);
+        assert!(once == drawn(&gpu, &scene, by, 0.4), "{by:?}: to the byte");
+        let mut picture = ForestPicture::new(&gpu, scene.clone(), by).unwrap();
+        let (target, camera) = (Target::new(&gpu, SIZE).unwrap(), picture.orbit().camera());
+        let mut at = |time| {
+            picture.draw(&gpu, &target, &Shot { time, camera }).unwrap();
+            target.read(&gpu).unwrap()
+        };
+        assert!(at(0.2) != once, "{by:?}: it moves");
+        assert!(at(0.4) == once, "{by:?}: in two");
+        assert!(at(0.9) != once && at(0.4) == once, "{by:?}: back");
+    }
+    let [host, card] = [By::Processor, By::Card].map(|by| drawn(&gpu, &scene, by, 0.4));
+    assert!(testing::is_alike(&host, &card));
+}
+
+/// Each node but the root in one chain, behind the one that bears it, or at its head behind one of a lower rank.
+#[test]
+fn chains_hold_every_node_behind_what_bears_it() {
+    for n in [2, 3, 40, 700] {
+        let scene = testing::forest(n, 1, 1);
+        let Following::Turns(turning) = scene.stirring.following() else { unreachable!() };
+        let order = &scene.body.order;
+        let Chains { chains, nodes, ranks } = Chains::new(turning, order);
+        let mut rank_of = vec![None; n];
+        rank_of[0] = Some(0);
+        for (rank, ends) in (1..).zip(ranks.windows(2)) {
+            for [first, n, bearer] in &chains[ends[0] as usize..ends[1] as usize] {
+                let mut before = *bearer;
+                assert!(rank_of[before as usize].is_some_and(|of| of < rank));
+                for row in &nodes[*first as usize..(first + n) as usize] {
+                    assert!(*row > before && rank_of[*row as usize].replace(rank).is_none());
+                    let bears = turning.parents()[order[*row as usize] as usize - 1];
+                    assert_eq!(order[before as usize], bears);
+                    before = *row;
+                }
+            }
+        }
+        assert!(rank_of.iter().all(Option::is_some), "{n} nodes");
+        assert!(ranks.len() <= 2 + n.ilog2() as usize, "{n} nodes: {ranks:?}");
+    }
+}
+
+fn floats(bytes: &[u8]) -> Vec<f32> {
+    bytes.as_chunks().0.iter().map(|four| f32::from_le_bytes(*four)).collect()
+}
+
+fn numbers(bytes: &[u8]) -> Vec<u32> {
+    bytes.as_chunks().0.iter().map(|four| u32::from_le_bytes(*four)).collect()
+}
+
+/// In a storm over hundreds of steps: copies near and far, some out of the picture, of several sizes and masses.
+#[test]
+fn a_card_has_every_node_where_the_simulation_has_it() {
+    let Some(gpu) = testing::gpu() else { return };
+    let scene = testing::forest(300, 8, 40);
+    let (details, grove) = (scene.body.details().unwrap(), scene.grove());
+    let threads = Threads::new(1).unwrap();
+    let mut forest = Forest::new(&scene.stirring, &scene.body.order, &scene.stands, &scene.pace).unwrap();
+    let mut picture = ForestPicture::new(&gpu, scene.clone(), By::Card).unwrap();
+    let target = Target::new(&gpu, Size { width: 32, height: 18, samples: 1 }).unwrap();
+    let orbit = picture.orbit();
+    let (mut n_of_levels, mut farthest) = (vec![0; scene.body.levels.len()], 0.0_f32);
+    for (time, times) in [(0.0, 0.6), (3.0, 1.5), (8.0, 6.0)] {
+        let camera = Orbit { distance: orbit.distance * times, ..orbit }.camera();
+        picture.draw(&gpu, &target, &Shot { time, camera }).unwrap();
+        while forest.time() < scene.run_in + time - 1e-6 {
+            let now = forest.time();
+            forest.step(&|copy| grove.blowing(&picture.wind, copy, now), None, &threads).unwrap();
+        }
+        let view = view(&camera, target.aspect(), super::FAR * scene.stirring.height());
+        let level = |copy: usize| {
+            details.level(&scene.stirring, &view, &grove.places[copy], grove.stands[copy].scale.into())
+        };
+        let of_copies: Vec<_> = (0..scene.places.len())
+            .map(|copy| level(copy).map_or_else(Default::default, |level| scene.body.levels[level].detail()))
+            .collect();
+        let n_rows = of_copies.iter().map(|detail| detail.n_nodes as usize).sum();
+        let mut wanted = vec![[0.0; 3]; n_rows];
+        forest.pose(Pose { details: Some(&of_copies), motion: &mut wanted }, &threads);
+
+        let moved = floats(&gpu.read(&picture.stage.moved).unwrap());
+        let moved = moved.as_chunks::<3>().0;
+        let firsts = numbers(&gpu.read(&picture.stage.firsts).unwrap());
+        let seen = numbers(&gpu.read(&picture.stage.seen).unwrap());
+        let calls = numbers(&gpu.read(&picture.stage.calls).unwrap());
+        let mut begin = 0;
+        for (copy, detail) in of_copies.iter().enumerate() {
+            let n = detail.n_nodes as usize;
+            for (wanted, came) in wanted[begin..begin + n].iter().zip(&moved[firsts[copy] as usize..]) {
+                farthest = wanted.iter().fold(farthest, |far, v| far.max(v.abs()));
+                assert!(
+                    (0..3).all(|axis| (wanted[axis] - came[axis]).abs() < 1e-4),
+                    "{time} {copy}: {wanted:?} {came:?}"
+                );
+            }
+            begin += n;
+        }
+        for (k, n_of_level) in n_of_levels.iter_mut().enumerate() {
+            let list: Vec<u32> = (0..scene.places.len())
+                .filter(|copy| level(*copy) == Some(k))
+                .map(|copy| copy as u32)
+                .collect();
+            let came = &seen[k * scene.places.len()..][..calls[10 * k + 1] as usize];
+            assert_eq!(came, list, "level {k}");
+            assert_eq!(calls[10 * k + 1], calls[10 * k + 6]);
+            *n_of_level += list.len();
+        }
+    }
+    assert!(farthest > 0.5, "a storm: {farthest} m");
+    assert!(n_of_levels.iter().all(|n| *n > 0), "{n_of_levels:?}");
+}

@@ -1,0 +1,341 @@
+// A forest: sky and ground, shadows of crowns, wood, leaves.
+// with copies
+// with light
+
+struct Look {
+    matrix: mat4x4f,
+    eye: vec3f,
+    time: f32,
+    right: vec3f,
+    height: f32,
+    up: vec3f,
+    crown: f32,
+    forward: vec3f,
+    pixel: f32,
+}
+
+// A ring of vertices about a node; see the body of a scene.
+struct Ring {
+    rest: vec3f,
+    radius: f32,
+    side: vec3f,
+    open: f32,
+    other: vec3f,
+    node: u32,
+    along_before: vec3f,
+    base_before: u32,
+    along_after: vec3f,
+    tip_before: u32,
+    base_after: u32,
+    tip_after: u32,
+}
+
+struct Leaf {
+    base: vec3f,
+    length: f32,
+    tip: vec3f,
+    breadth: f32,
+    up: vec3f,
+    open: f32,
+    ring: u32,
+    chance: f32,
+}
+
+@group(0) @binding(0) var<uniform> look: Look;
+@group(1) @binding(0) var<storage, read> copies: array<Copy>;
+@group(1) @binding(1) var<storage, read> firsts: array<u32>;
+@group(1) @binding(2) var<storage, read> airs: array<f32>;
+@group(1) @binding(3) var<storage, read> seen: array<u32>;
+@group(1) @binding(4) var<storage, read> moved: array<f32>;
+@group(1) @binding(5) var<storage, read> rings: array<Ring>;
+@group(1) @binding(6) var<storage, read> leaves: array<Leaf>;
+@group(1) @binding(7) var<uniform> level: Level;
+
+const TAU = 6.2831853;
+
+// Metres in which haze takes most of what is seen, in heights of the plant.
+const HAZY = 55.0;
+
+fn hazed(light: vec3f, distance: f32) -> vec3f {
+    let clear = exp(-distance / (HAZY * look.height));
+    return mix(HAZE, light, clear);
+}
+
+// By chance, 0 to 1, the same for the same place.
+fn chance_at(at: vec2f) -> f32 {
+    let p = vec2u(vec2i(floor(at)));
+    var h = p.x * 0x9E3779B1u ^ p.y * 0x85EBCA77u;
+    h = (h ^ (h >> 15u)) * 0x2C1B3C6Du;
+    h = (h ^ (h >> 12u)) * 0x297A2D39u;
+    return f32((h ^ (h >> 15u)) >> 8u) / 16777216.0;
+}
+
+// The same between places, without edges.
+fn noise(at: vec2f) -> f32 {
+    let f = fract(at);
+    let s = f * f * (3.0 - 2.0 * f);
+    let low = mix(chance_at(at), chance_at(at + vec2f(1.0, 0.0)), s.x);
+    let high = mix(chance_at(at + vec2f(0.0, 1.0)), chance_at(at + vec2f(1.0, 1.0)), s.x);
+    return mix(low, high, s.y);
+}
+
+// ---- Sky and ground.
+
+struct Seen {
+    @builtin(position) position: vec4f,
+    @location(0) ray: vec3f,
+}
+
+@vertex
+fn over_all(@builtin(vertex_index) k: u32) -> Seen {
+    let at = vec2f(f32(k & 1u) * 4.0 - 1.0, f32(k >> 1u) * 4.0 - 1.0);
+    return Seen(vec4f(at, 0.0, 1.0), look.forward + look.right * at.x + look.up * at.y);
+}
+
+fn sky(way: vec3f) -> vec3f {
+    let up = clamp(way.z, 0.0, 1.0);
+    let sun = max(dot(way, SUN), 0.0);
+    let blue = mix(HAZE, vec3f(0.13, 0.30, 0.62), 1.0 - exp(-4.5 * up));
+    return blue + vec3f(0.22, 0.16, 0.09) * pow(sun, 6.0) + vec3f(0.9, 0.75, 0.5) * pow(sun, 80.0);
+}
+
+// Grass from far: patches of many sizes, each gone before it is smaller than a pixel.
+fn grass(at: vec2f, width: f32) -> vec3f {
+    var light = 0.0;
+    var size = 0.9 * look.height;
+    var much = 0.5;
+    for (var k = 0; k < 5; k++) {
+        let fade = clamp(1.5 - 3.0 * width / size, 0.0, 1.0);
+        light += much * fade * (noise(at / size + f32(k) * 17.3) - 0.5);
+        size *= 0.37;
+        much *= 0.72;
+    }
+    return vec3f(0.088, 0.112, 0.042) * (1.0 + 0.9 * light) + vec3f(0.026, 0.014, 0.0) * light;
+}
+
+// The ground where so much of the sun is seen, from so far.
+fn ground(at: vec2f, distance: f32, sunlit: f32) -> vec4f {
+    let way = normalize(vec3f(at, 0.0) - look.eye);
+    // A pixel on the ground is longer than wide by as much as it is seen flat.
+    let width = look.pixel * distance / sqrt(max(-way.z, 1e-4));
+    let light = SUNLIGHT * SUN.z * sunlit + ambient(vec3f(0.0, 0.0, 1.0)) * (0.6 + 0.4 * sunlit);
+    let clear = exp(-distance / (HAZY * look.height));
+    return vec4f(shown(mix(sky(vec3f(way.xy, 0.0)), grass(at, width) * light, clear)), 1.0);
+}
+
+@fragment
+fn sky_and_ground(seen: Seen) -> @location(0) vec4f {
+    let way = normalize(seen.ray);
+    if way.z >= -1e-4 || look.eye.z <= 0.0 {
+        return vec4f(shown(sky(way)), 1.0);
+    }
+    let distance = -look.eye.z / way.z;
+    return ground(look.eye.xy + way.xy * distance, distance, 1.0);
+}
+
+// ---- Shadows on the ground: that of a crown in the sun, soft, and the darker foot. Where several fall the darkest is seen.
+
+struct Shade {
+    @builtin(position) position: vec4f,
+    // In radii of the crown, along the sun's way over the ground and across; and metres from the root.
+    @location(0) at: vec2f,
+    @location(1) foot: vec2f,
+    @location(2) place: vec2f,
+    @location(3) @interpolate(flat) chance: f32,
+}
+
+@vertex
+fn shadow_at(@builtin(vertex_index) corner: u32, @builtin(instance_index) k: u32) -> Shade {
+    let copy = copies[k];
+    let size = copy.scale;
+    let away = normalize(-SUN.xy);
+    let across = vec2f(-away.y, away.x);
+    // The middle of the crown, as high as it is above the ground, and how long that is on it.
+    let slope = length(SUN.xy) / SUN.z;
+    let middle = 0.62 * look.height * size * slope;
+    let along = look.crown * size * 0.55 + 0.38 * look.height * size * slope;
+    let wide = look.crown * size * 0.95;
+    let side = vec2f(f32(corner & 1u) * 2.0 - 1.0, f32(corner >> 1u) * 2.0 - 1.0);
+    // From behind the foot to beyond the crown's end.
+    let begin = -wide * 0.5;
+    let end = middle + 1.3 * along;
+    let go = mix(begin, end, side.x * 0.5 + 0.5);
+    let beside = side.y * wide * 1.3;
+    let at = copy.place + away * go + across * beside;
+    var shade: Shade;
+    shade.position = look.matrix * vec4f(at, 0.0, 1.0);
+    shade.at = vec2f((go - middle) / along, beside / wide);
+    shade.foot = vec2f(go, beside) / (look.height * size);
+    shade.place = at;
+    shade.chance = copy.chance;
+    return shade;
+}
+
+@fragment
+fn shadow(shade: Shade) -> @location(0) vec4f {
+    let edge = length(shade.at) + 0.35 * (noise(shade.at * 3.1 + shade.chance * 57.0) - 0.5)
+        + 0.18 * (noise(shade.at * 9.7 + shade.chance * 31.0) - 0.5);
+    let crown = 0.78 * (1.0 - smoothstep(0.50, 1.15, edge));
+    let foot = 0.6 * exp(-dot(shade.foot, shade.foot) * 260.0);
+    let sunlit = (1.0 - crown) * (1.0 - foot);
+    return ground(shade.place, distance(look.eye, vec3f(shade.place, 0.0)), sunlit);
+}
+
+// ---- What moves: wood and leaves.
+
+// By how much a node of a copy is moved, in the plant's own axes and size.
+fn move_of(first: u32, node: u32) -> vec3f {
+    let k = 3u * (first + node);
+    return vec3f(moved[k], moved[k + 1u], moved[k + 2u]);
+}
+
+// By what a ring turns, radians about an axis.
+fn turn_of(first: u32, ring: Ring) -> vec3f {
+    let before = move_of(first, ring.tip_before) - move_of(first, ring.base_before);
+    let after = move_of(first, ring.tip_after) - move_of(first, ring.base_after);
+    return 0.5 * (cross(ring.along_before, before) + cross(ring.along_after, after));
+}
+
+// A way turned (Rodrigues).
+fn turned(turn: vec3f, way: vec3f) -> vec3f {
+    let square = dot(turn, turn);
+    if square < 1e-12 {
+        return way + cross(turn, way);
+    }
+    let angle = sqrt(square);
+    let axis = turn / angle;
+    let across = cross(axis, way);
+    return way + sin(angle) * across + (1.0 - cos(angle)) * cross(axis, across);
+}
+
+// From the plant's own axes to the world's.
+fn in_world(copy: Copy, way: vec3f) -> vec3f {
+    return vec3f(copy.turn.y * way.x - copy.turn.x * way.y, copy.turn.x * way.x + copy.turn.y * way.y, way.z);
+}
+
+struct Wood {
+    @builtin(position) position: vec4f,
+    @location(0) normal: vec3f,
+    @location(1) place: vec3f,
+    // About the branch and along it, metres.
+    @location(2) bark: vec2f,
+    @location(3) open: f32,
+    @location(4) @interpolate(flat) chance: f32,
+}
+
+@vertex
+fn wood_at(@builtin(vertex_index) k: u32, @builtin(instance_index) row: u32) -> Wood {
+    let index = seen[level.list + row];
+    let copy = copies[index];
+    let ring = rings[level.first_ring + k / level.n_sides];
+    let first = firsts[index];
+    let angle = TAU * f32(k % level.n_sides) / f32(level.n_sides);
+    let outward = turned(turn_of(first, ring), ring.side * cos(angle) + ring.other * sin(angle));
+    let normal = in_world(copy, outward);
+    let middle = vec3f(copy.place, 0.0) + copy.scale * in_world(copy, ring.rest + move_of(first, ring.node));
+    // Never much thinner than a pixel: far twigs do not flicker.
+    let least = 0.3 * look.pixel * distance(look.eye, middle);
+    let place = middle + max(copy.scale * ring.radius, least) * normal;
+    var wood: Wood;
+    wood.position = look.matrix * vec4f(place, 1.0);
+    wood.normal = normal;
+    wood.place = place;
+    wood.bark = vec2f(angle, dot(ring.rest, vec3f(1.0)));
+    wood.open = ring.open;
+    wood.chance = copy.chance;
+    return wood;
+}
+
+@fragment
+fn wood(wood: Wood) -> @location(0) vec4f {
+    let normal = normalize(wood.normal);
+    let distance = distance(look.eye, wood.place);
+    // Ridges, as long as the plant is high by a hundredth, gone where they are as thin as pixels.
+    let near = clamp(1.5 - 400.0 * look.pixel * distance / look.height, 0.0, 1.0);
+    let ridges = noise(vec2f(wood.bark.x * 5.0, wood.bark.y * 40.0 / look.height)) - 0.5;
+    let patches = noise(vec2f(wood.bark.x * 0.7, wood.bark.y * 9.0 / look.height) + wood.chance * 9.0) - 0.5;
+    let bark = vec3f(0.165, 0.128, 0.098) * (1.0 + 0.5 * ridges * near + 0.35 * patches);
+    let sun = max(dot(normal, SUN), 0.0) * smoothstep(0.15, 0.75, wood.open);
+    let light = SUNLIGHT * sun + ambient(normal) * (0.25 + 0.75 * wood.open);
+    return vec4f(shown(hazed(bark * light, distance)), 1.0);
+}
+
+struct Blade {
+    @builtin(position) position: vec4f,
+    // Across the leaf from -1 to 1, along it from 0 to 1.
+    @location(0) at: vec2f,
+    @location(1) place: vec3f,
+    @location(2) normal: vec3f,
+    @location(3) across: vec3f,
+    @location(4) @interpolate(flat) open: f32,
+    @location(5) @interpolate(flat) hue: f32,
+}
+
+@vertex
+fn leaf_at(@builtin(vertex_index) k: u32, @builtin(instance_index) row: u32) -> Blade {
+    let index = seen[level.list + row];
+    let copy = copies[index];
+    let leaf = leaves[level.first_leaf + k / 4u];
+    let ring = rings[level.first_ring + leaf.ring];
+    let first = firsts[index];
+    let turn = turn_of(first, ring);
+    let corner = vec2f(f32(k & 1u) * 2.0 - 1.0, f32((k >> 1u) & 1u));
+    // Flutter, for the eye alone: each leaf nods and rolls at its own time, the more the faster the air.
+    let air = airs[index];
+    let much = 0.03 + 0.55 * (1.0 - exp(-air / 9.0));
+    let pace = look.time * (2.5 + 0.45 * min(air, 12.0));
+    let roll = much * sin(pace * (0.8 + 0.5 * leaf.chance) * 2.1 + leaf.chance * 91.0);
+    let nod = 0.6 * much * sin(pace * (0.7 + 0.4 * fract(leaf.chance * 7.0)) * 1.7 + leaf.chance * 57.0);
+    let flat_across = cross(leaf.tip, leaf.up);
+    let tip = normalize(leaf.tip + nod * leaf.up);
+    let across = normalize(flat_across + roll * leaf.up);
+    let at = leaf.base + leaf.length * (tip * corner.y + across * (0.5 * leaf.breadth * corner.x));
+    let own = ring.rest + move_of(first, ring.node) + turned(turn, at);
+    let place = vec3f(copy.place, 0.0) + copy.scale * in_world(copy, own);
+    var blade: Blade;
+    blade.position = look.matrix * vec4f(place, 1.0);
+    blade.at = corner;
+    blade.place = place;
+    blade.normal = in_world(copy, turned(turn, cross(across, tip)));
+    blade.across = in_world(copy, turned(turn, across));
+    blade.open = leaf.open;
+    blade.hue = leaf.chance + 0.35 * (copy.chance - 0.5);
+    return blade;
+}
+
+// Half the breadth of a leaf, of the most: widest below the middle, with a point.
+fn outline(along: f32) -> f32 {
+    let a = clamp(along, 0.0, 1.0);
+    return 2.6 * pow(a, 0.75) * pow(1.0 - a, 0.9) * (1.0 - 0.18 * a);
+}
+
+@fragment
+fn leaf(blade: Blade, @builtin(front_facing) is_front: bool) -> @location(0) vec4f {
+    // How much of the pixel is leaf: distance from the outline, in pixels.
+    let inside = outline(blade.at.y) - abs(blade.at.x);
+    let cover = clamp(inside / max(fwidth(inside), 1e-4) + 0.5, 0.0, 1.0);
+    let fine = clamp(1.4 - 70.0 * fwidth(blade.at.y), 0.0, 1.0);
+    if cover < 0.1 {
+        discard;
+    }
+    let towards = look.eye - blade.place;
+    let distance = length(towards);
+    // Folded along the midrib; the side that is seen is the one that counts.
+    let fold = 0.32 * sign(blade.at.x) * smoothstep(0.0, 0.12, abs(blade.at.x));
+    var normal = normalize(blade.normal - fold * blade.across);
+    normal *= select(-1.0, 1.0, dot(normal, towards) >= 0.0);
+    let rib = 1.0 - smoothstep(0.02, 0.07, abs(blade.at.x));
+    let veins = 0.5 + 0.5 * cos((blade.at.y - 0.35 * abs(blade.at.x)) * 44.0);
+    let young = clamp(blade.hue, 0.0, 1.0);
+    var green = mix(vec3f(0.040, 0.088, 0.016), vec3f(0.092, 0.140, 0.022), young);
+    green *= 1.0 + fine * (0.45 * rib - 0.10 * veins);
+    let towards_sun = dot(normal, SUN);
+    let sunlit = smoothstep(0.10, 0.80, blade.open);
+    let facing = max(towards_sun, 0.0);
+    let through = max(-towards_sun, 0.0);
+    let glow = vec3f(1.55, 1.75, 0.55) * green;
+    let bright = pow(max(dot(reflect(-SUN, normal), towards / distance), 0.0), 18.0);
+    var light = SUNLIGHT * sunlit * (green * facing + glow * (0.55 * through) + vec3f(0.035) * bright);
+    light += green * ambient(normal) * (0.18 + 0.95 * blade.open);
+    return vec4f(shown(hazed(light, distance)), cover);
+}
