@@ -1,15 +1,21 @@
 //! A forest that the card moves: modes, what is seen, and nodes, in shaders; by the numbers of [`Forest`].
 
 use bytemuck::{Pod, Zeroable};
-use honami_mechanics::{Blowing, Felt, Following, Forest, ForestError, View};
-use honami_scene::ForestScene;
+use honami_mechanics::wind::Wind;
+use honami_mechanics::{Damping, Felt, Following, Forest, ForestError, Pace, Vector};
+use honami_scene::forest::live;
+use honami_scene::grove::Grove;
+use honami_scene::weather::WeatherError;
+use honami_scene::{Camera, ForestScene};
 use wgpu::BufferUsages as Uses;
 use wgpu::util::{BufferInitDescriptor, DeviceExt as _};
 
+use super::MOST_BYTES;
 use super::chains::Chains;
 use super::stage::{LEVEL_BYTES, Stage};
 use crate::gpu::Gpu;
 use crate::shaders;
+use crate::target::Size;
 
 /// Modes that a workgroup takes, and workgroups in a row, of which an adapter has no more than so many.
 const MODES: u32 = 64;
@@ -33,15 +39,21 @@ struct Eye {
     middle: f32,
     reach: f32,
     n_rows: u32,
+    /// So many times as far away as usual levels begin.
+    sharper: f32,
+    filler: [u32; 3],
 }
 
 /// What shaders go on by.
 pub(super) struct Card {
+    grove: Grove,
+    wind: Box<dyn Wind>,
+    /// Where all numbers come from; it stays at rest itself.
     forest: Forest,
+    n_steps: u64,
     felt: Vec<Felt>,
     feels: wgpu::Buffer,
-    /// Q: amplitudes and speeds, `(n_copies, n_modes)`.
-    state: wgpu::Buffer,
+    steps: wgpu::Buffer,
     eye: wgpu::Buffer,
     groups: wgpu::Buffer,
     step: Work,
@@ -60,8 +72,10 @@ struct Work {
 }
 
 impl Card {
-    /// At rest; on this stage.
-    pub(super) fn new(gpu: &Gpu, scene: &ForestScene, forest: Forest, stage: &Stage) -> anyhow::Result<Self> {
+    /// One that has felt its wind for as long as the scene says; on this stage.
+    pub(super) fn new(gpu: &Gpu, scene: &ForestScene, stage: &Stage) -> anyhow::Result<Self> {
+        let forest = Forest::new(&scene.stirring, &scene.body.order, &scene.stands, &scene.pace)?;
+        let wind = live::wind(scene, &scene.wind, MOST_BYTES)?;
         let Following::Turns(turning) = scene.stirring.following() else {
             anyhow::bail!("the plant {} does not move by turns, which a card adds up", scene.name);
         };
@@ -92,7 +106,8 @@ impl Card {
             empty(GROUPS_BYTES as usize * stage.n_levels(), Uses::STORAGE | Uses::INDIRECT | Uses::COPY_SRC);
         let row = ROW * MODES;
         let size = made(bytemuck::bytes_of(&[n_copies as u32, n_modes as u32, row, 0]), Uses::UNIFORM);
-        let (steps, basis) = (floats(&numbers.steps.concat()), floats(numbers.basis));
+        let steps = made(bytemuck::cast_slice(&numbers.steps.concat()), Uses::STORAGE | Uses::COPY_DST);
+        let basis = floats(numbers.basis);
         let (tensors, kinds) = (floats(numbers.tensors), whole(&numbers.kinds));
         let step =
             work(gpu, "step", "step_modes", &[&size, &steps, &basis, &tensors, &kinds, &feels, &state]);
@@ -112,23 +127,62 @@ impl Card {
         let (middle, reach) = (scene.stirring.height() / 2.0, scene.stirring.reach());
         let felt = vec![Felt::default(); n_copies];
         gpu.check()?;
-        Ok(Self { forest, felt, feels, state, eye, groups, step, list, share, pose, middle, reach })
+        let (grove, n_steps) = (scene.grove(), 0);
+        let mut made = Self {
+            grove,
+            wind,
+            forest,
+            n_steps,
+            felt,
+            feels,
+            steps,
+            eye,
+            groups,
+            step,
+            list,
+            share,
+            pose,
+            middle,
+            reach,
+        };
+        for _ in 0..(scene.run_in / scene.pace.step).round() as u32 {
+            made.step(gpu)?;
+        }
+        Ok(made)
     }
 
-    pub(super) fn reset(&self, gpu: &Gpu) {
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        encoder.clear_buffer(&self.state, 0, None);
-        gpu.queue.submit([encoder.finish()]);
+    /// From now on this wind blows.
+    pub(super) fn blow(&mut self, scene: &ForestScene, words: &str) -> Result<(), WeatherError> {
+        self.wind = live::wind(scene, words, MOST_BYTES)?;
+        Ok(())
     }
 
-    /// A step of all modes, in the wind at every copy; `time` is for whoever is told of one that is no number.
-    pub(super) fn step(&mut self, gpu: &Gpu, blowing: Blowing<'_>, time: f64) -> Result<(), ForestError> {
-        for (copy, felt) in self.felt.iter_mut().enumerate() {
-            let wind = blowing(copy);
+    /// From now on it is damped so, and so heavy.
+    pub(super) fn damp(&mut self, gpu: &Gpu, damping: Damping) -> Result<(), ForestError> {
+        let pace = Pace { damping, ..*self.forest.pace() };
+        self.forest.retune(&pace)?;
+        gpu.queue.write_buffer(&self.steps, 0, bytemuck::cast_slice(&self.forest.numbers().steps.concat()));
+        Ok(())
+    }
+
+    /// The wind at the crown of a copy now, metres per second.
+    pub(super) fn blowing(&self, copy: usize) -> Vector {
+        self.grove.blowing(&self.wind, copy, self.time())
+    }
+
+    fn time(&self) -> f64 {
+        self.n_steps as f64 * self.forest.pace().step
+    }
+
+    /// A step of all modes, in the wind at every copy.
+    pub(super) fn step(&mut self, gpu: &Gpu) -> Result<(), ForestError> {
+        let time = self.time();
+        for copy in 0..self.felt.len() {
+            let wind = self.blowing(copy);
             if !wind.iter().all(|v| v.is_finite()) {
                 return Err(ForestError::Wind { copy, time });
             }
-            *felt = self.forest.felt(copy, &wind);
+            self.felt[copy] = self.forest.felt(copy, &wind);
         }
         let bytes: Vec<f32> =
             self.felt.iter().flat_map(|felt| felt.pressed.into_iter().chain(felt.held)).collect();
@@ -140,12 +194,13 @@ impl Card {
         pass.dispatch_workgroups(n_groups.min(ROW), n_groups.div_ceil(ROW), 1);
         drop(pass);
         gpu.queue.submit([encoder.finish()]);
+        self.n_steps += 1;
         Ok(())
     }
 
-    /// Poses what is seen of copies on the stage.
-    pub(super) fn put(&self, gpu: &Gpu, view: &View, stage: &Stage) {
-        let eye = self.eye(view, stage);
+    /// Poses what is seen of copies in a picture, on the stage.
+    pub(super) fn put(&self, gpu: &Gpu, camera: &Camera, size: Size, stage: &Stage) {
+        let eye = self.eye(camera, size, stage);
         gpu.queue.write_buffer(&self.eye, 0, bytemuck::bytes_of(&eye));
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let mut pass = encoder.begin_compute_pass(&Default::default());
@@ -161,11 +216,12 @@ impl Card {
         gpu.queue.submit([encoder.finish()]);
     }
 
-    fn eye(&self, view: &View, stage: &Stage) -> Eye {
+    fn eye(&self, camera: &Camera, size: Size, stage: &Stage) -> Eye {
+        let view = live::view(camera, f64::from(size.width) / f64::from(size.height));
         let forward = view.towards.normalize();
-        let right = forward.cross(&honami_mechanics::Vector::z()).normalize();
+        let right = forward.cross(&Vector::z()).normalize();
         let half = (view.angle / 2.0).tan();
-        let single = |v: honami_mechanics::Vector| v.cast::<f32>().into();
+        let single = |v: Vector| v.cast::<f32>().into();
         Eye {
             eye: single(view.eye),
             n_copies: stage.n_copies as u32,
@@ -179,6 +235,8 @@ impl Card {
             middle: self.middle as f32,
             reach: self.reach as f32,
             n_rows: stage.n_rows as u32,
+            sharper: live::sharper(size.height) as f32,
+            filler: [0; 3],
         }
     }
 }
@@ -254,7 +312,7 @@ fn pipeline(gpu: &Gpu, shader: &'static str, entry: &'static str) -> wgpu::Compu
 fn turns(turning: &honami_mechanics::Turning, order: &[u32]) -> Vec<f32> {
     let of_modes = (0..turning.n_modes()).map(|mode| turning.turns(mode));
     let rows = of_modes.chain([turning.segments()]);
-    let row = |row: &[honami_mechanics::Vector], axis: usize| -> Vec<f32> {
+    let row = |row: &[Vector], axis: usize| -> Vec<f32> {
         // The root has no segment.
         let of = |node: &u32| node.checked_sub(1).map_or(0.0, |segment| row[segment as usize][axis] as f32);
         order.iter().map(of).collect()

@@ -1,20 +1,21 @@
 //! A forest that the processor's cores move.
 
-use anyhow::ensure;
-use honami_mechanics::{Blowing, Detail, DetailError, Details, Forest, Pose, Threads, View};
-use honami_scene::ForestScene;
-use honami_scene::grove::Grove;
+use std::sync::Arc;
+use std::thread::available_parallelism;
 
+use anyhow::ensure;
+use honami_scene::forest::live::Live;
+use honami_scene::{Camera, ForestScene};
+
+use super::MOST_BYTES;
 use super::stage::Stage;
 use crate::gpu::Gpu;
+use crate::target::Size;
 
-/// Modes, and nodes of what is seen.
+/// What lives on the cores, and what of it the stage is told.
 pub(super) struct Host {
-    forest: Forest,
-    threads: Threads,
-    details: Details,
-    /// How much of every copy, where its displacements begin, and these.
-    of_copies: Vec<Detail>,
+    live: Live,
+    /// Where the displacements of each copy begin, and those of all that are seen.
     firsts: Vec<u32>,
     moved: Vec<[f32; 3]>,
     /// Of every level the copies that are drawn by it.
@@ -22,56 +23,41 @@ pub(super) struct Host {
 }
 
 impl Host {
-    pub(super) fn new(scene: &ForestScene, forest: Forest, threads: Threads) -> Result<Self, DetailError> {
-        let (n_copies, n_levels) = (forest.len(), scene.body.levels.len());
-        Ok(Self {
-            forest,
-            threads,
-            details: scene.body.details()?,
-            of_copies: vec![Detail::default(); n_copies],
-            firsts: vec![0; n_copies],
-            moved: Vec::new(),
-            lists: vec![Vec::new(); n_levels],
-        })
+    /// One that has felt its wind for as long as the scene says.
+    pub(super) fn new(scene: &Arc<ForestScene>) -> anyhow::Result<Self> {
+        let (n_copies, n_levels) = (scene.places.len(), scene.body.levels.len());
+        let n_threads = available_parallelism().map_or(1, usize::from);
+        let live = Live::new(Arc::clone(scene), n_threads, MOST_BYTES)?;
+        Ok(Self { live, firsts: vec![0; n_copies], moved: Vec::new(), lists: vec![Vec::new(); n_levels] })
     }
 
-    pub(super) fn reset(&mut self) {
-        self.forest.reset();
+    /// What goes on.
+    pub(super) fn live(&mut self) -> &mut Live {
+        &mut self.live
     }
 
-    pub(super) fn step(&mut self, blowing: Blowing<'_>) -> anyhow::Result<()> {
-        Ok(self.forest.step(blowing, None, &self.threads)?)
-    }
-
-    /// Poses what is seen of copies and hands it to the stage.
+    /// Poses what is seen of copies in a picture and hands it to the stage.
     pub(super) fn put(
         &mut self,
         gpu: &Gpu,
-        scene: &ForestScene,
-        grove: &Grove,
-        view: &View,
+        camera: &Camera,
+        size: Size,
         stage: &Stage,
     ) -> anyhow::Result<()> {
         self.lists.iter_mut().for_each(Vec::clear);
-        let mut n_rows = 0_usize;
-        for (copy, (place, stand)) in (0..).zip(grove.places.iter().zip(&grove.stands)) {
-            let level = self.details.level(&scene.stirring, view, place, stand.scale.into());
-            let detail = level.map_or_else(Detail::default, |level| scene.body.levels[level].detail());
-            self.firsts[copy as usize] = n_rows as u32;
-            self.of_copies[copy as usize] = detail;
-            n_rows += detail.n_nodes as usize;
-            if let Some(level) = level {
-                self.lists[level].push(copy);
-            }
+        self.moved.clear();
+        for seen in self.live.seen(camera, [size.width, size.height])? {
+            self.firsts[seen.copy] = self.moved.len() as u32;
+            self.moved.extend_from_slice(seen.motion);
+            self.lists[seen.level].push(seen.copy as u32);
         }
+        let n_rows = self.moved.len();
         ensure!(
             n_rows <= stage.n_rows,
             "{} has room for {} nodes, and {n_rows} are seen at once: come nearer, or take fewer copies",
             gpu.name(),
             stage.n_rows
         );
-        self.moved.resize(n_rows, [0.0; 3]);
-        self.forest.pose(Pose { details: Some(&self.of_copies), motion: &mut self.moved }, &self.threads);
         gpu.queue.write_buffer(&stage.firsts, 0, bytemuck::cast_slice(&self.firsts));
         gpu.queue.write_buffer(&stage.moved, 0, bytemuck::cast_slice(&self.moved));
         stage.list(gpu, &self.lists);

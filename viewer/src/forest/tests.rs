@@ -1,12 +1,13 @@
 //! Forests against the simulation that they show, and pictures against pictures.
 
 use super::chains::Chains;
-use super::{By, ForestPicture, view};
+use super::{By, ForestPicture};
 use crate::gpu::{Gpu, adapters, name};
 use crate::offscreen::{Picture as _, Shot};
 use crate::target::{Size, Target};
 use crate::testing;
 use honami_mechanics::{Following, Forest, Pose, Threads};
+use honami_scene::forest::live;
 use honami_scene::{ForestScene, Orbit};
 
 const SIZE: Size = Size { width: 320, height: 180, samples: 4 };
@@ -111,9 +112,10 @@ fn a_card_has_every_node_where_the_simulation_has_it() {
     let scene = testing::forest(300, 8, 40);
     let (details, grove) = (scene.body.details().unwrap(), scene.grove());
     let threads = Threads::new(1).unwrap();
+    let wind = live::wind(&scene, &scene.wind, 0).unwrap();
     let mut forest = Forest::new(&scene.stirring, &scene.body.order, &scene.stands, &scene.pace).unwrap();
     let mut picture = ForestPicture::new(&gpu, scene.clone(), By::Card).unwrap();
-    let target = Target::new(&gpu, Size { width: 32, height: 18, samples: 1 }).unwrap();
+    let target = Target::new(&gpu, Size { width: 1280, height: 720, samples: 1 }).unwrap();
     let orbit = picture.orbit();
     let (mut n_of_levels, mut farthest) = (vec![0; scene.body.levels.len()], 0.0_f32);
     for (time, times) in [(0.0, 0.6), (3.0, 1.5), (8.0, 6.0)] {
@@ -121,9 +123,9 @@ fn a_card_has_every_node_where_the_simulation_has_it() {
         picture.draw(&gpu, &target, &Shot { time, camera }).unwrap();
         while forest.time() < scene.run_in + time - 1e-6 {
             let now = forest.time();
-            forest.step(&|copy| grove.blowing(&picture.wind, copy, now), None, &threads).unwrap();
+            forest.step(&|copy| grove.blowing(&wind, copy, now), None, &threads).unwrap();
         }
-        let view = view(&camera, target.aspect(), super::FAR * scene.stirring.height());
+        let view = live::view(&camera, 16.0 / 9.0);
         let level = |copy: usize| {
             details.level(&scene.stirring, &view, &grove.places[copy], grove.stands[copy].scale.into())
         };

@@ -18,6 +18,8 @@ struct Eye {
     reach: f32,
     // How many displacements there is room for.
     n_rows: u32,
+    // So many times as far away as usual levels begin.
+    sharper: f32,
 }
 
 // What draws something: how many indices, how many times.
@@ -62,7 +64,7 @@ fn level_of(copy: Copy) -> u32 {
     let distance = length(at) / copy.scale;
     var level = 0u;
     for (var k = 1u; k < eye.n_levels; k++) {
-        if distance >= levels[k].level.from_metres {
+        if distance >= levels[k].level.from_metres * eye.sharper {
             level = k;
         }
     }

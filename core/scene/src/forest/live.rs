@@ -137,7 +137,7 @@ impl Live {
     /// [`LiveError::Levels`].
     pub fn seen(&mut self, camera: &Camera, [width, height]: [u32; 2]) -> Result<Vec<Seen<'_>>, LiveError> {
         let view = view(camera, f64::from(width) / f64::from(height.max(1)));
-        let (farther, levels) = levels(&self.scene, f64::from(height) / HEIGHT_PX)?;
+        let (farther, levels) = levels(&self.scene, sharper(height))?;
         let whole = Detail {
             n_nodes: self.scene.stirring.n_nodes() as u32,
             n_modes: self.scene.stirring.n_modes() as u32,
@@ -162,6 +162,12 @@ impl Live {
     }
 }
 
+/// By so many times as far away as usual levels begin in a picture so many pixels high.
+#[must_use]
+pub fn sharper(height: u32) -> f64 {
+    f64::from(height) / HEIGHT_PX
+}
+
 /// From how far on there is how much of a copy, in a picture so many times as high as usual; and how much there is in all
 /// levels.
 fn levels(scene: &ForestScene, sharper: f64) -> Result<(Details, Vec<Detail>), DetailError> {
@@ -178,7 +184,11 @@ pub fn view(camera: &Camera, aspect: f64) -> View {
     View { eye, towards, angle: f64::from(camera.angle), aspect, far: FARTHEST }
 }
 
-fn wind(scene: &ForestScene, words: &str, most_bytes: usize) -> Result<Box<dyn Wind>, WeatherError> {
+/// A wind as it is typed, over what stands in a scene; air that flows takes so many bytes.
+///
+/// # Errors
+/// [`WeatherError`].
+pub fn wind(scene: &ForestScene, words: &str, most_bytes: usize) -> Result<Box<dyn Wind>, WeatherError> {
     // Whatever flows by itself begins again after as long as it was worked out for.
     read(words)?.over(&scene.ground(SECONDS, most_bytes))
 }
