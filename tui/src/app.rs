@@ -17,6 +17,7 @@ mod effects;
 pub mod files;
 #[cfg(test)]
 mod fixture;
+pub mod forest;
 pub mod form;
 mod fuzzy;
 pub mod groups;
@@ -57,6 +58,6 @@ pub mod update;
 pub mod versus;
 pub mod view;
 
-pub use door::{Gives, Offer, Offers, run};
+pub use door::{Gives, Offer, Offers, forest as run_forest, run};
 pub use opening::Plan;
 pub use replay::{Replay, replay};

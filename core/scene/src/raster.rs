@@ -44,7 +44,7 @@ struct Lens {
     middle: [f32; 2],
 }
 
-/// A picture of what is seen of a forest: `width` x `height` pixels, row by row.
+/// A picture of what is seen of a forest: `width` x `height` square pixels, row by row.
 #[must_use]
 pub fn forest(
     scene: &ForestScene,

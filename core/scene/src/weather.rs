@@ -1,5 +1,6 @@
 //! Winds by name: `calm`, `steady:speed=5,towards=90`, or a table that an anemometer has recorded; several by `+`.
 
+mod knobs;
 #[cfg(test)]
 mod tests;
 mod typed;
@@ -15,6 +16,7 @@ use honami_mechanics::wind::{
 use honami_exchange::plant::PlantFileError;
 use honami_mechanics::wind::FlowingError;
 
+pub use knobs::{value, with_value};
 pub use typed::{Typed, read};
 
 /// Samples of a turbulent wind in time, and seconds between them: it begins again after seven minutes, which is told.

@@ -56,6 +56,8 @@ pub use honami_media as media;
 pub use honami_motion::overlay;
 /// Colours of what is drawn.
 pub use honami_scene::palette;
+/// What is drawn.
+pub use honami_scene as scene;
 /// Projects.
 pub use honami_store as store;
 /// Generated clips.

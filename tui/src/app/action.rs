@@ -33,11 +33,13 @@ pub enum Context {
     History,
     /// Choosing what to open, before anything is.
     Start,
+    /// Looking at a forest in the wind.
+    Forest,
 }
 
 impl Context {
     /// All of them.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Review,
         Self::Place,
         Self::Shape,
@@ -51,6 +53,7 @@ impl Context {
         Self::Label,
         Self::History,
         Self::Start,
+        Self::Forest,
     ];
 
     /// Its name in key maps and logs.
@@ -70,6 +73,7 @@ impl Context {
             Self::Label => "label",
             Self::History => "history",
             Self::Start => "start",
+            Self::Forest => "forest",
         }
     }
 
@@ -118,24 +122,24 @@ macro_rules! table {
 
 table! {
     // Moving about: hjkl and the arrows.
-    Left "left" ["h" "Left"] [Review "" Place "1 px" Move "1 px" Form "change" Dial "turn" Slide "1 frame" Sketch "steer" Shape "plane"]
-        "left: the previous frame, one pixel, or a smaller value; at a bone, its plane 5° back"
-    Down "down" ["j" "Down"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "narrower" History "" Start "" Sketch "steer" Shape "lean"]
-        "down: the next track, one pixel, or the next row; in the queue, the prints and the skeleton, their next row; at a bone, it leans 5° clockwise"
-    Up "up" ["k" "Up"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "wider" History "" Start "" Sketch "steer" Shape "lean"]
-        "up: the previous track, one pixel, or the previous row; in the queue, the prints and the skeleton, the row before; at a bone, it leans 5° counterclockwise"
-    Right "right" ["l" "Right"] [Review "" Place "1 px" Move "1 px" Form "change" Dial "turn" Slide "1 frame" Sketch "steer" Shape "plane"]
-        "right: the next frame, one pixel, or a larger value; at a bone, its plane 5° on"
-    FineLeft "fine-left" ["H" "Shift-Left"] [Place ".25" Move ".25" Form "" Slide ".25" Sketch "" Shape ".5°"] "a quarter of a pixel left, or a tenth of a value's range down; at a bone, its plane half a degree back"
+    Left "left" ["h" "Left"] [Review "" Place "1 px" Move "1 px" Form "change" Dial "turn" Slide "1 frame" Sketch "steer" Shape "plane" Forest "round"]
+        "left: the previous frame, one pixel, or a smaller value; at a bone, its plane 5° back; at a forest, go round it"
+    Down "down" ["j" "Down"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "narrower" History "" Start "" Sketch "steer" Shape "lean" Forest "height"]
+        "down: the next track, one pixel, or the next row; in the queue, the prints and the skeleton, their next row; at a bone, it leans 5° clockwise; at a forest, go lower"
+    Up "up" ["k" "Up"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "wider" History "" Start "" Sketch "steer" Shape "lean" Forest "height"]
+        "up: the previous track, one pixel, or the previous row; in the queue, the prints and the skeleton, the row before; at a bone, it leans 5° counterclockwise; at a forest, go higher"
+    Right "right" ["l" "Right"] [Review "" Place "1 px" Move "1 px" Form "change" Dial "turn" Slide "1 frame" Sketch "steer" Shape "plane" Forest "round"]
+        "right: the next frame, one pixel, or a larger value; at a bone, its plane 5° on; at a forest, go round it"
+    FineLeft "fine-left" ["H" "Shift-Left"] [Place ".25" Move ".25" Form "" Slide ".25" Sketch "" Shape ".5°" Forest "veer"] "a quarter of a pixel left, or a tenth of a value's range down; at a bone, its plane half a degree back; at a forest, its wind turns 15° counterclockwise from above"
     FineDown "fine-down" ["J" "Shift-Down"] [Place ".25" Move ".25" Sketch "" Shape ".5°"] "a quarter of a pixel down; at a bone, it leans half a degree clockwise"
     FineUp "fine-up" ["K" "Shift-Up"] [Place ".25" Move ".25" Sketch "" Shape ".5°"] "a quarter of a pixel up; at a bone, it leans half a degree counterclockwise"
-    FineRight "fine-right" ["L" "Shift-Right"] [Place ".25" Move ".25" Form "" Slide ".25" Sketch "" Shape ".5°"] "a quarter of a pixel right, or a tenth of a value's range up; at a bone, its plane half a degree on"
+    FineRight "fine-right" ["L" "Shift-Right"] [Place ".25" Move ".25" Form "" Slide ".25" Sketch "" Shape ".5°" Forest "veer"] "a quarter of a pixel right, or a tenth of a value's range up; at a bone, its plane half a degree on; at a forest, its wind turns 15° clockwise from above"
     Accept "accept" ["Enter"] [Place "place" Move "keep" Form "run" Menu "choose" Prompt "done" Review "accept" Dial "keep" History "go there" Slide "keep" Start "open" Sketch "keep" Shape "keep"]
         "accept: keep, place, run or go; reviewing: in the prints, go to the line's frame; else the open item; in the skeleton, shape the bone; else open the track's, or make a key-frame"
-    Back "back" ["Esc" "Ctrl-c"] [Place "back" Move "back" Form "back" Menu "back" Prompt "back" Label "back" Review "" Dial "back" History "back" Slide "back" Start "" Sketch "back" Shape "back"]
+    Back "back" ["Esc" "Ctrl-c"] [Place "back" Move "back" Form "back" Menu "back" Prompt "back" Label "back" Review "" Dial "back" History "back" Slide "back" Start "" Sketch "back" Shape "back" Forest ""]
         "back: leave what is open, undone; while reviewing, stop the clip, the job or what grows, see the skeleton from the front, give up the range, then the picks, then the two runs"
     // Time.
-    PlayPause "play" ["space"] [Review "play" Sketch "" Shape "play"] "play or pause; 200 space: at 200 %, from now on"
+    PlayPause "play" ["space"] [Review "play" Sketch "" Shape "play" Forest "play"] "play or pause; 200 space: at 200 %, from now on"
     PlayBackwards "play-backwards" ["B"] [Review "" Sketch ""] "play backwards, or pause"
     SlowForward "play-slow" [";"] [Review "" Sketch "play, draw"] "play slowly or pause; 25 ; : at 25 %, from now on"
     SlowBackward "play-slow-backwards" ["'"] [Review "" Sketch ""] "play slowly backwards, or pause"
@@ -147,7 +151,7 @@ table! {
     Bisect "bisect" ["|"] [Review ""] "go half-way between the key-frames around"
     Reject "reject" ["R"] [Review ""] "the open item's track is of no use; on to the next item"
     Later "later" ["E"] [Review ""] "put the open item off; on to the next item"
-    StepForward "step" ["."] [Review "" Move "" Slide "" Sketch "put, next" Shape ""] "one frame forward, or so many; while drawing, the point is put down here first"
+    StepForward "step" ["."] [Review "" Move "" Slide "" Sketch "put, next" Shape "" Forest ""] "one frame forward, or so many; while drawing, the point is put down here first"
     StepBack "step-back" [","] [Review "" Move "" Slide "" Sketch "" Shape ""] "one frame back"
     LeapForward "leap" [">"] [Review ""] "ten frames forward"
     LeapBack "leap-back" ["<"] [Review ""] "ten frames back"
@@ -197,25 +201,26 @@ table! {
     WaitOn "wait-on" ["W"] [Review ""] "wait for a plugin that gives no sign of life"
     EndPlugin "end-plugin" ["I"] [Review ""] "end the process of a plugin that gives no sign of life; another goes on where it was"
     RunClusterer "cluster" ["c"] [Review "cluster"] "group the tracks by their movement"
-    MoreGroups "more-groups" ["+" "="] [Review "" Dial "gain" Sketch "step" Shape "gain"] "one group more; at the dial, more gain; while drawing, a step twice as large; at a bone, it swings a tenth more"
-    FewerGroups "fewer-groups" ["-"] [Review "" Dial "gain" Sketch "step" Shape "gain"] "one group fewer; at the dial, less gain; while drawing, a step half as large; at a bone, it swings a tenth less"
+    MoreGroups "more-groups" ["+" "="] [Review "" Dial "gain" Sketch "step" Shape "gain" Forest "wind"] "one group more; at the dial, more gain; while drawing, a step twice as large; at a bone, it swings a tenth more; at a forest, a wind a quarter stronger"
+    FewerGroups "fewer-groups" ["-"] [Review "" Dial "gain" Sketch "step" Shape "gain" Forest "wind"] "one group fewer; at the dial, less gain; while drawing, a step half as large; at a bone, it swings a tenth less; at a forest, a wind that much weaker"
     MergeGroups "merge-groups" ["G m"] [Review ""] "merge the selected track's group with another: they stay one wherever the cut is"
     SplitGroup "split-group" ["G s"] [Review ""] "split the selected track's group in two, as it was merged"
     TakeIntoGroup "take-into-group" ["G t"] [Review ""] "take the picked tracks, else the selected one, into another group"
     NameGroup "name-group" ["G n"] [Review ""] "name the selected track's group"
     ReleaseGroups "release-groups" ["G r"] [Review ""] "forget the groups made by hand: they are those of the cut again"
+    Wind "wind" ["i"] [Forest "other"] "type another wind, as honami simulate takes it"
     Skeleton "skeleton" ["v k" "G g"] [Review "skeleton"] "grow the skeleton of the groups and show it over the picture, or not"
     PlaceRoot "place-root" ["G p"] [Review ""] "place the root of the skeleton by hand: where the plant leaves the ground"
     ReleaseSkeleton "release-skeleton" ["G R"] [Review ""] "forget what was done to the skeleton by hand: it is as it grows again"
     ShapeBone "shape-bone" ["G b"] [Review ""] "shape the chosen bone of the skeleton by hand: its plane, how it leans, how far it swings"
-    OrbitLeft "orbit-left" ["{"] [Review "go round" Shape "go round"] "see the skeleton from 15° further round the plant, clockwise from above; the picture is left out"
-    OrbitRight "orbit-right" ["}"] [Review "go round" Shape "go round"] "see the skeleton from 15° further round the plant, counterclockwise from above; the picture is left out"
-    Front "front-view" ["V"] [Review "" Shape ""] "see the skeleton from the front again, over the picture"
+    OrbitLeft "orbit-left" ["{"] [Review "go round" Shape "go round" Forest ""] "see the skeleton from 15° further round the plant, clockwise from above; the picture is left out"
+    OrbitRight "orbit-right" ["}"] [Review "go round" Shape "go round" Forest ""] "see the skeleton from 15° further round the plant, counterclockwise from above; the picture is left out"
+    Front "front-view" ["V"] [Review "" Shape "" Forest ""] "see the skeleton from the front again, over the picture"
     Undo "undo" ["u"] [Review ""] "undo: take the last edit back"
     Redo "redo" ["Ctrl-r"] [Review ""] "redo: do again what was undone"
     // Looking.
-    ZoomIn "zoom-in" ["z"] [Review "" Place "" Move "" Slide "" Sketch "" Shape ""] "look closer, at the selected track or the cursor"
-    ZoomOut "zoom-out" ["Z"] [Review "" Place "" Move "" Slide "" Sketch "" Shape ""] "look from farther away"
+    ZoomIn "zoom-in" ["z"] [Review "" Place "" Move "" Slide "" Sketch "" Shape "" Forest "zoom"] "look closer, at the selected track or the cursor"
+    ZoomOut "zoom-out" ["Z"] [Review "" Place "" Move "" Slide "" Sketch "" Shape "" Forest "zoom"] "look from farther away"
     PanLeft "pan-left" ["Ctrl-Left"] [Review "" Place "" Move "" Shape ""] "look a quarter of the view further left; a tenth of a pixel while placing or moving"
     PanDown "pan-down" ["Ctrl-Down"] [Review "" Place "" Move "" Shape ""] "look a quarter of the view further down; a tenth of a pixel while placing or moving"
     PanUp "pan-up" ["Ctrl-Up"] [Review "" Place "" Move "" Shape ""] "look a quarter of the view further up; a tenth of a pixel while placing or moving"
@@ -244,7 +249,7 @@ table! {
     PanelPrints "panel-prints" ["P o"] [Review ""] "show or hide what plugins print and log"
     PanelLog "panel-log" ["P l"] [Review ""] "show or hide the log of this session"
     SaveLog "save-log" ["P L"] [Review ""] "save the log of this session beside the project; `honami replay` does it again"
-    Glyphs "glyphs" ["v q"] [Review ""] "show the picture in half blocks, quadrants, sextants or octants (what the font has)"
+    Glyphs "glyphs" ["v q"] [Review "" Forest ""] "show the picture in half blocks, quadrants, sextants or octants (what the font has)"
     Stills "stills" ["v s"] [Review ""] "show a picture that stays in the terminal's own pixels, or not"
     NextTheme "next-theme" ["v t"] [Review ""] "change the colours: the next theme"
     Mouse "mouse" ["v m"] [Review ""] "leave the mouse to the terminal, for selecting text, or take it back"
@@ -252,10 +257,10 @@ table! {
     Palette "palette" [":"] [Review "" Place "" Move "" Form "" Dial "" History "" Slide "" Sketch "" Shape ""] "find any action by name, key or what it does"
     Help "help" ["?"] [Review "help" Place "" Move "" Form "help" Dial "help" History "help" Slide "" Sketch "help" Shape "help"] "list what works here; Enter does it"
     Tutorial "tutorial" ["g ?"] [Review ""] "five minutes on a generated clip: what to press, one step at a time"
-    Redraw "redraw" ["Ctrl-l"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label "" History "" Slide "" Start "" Sketch "" Shape ""] "paint the screen anew"
-    Suspend "suspend" ["Ctrl-z"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label "" History "" Slide "" Start "" Sketch "" Shape ""] "stop honami until `fg`"
-    Quit "quit" ["q"] [Review "leave" Place "" Move "" Form "" Dial "" History "" Slide "" Start "leave" Sketch "" Shape ""] "back; while reviewing, leave honami"
-    Leave "leave" ["Q"] [Review "" Place "" Move "" Form "" Dial "" History "" Slide "" Start "" Sketch "" Shape ""] "leave honami (everything is kept; what is open is asked about first)"
+    Redraw "redraw" ["Ctrl-l"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label "" History "" Slide "" Start "" Sketch "" Shape "" Forest ""] "paint the screen anew"
+    Suspend "suspend" ["Ctrl-z"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label "" History "" Slide "" Start "" Sketch "" Shape "" Forest ""] "stop honami until `fg`"
+    Quit "quit" ["q"] [Review "leave" Place "" Move "" Form "" Dial "" History "" Slide "" Start "leave" Sketch "" Shape "" Forest "leave"] "back; while reviewing, leave honami"
+    Leave "leave" ["Q"] [Review "" Place "" Move "" Form "" Dial "" History "" Slide "" Start "" Sketch "" Shape "" Forest ""] "leave honami (everything is kept; what is open is asked about first)"
 }
 
 impl Action {

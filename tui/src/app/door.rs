@@ -4,11 +4,13 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use anyhow::Context as _;
+use honami_workbench::scene::ForestScene;
 use honami_workbench::session::SessionOptions;
 
 use super::command_log::LogFile;
 use super::config::Config;
 use super::effects::World;
+use super::forest::Forest;
 use super::opening::{Opened, Opening, Plan};
 use super::run::{App, Next, Turned};
 use super::seat::Seat;
@@ -69,6 +71,24 @@ pub fn run(first: Option<Plan>, offers: &Offers) -> anyhow::Result<Option<End>> 
         let is_wished = !matches!(outcome, Ok(Some(_)));
         world.close(seat, (!is_wished).then_some(LAST_WAIT))?;
     }
+    let end = outcome?;
+    closed?;
+    Ok(end)
+}
+
+/// Shows a forest until its user leaves or the terminal does; returns what ended it against its user's wish.
+///
+/// # Errors
+/// When there is no terminal, or it cannot be shown.
+pub fn forest(scene: ForestScene) -> anyhow::Result<Option<End>> {
+    let config = Config::load().beginning();
+    let mut screen = Screen::open(&log_path()).context("the terminal UI cannot start")?;
+    if !config.mouse {
+        screen.set_mouse(false)?;
+    }
+    let outcome = Forest::new(&scene, &config).watch(scene, &mut screen);
+    let closed = screen.close();
+    signals::end_as_usual()?;
     let end = outcome?;
     closed?;
     Ok(end)

@@ -2,6 +2,7 @@
 
 mod braille;
 pub mod column;
+pub mod forest;
 mod form;
 mod labels;
 mod lesson;

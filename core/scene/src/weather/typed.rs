@@ -74,7 +74,7 @@ pub fn read(typed: &str) -> Result<Typed, WeatherError> {
     Ok(Typed(parts))
 }
 
-fn apart(typed: &str) -> Vec<&str> {
+pub(super) fn apart(typed: &str) -> Vec<&str> {
     let mut texts = Vec::new();
     let mut first = 0;
     for (at, _) in typed.match_indices('+') {

@@ -340,7 +340,8 @@ pub(super) fn bytes_of_winds(copies: usize, steps: usize) -> usize {
 }
 
 /// Memory that may be taken, bytes.
-pub(crate) fn free() -> usize {
+#[must_use]
+pub fn free() -> usize {
     let text = std::fs::read_to_string("/proc/meminfo").unwrap_or_default();
     let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"));
     let kilobytes = line.and_then(|line| line.trim().trim_end_matches(" kB").parse::<f64>().ok());

@@ -1,7 +1,7 @@
 //! Winds over the ground on which a plant and its copies move.
 
 use honami_mechanics::{Stand, Vector};
-pub use honami_scene::weather::{Ground, Typed, WeatherError, help, read};
+pub use honami_scene::weather::{Ground, Typed, WeatherError, help, read, value, with_value};
 
 use super::Vibrating;
 use super::sway::{Motion, free};

@@ -8,7 +8,7 @@ use super::*;
 use crate::app::fixture::{self, press, send};
 use crate::app::keymap::{Binding, KeyMap, shown};
 
-/// How keys come to be read in a place. The start screen has tests of its own.
+/// How keys come to be read in a place. The start screen and forests have tests of their own.
 const REACH: [(Context, &str); 12] = [
     (Context::Review, ""),
     (Context::Place, "a"),
@@ -52,7 +52,8 @@ fn prepared(context: Context, action: Action) -> &'static str {
 
 fn bindings() -> impl Iterator<Item = (Binding, &'static str)> {
     let all = KeyMap::default().bindings().to_vec();
-    all.into_iter().filter(|binding| binding.context != Context::Start).map(|binding| {
+    let is_own = |context| matches!(context, Context::Start | Context::Forest);
+    all.into_iter().filter(move |binding| !is_own(binding.context)).map(|binding| {
         let (_, way) = REACH.iter().find(|(context, _)| *context == binding.context).unwrap();
         (binding, *way)
     })

@@ -28,15 +28,20 @@ fn in_place(context: Context) -> State {
         Context::Dial => press("v d"),
         Context::Label => press("g l"),
         Context::History => press("U j"),
-        Context::Start => unreachable!("nothing is open there"),
+        Context::Start | Context::Forest => unreachable!("no project is open there"),
     }
     assert_eq!(state.mode.context(), context);
     state
 }
 
+/// Where keys are read in a project.
+fn places() -> impl Iterator<Item = Context> {
+    Context::ALL.into_iter().filter(|context| !matches!(context, Context::Start | Context::Forest))
+}
+
 #[test]
 fn every_action_is_reached_from_the_palette_and_the_help() {
-    for context in Context::ALL.into_iter().filter(|c| !c.is_text() && *c != Context::Start) {
+    for context in places().filter(|context| !context.is_text()) {
         for opener in [Action::Palette, Action::Help] {
             for info in TABLE.iter().filter(|info| info.action.word_in(context).is_some()) {
                 let mut state = in_place(context);
@@ -111,7 +116,7 @@ proptest::proptest! {
         let wishes: Vec<String> =
             wishes.iter().map(|(at, key)| format!("{} = \"F{key}\"", TABLE[*at].name)).collect();
         let (keys, _) = crate::app::keymap::KeyMap::with(&wishes.join("\n").parse().unwrap());
-        for context in Context::ALL.into_iter().filter(|context| *context != Context::Start) {
+        for context in places() {
             let mut state = in_place(context);
             state.keys = keys.clone();
             state.zoom = 0;
@@ -134,7 +139,7 @@ proptest::proptest! {
 
 #[test]
 fn every_hint_is_a_key_that_works_here() {
-    for context in Context::ALL.into_iter().filter(|context| *context != Context::Start) {
+    for context in places() {
         let state = in_place(context);
         for (keys, word) in state.keys.hints(context) {
             let bound = state.keys.bindings().iter().filter(|b| b.context == context);

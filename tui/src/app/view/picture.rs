@@ -284,32 +284,44 @@ impl<'a> Canvas<'a> {
     /// Puts the pixels into cells.
     fn paint(&self, frame: &mut Frame) {
         let area = self.lens.area;
-        let (across, down) = self.lens.grid;
-        let columns = self.lens.size().0 as usize;
-        let glyphs = Glyphs::ALL.into_iter().find(|g| g.grid() == self.lens.grid).unwrap_or_default();
-        let rgb = |[r, g, b]: [u8; 3]| Color::Rgb(r, g, b);
-        let mut pixels = Vec::with_capacity((across * down) as usize);
-        for row in 0..area.height {
-            for column in 0..area.width {
-                let first =
-                    usize::from(row) * down as usize * columns + usize::from(column) * across as usize;
-                pixels.clear();
-                for y in 0..down as usize {
-                    let pixel = |x: usize| {
-                        (self.pixels[first + y * columns + x], self.weights[first + y * columns + x])
-                    };
-                    pixels.extend((0..across as usize).map(pixel));
-                }
-                let (symbol, fg, bg) = glyphs.fit(&pixels);
-                let i = frame.cells.index_of(area.x + column, area.y + row);
-                frame.cells.content[i].set_char(symbol).set_style(Style::new().fg(rgb(fg)).bg(rgb(bg)));
-                frame.softness[i] = pixels.iter().map(|(_, weight)| *weight).max().unwrap_or(PICTURE);
-            }
-        }
+        paint_pixels(area, self.lens.grid, &self.pixels, Some(&self.weights), frame);
         if let Some(letters) = &self.letters {
             letters.paint(area, frame);
         }
         frame.scene = self.scene.finish();
+    }
+}
+
+/// Puts pixels into the cells of an area, so many into each, across and down; `weights` say how much each matters, all alike
+/// where there are none.
+pub(super) fn paint_pixels(
+    area: Rect,
+    grid: (u32, u32),
+    pixels: &[[u8; 3]],
+    weights: Option<&[u8]>,
+    frame: &mut Frame,
+) {
+    let (across, down) = (grid.0 as usize, grid.1 as usize);
+    let columns = across * usize::from(area.width);
+    let glyphs = Glyphs::ALL.into_iter().find(|g| g.grid() == grid).unwrap_or_default();
+    let rgb = |[r, g, b]: [u8; 3]| Color::Rgb(r, g, b);
+    let mut own = Vec::with_capacity(across * down);
+    for row in 0..area.height {
+        for column in 0..area.width {
+            let first = usize::from(row) * down * columns + usize::from(column) * across;
+            own.clear();
+            for y in 0..down {
+                let pixel = |x: usize| {
+                    let at = first + y * columns + x;
+                    (pixels[at], weights.map_or(PICTURE, |weights| weights[at]))
+                };
+                own.extend((0..across).map(pixel));
+            }
+            let (symbol, fg, bg) = glyphs.fit(&own);
+            let i = frame.cells.index_of(area.x + column, area.y + row);
+            frame.cells.content[i].set_char(symbol).set_style(Style::new().fg(rgb(fg)).bg(rgb(bg)));
+            frame.softness[i] = own.iter().map(|(_, weight)| *weight).max().unwrap_or(PICTURE);
+        }
     }
 }
 

@@ -1,0 +1,319 @@
+//! A forest in the terminal: copies of a plant in the wind, seen from wherever keys and mouse go.
+//!
+//! What keys do is pure; [`Forest::watch`] is the only part that knows the screen and the thread that moves and draws.
+
+mod moving;
+#[cfg(test)]
+mod tests;
+
+use std::time::Duration;
+
+use honami_workbench::plant::weather;
+use honami_workbench::scene::{ForestScene, Orbit};
+
+use super::action::{Action, Context};
+use super::config::Config;
+use super::keymap::{Found, KeyMap};
+use super::view::{self, theme::Theme};
+use crate::term::glyph::Glyphs;
+use crate::term::input::{Event, Mouse, MouseKind};
+use crate::term::key::Key;
+use crate::term::screen::{End, Screen};
+use moving::{Order, Worker};
+
+/// Between two pictures at least: more cost the link more than they show.
+const APART: Duration = Duration::from_millis(50);
+/// Keys turn the eye by so much, radians.
+const TURN: f32 = 0.13;
+/// Or it goes so many times as near.
+const NEARER: f32 = 1.0 / 1.25;
+/// Radians by a cell that the mouse drags.
+const BY_CELL: f32 = 0.03;
+/// Of the eye above the ground, radians.
+const ELEVATIONS: [f32; 2] = [-0.05, 1.5];
+/// Keys make a wind so many times as strong; one that is still becomes one of so much, metres per second.
+const STRONGER: f64 = 1.25;
+const LEAST_SPEED: f64 = 0.5;
+/// And turn it by so much, degrees.
+const VEER: f64 = 15.0;
+
+/// What a forest looked like at a time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shot {
+    /// Pixels, across and down.
+    pub size: [u32; 2],
+    /// Row by row.
+    pub pixels: Vec<[u8; 3]>,
+    /// Seconds since it was first shown.
+    pub time: f64,
+    /// The wind at the crown of the first copy, metres per second.
+    pub wind: [f64; 3],
+}
+
+/// The state of the screen.
+#[derive(Clone, Debug)]
+pub struct Forest {
+    /// What the plant is called.
+    pub name: String,
+    /// What there is: `100 copies, 25 modes`.
+    pub told: String,
+    /// From where it is seen.
+    pub orbit: Orbit,
+    /// From where it is seen at first.
+    begun: Orbit,
+    /// The wind, as it is typed.
+    pub wind: String,
+    /// Whether time goes on.
+    pub is_playing: bool,
+    /// Steps that are to be taken while it does not.
+    steps: u32,
+    /// What is being typed as another wind.
+    pub typed: Option<String>,
+    /// What went wrong.
+    pub complaint: Option<String>,
+    /// The picture at hand.
+    pub shot: Option<Shot>,
+    /// Columns and rows of the terminal.
+    pub size: (u16, u16),
+    /// The live key map.
+    pub keys: KeyMap,
+    /// Keys of a sequence that is not whole yet.
+    pub pending: Vec<Key>,
+    /// The colours.
+    pub theme: Option<Theme>,
+    /// Which characters show the picture.
+    pub glyphs: Glyphs,
+    /// Cell at which the mouse last was while it drags.
+    dragged: Option<(u16, u16)>,
+}
+
+/// What is to be done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wish {
+    /// Paint the screen anew.
+    Redraw,
+    /// Stop the program until it is continued.
+    Suspend,
+    /// Leave.
+    Leave,
+}
+
+impl Forest {
+    /// A forest that goes on, from where its scene has its eye.
+    #[must_use]
+    pub fn new(scene: &ForestScene, config: &Config) -> Self {
+        let (n_copies, n_modes) = (scene.places.len(), scene.stirring.n_modes());
+        let copies = if n_copies == 1 { "1 plant".to_owned() } else { format!("{n_copies} plants") };
+        Self {
+            name: scene.name.clone(),
+            told: format!("{copies}, {n_modes} modes"),
+            orbit: scene.orbit,
+            begun: scene.orbit,
+            wind: scene.wind.clone(),
+            is_playing: true,
+            steps: 0,
+            typed: None,
+            complaint: config.complaint(),
+            shot: None,
+            size: (80, 24),
+            keys: config.keys.clone(),
+            pending: Vec::new(),
+            theme: config.themes.get(config.theme).cloned(),
+            glyphs: Glyphs::default(),
+            dragged: None,
+        }
+    }
+
+    /// Where keys are read.
+    #[must_use]
+    pub fn context(&self) -> Context {
+        if self.typed.is_some() { Context::Prompt } else { Context::Forest }
+    }
+
+    /// A key was pressed.
+    pub fn on_key(&mut self, key: Key) -> Option<Wish> {
+        self.pending.push(key);
+        match self.keys.find(self.context(), &self.pending) {
+            Found::Prefix => None,
+            Found::Action(action) => {
+                self.pending.clear();
+                self.complaint = None;
+                self.act(action)
+            }
+            Found::Nothing => {
+                let is_whole = std::mem::take(&mut self.pending).len() == 1;
+                if let (Some(typed), Some(c), true) = (&mut self.typed, key.text(), is_whole) {
+                    typed.push(c);
+                }
+                None
+            }
+        }
+    }
+
+    /// Text was pasted.
+    pub fn on_paste(&mut self, text: &str) {
+        if let Some(typed) = &mut self.typed {
+            typed.extend(text.trim().chars().filter(|c| !c.is_control()));
+        }
+    }
+
+    /// The mouse goes round the forest, its wheel nearer and farther away.
+    pub fn on_mouse(&mut self, mouse: Mouse) {
+        let at = (mouse.column, mouse.row);
+        match mouse.kind {
+            MouseKind::WheelUp => self.orbit.zoom(NEARER),
+            MouseKind::WheelDown => self.orbit.zoom(1.0 / NEARER),
+            MouseKind::Press(0) => self.dragged = Some(at),
+            MouseKind::Drag(0) => {
+                let Some((column, row)) = self.dragged.replace(at) else { return };
+                let by = |to: u16, from: u16| f32::from(to) - f32::from(from);
+                // A cell is twice as high as wide.
+                self.go_round(-BY_CELL * by(at.0, column), 2.0 * BY_CELL * by(at.1, row));
+            }
+            _ => self.dragged = None,
+        }
+    }
+
+    fn act(&mut self, action: Action) -> Option<Wish> {
+        match action {
+            Action::Left | Action::OrbitLeft => self.go_round(-TURN, 0.0),
+            Action::Right | Action::OrbitRight => self.go_round(TURN, 0.0),
+            Action::Up => self.go_round(0.0, TURN),
+            Action::Down => self.go_round(0.0, -TURN),
+            Action::ZoomIn => self.orbit.zoom(NEARER),
+            Action::ZoomOut => self.orbit.zoom(1.0 / NEARER),
+            Action::Front => self.orbit = self.begun,
+            Action::PlayPause => self.is_playing ^= true,
+            Action::StepForward => {
+                self.is_playing = false;
+                self.steps += 1;
+            }
+            Action::MoreGroups => self.turn_wind("speed", |v| (v * STRONGER).max(LEAST_SPEED)),
+            Action::FewerGroups => self.turn_wind("speed", |v| v / STRONGER),
+            Action::FineLeft => self.turn_wind("towards", |v| v + VEER),
+            Action::FineRight => self.turn_wind("towards", |v| v - VEER),
+            Action::Wind => self.typed = Some(self.wind.clone()),
+            Action::Accept => {
+                self.wind = self.typed.take().map_or(self.wind.clone(), |v| v.trim().to_owned())
+            }
+            Action::Erase => drop(self.typed.as_mut().map(String::pop)),
+            Action::Glyphs => self.glyphs = self.glyphs.next(),
+            Action::Back if self.typed.take().is_some() => {}
+            Action::Back | Action::Quit | Action::Leave => return Some(Wish::Leave),
+            Action::Redraw => return Some(Wish::Redraw),
+            Action::Suspend => return Some(Wish::Suspend),
+            // The rest does not work here.
+            _ => {}
+        }
+        None
+    }
+
+    fn go_round(&mut self, by: f32, up: f32) {
+        let full = std::f32::consts::TAU;
+        self.orbit.azimuth = (self.orbit.azimuth + by).rem_euclid(full);
+        self.orbit.elevation = (self.orbit.elevation + up).clamp(ELEVATIONS[0], ELEVATIONS[1]);
+    }
+
+    /// Changes a value of the wind, where it has one of that name.
+    fn turn_wind(&mut self, name: &str, turned: impl Fn(f64) -> f64) {
+        let value = weather::value(&self.wind, name).map(turned);
+        match value.and_then(|value| weather::with_value(&self.wind, name, value)) {
+            Some(wind) => self.wind = wind,
+            None => self.complaint = Some(format!("{} has no {name} to change: choose another", self.wind)),
+        }
+    }
+
+    /// Shows it until somebody leaves.
+    ///
+    /// # Errors
+    /// What the terminal met; that there is no thread; what the scene cannot be.
+    pub(super) fn watch(mut self, scene: ForestScene, screen: &mut Screen) -> anyhow::Result<Option<End>> {
+        self.glyphs = Glyphs::from_env(|name| std::env::var(name).ok()).unwrap_or_default();
+        let mut worker = Worker::new(scene, screen.waker());
+        let (mut painted, mut last) = (None, Duration::ZERO);
+        screen.forget();
+        loop {
+            self.size = screen.size();
+            let now = screen.now();
+            match worker.news()? {
+                Some(Ok(shot)) => {
+                    self.shot = Some(shot);
+                    painted = None;
+                }
+                Some(Err(why)) => {
+                    self.complaint = Some(why);
+                    // What blows on is the wind before.
+                    self.wind = worker.wind().to_owned();
+                    painted = None;
+                }
+                None => {}
+            }
+            let is_due = !worker.is_busy() && screen.has_slot() && now >= last + APART;
+            if let Some(order) = self.order(screen.is_mono()).filter(|order| is_due && worker.wants(order)) {
+                worker.ask(order, now)?;
+                (self.steps, last) = (0, now);
+            }
+            let is_moving = self.is_playing || worker.is_busy();
+            if painted != Some(true) && screen.has_slot() && (painted.is_none() || !is_moving) {
+                let is_exact = screen.paint(&view::forest::draw(&self, screen.is_mono()), is_moving)?;
+                painted = Some(is_exact && !is_moving);
+            }
+            let next = (self.is_playing && !worker.is_busy()).then_some(last + APART);
+            let happened = screen.wait(next, painted != Some(true))?;
+            if happened.end.is_some() {
+                return Ok(happened.end);
+            }
+            let mut suspends = happened.suspend;
+            for event in happened.events {
+                if !matches!(event, Event::Reply(_)) {
+                    painted = None;
+                }
+                match self.hear(event) {
+                    Some(Wish::Leave) => return Ok(None),
+                    Some(Wish::Suspend) => suspends = true,
+                    Some(Wish::Redraw) => screen.forget(),
+                    None => {}
+                }
+            }
+            if suspends {
+                screen.suspend()?;
+            }
+            if happened.resized || suspends {
+                screen.forget();
+                painted = None;
+            }
+        }
+    }
+
+    fn hear(&mut self, event: Event) -> Option<Wish> {
+        match event {
+            Event::Key(key) => return self.on_key(key),
+            Event::Mouse(mouse) => self.on_mouse(mouse),
+            Event::Paste(text) => self.on_paste(&text),
+            Event::Reply(_) => {}
+        }
+        None
+    }
+
+    /// What is to be seen now.
+    fn order(&self, is_mono: bool) -> Option<Order> {
+        let area = view::forest::picture(self);
+        let (across, down) = self.shown_glyphs(is_mono).grid();
+        let size = [across * u32::from(area.width), down * u32::from(area.height)];
+        (size[0] > 0 && size[1] > 0).then(|| Order {
+            orbit: self.orbit,
+            wind: self.wind.clone(),
+            size,
+            // A cell is twice as high as wide.
+            n_square: 2 * across * u32::from(area.height),
+            is_playing: self.is_playing,
+            n_steps: self.steps,
+        })
+    }
+
+    /// The characters that show the picture: without colours, one brightness a cell.
+    #[must_use]
+    pub fn shown_glyphs(&self, is_mono: bool) -> Glyphs {
+        if is_mono { Glyphs::Halves } else { self.glyphs }
+    }
+}
