@@ -26,7 +26,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("honami-structure", &["honami-model"]),
     ("honami-review", &["honami-model", "honami-vision"]),
     ("honami-synth", &["honami-model"]),
-    ("honami-scene", &["honami-model", "honami-exchange", "honami-mechanics"]),
+    ("honami-scene", &["honami-model", "honami-exchange", "honami-mechanics", "honami-structure"]),
     ("honami-follow", &["honami-plugin", "honami-vision"]),
     ("honami-tracker-*", &["honami-plugin", "honami-vision", "honami-follow"]),
     ("honami-grouping", &["honami-plugin", "honami-model", "honami-motion"]),

@@ -6,6 +6,7 @@
 
 pub mod body;
 pub mod camera;
+pub mod control;
 pub mod file;
 pub mod forest;
 pub mod grove;

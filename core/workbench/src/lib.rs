@@ -38,6 +38,7 @@ pub mod track;
 mod tried;
 pub mod used;
 pub mod versus;
+pub mod view;
 
 pub use error::WorkbenchError;
 /// What plugins must bear.

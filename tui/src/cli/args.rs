@@ -2,6 +2,7 @@
 
 pub(super) mod grow;
 pub(super) mod plant;
+pub(super) mod view;
 
 use std::path::PathBuf;
 
@@ -65,6 +66,11 @@ pub(super) enum Command {
     /// `honami simulate` lay it over what grows, and `honami edit` undoes it. Numbers are of the bone as it grows, so that the
     /// same twice is the same, and all that a bone bears goes along. docs/skeletons.md has more.
     Shape(grow::Shape),
+    /// Show the skeleton over the clip or in space, into a file.
+    ///
+    /// The viewer, a program of its own beside this one, draws it: `cargo build --release -p honami-viewer` builds that.
+    /// docs/viewer.md has more.
+    View(Box<view::View>),
     /// Correct tracks from a script: one edit a line on standard input, one answer a line.
     ///
     /// An edit is answered once it is in the project file, with its number in the undo tree. The first edit that

@@ -17,7 +17,7 @@ use super::args::grow::Grow;
 use super::{Answer, look, report, told_options, want};
 
 /// The structure builder that is used unless one is named.
-const DEFAULT: &str = "diener";
+pub(super) const DEFAULT: &str = "diener";
 
 /// What is to be written, and as what.
 type Files<'a> = Vec<(Out, &'a PathBuf)>;

@@ -1,0 +1,120 @@
+//! `view`: scenes in the viewer's window, or into files.
+
+use std::ffi::OsString;
+use std::path::Path;
+
+use honami_model::brief::counted;
+use honami_workbench::grow::GrowRequest;
+use honami_workbench::plugins::{Host, Kind, PluginInfo, Value, Values};
+use honami_workbench::scene::{Scene, SkeletonScene};
+use honami_workbench::store::{Access, Project};
+use honami_workbench::view;
+use serde_json::json;
+
+use super::args::Common;
+use super::args::view::View;
+use super::{Answer, grow, look, report, there, told_options, want};
+use crate::viewer::{self, Scenes};
+
+/// A picture is so high unless it was said how large, pixels.
+const HEIGHT: f64 = 720.0;
+
+/// Shows a scene.
+pub(super) fn view(args: &View, common: &Common) -> anyhow::Result<Answer> {
+    viewer::program()?;
+    there(&args.project)?;
+    offscreen(args, &args.offscreen, common)
+}
+
+/// What grows, and how.
+struct Grower {
+    host: Host,
+    plugin: PluginInfo,
+    request: GrowRequest,
+}
+
+impl Grower {
+    fn of(args: &View, common: &Common) -> anyhow::Result<Self> {
+        let options = told_options(common);
+        let name = args.plugin.with.as_deref().unwrap_or(grow::DEFAULT);
+        let plugin = options.registry().find(Kind::Structure, name)?.clone();
+        let mut params = Values::defaults(&plugin.params);
+        if args.flat {
+            want(plugin.params.iter().any(|param| param.id == "flat"), || {
+                format!(
+                    "--flat is of plugins with a parameter of that name, and {} has none",
+                    plugin.short_name
+                )
+            })?;
+            params.set(&plugin.params, "flat", Value::Bool(true))?;
+        }
+        for assignment in &args.plugin.set {
+            params.set_text(&plugin.params, assignment)?;
+        }
+        let request = GrowRequest {
+            params,
+            root: args.root.map(|place| place.0),
+            as_grown: args.as_grown,
+            groups: args.groups,
+            ..GrowRequest::default()
+        };
+        Ok(Self { host: options.host, plugin, request })
+    }
+
+    /// The skeleton as it is now, and what is to be said of it.
+    fn grow(&self, project: &Project, common: &Common) -> anyhow::Result<(SkeletonScene, Vec<String>)> {
+        let clip = project.media_path();
+        let is_there = clip.exists();
+        let clip = is_there.then_some(clip);
+        let bar = report::Bar::with(common);
+        let shown = view::skeleton(project, &self.host, &self.plugin, &self.request, clip, &bar)?;
+        let mut notes = shown.notes;
+        if !is_there {
+            notes.push(
+                "the clip is not where it was, and is not shown: `honami relink` says where it is".to_owned(),
+            );
+        }
+        let is_open = project.access() == Access::Write;
+        Ok((SkeletonScene { is_open, ..shown.scene }, notes))
+    }
+}
+
+/// Draws into a file.
+fn offscreen(args: &View, out: &Path, common: &Common) -> anyhow::Result<Answer> {
+    let (scene, notes) = Grower::of(args, common)?.grow(&look(&args.project)?, common)?;
+    let told = told(&scene);
+    let mut scenes = Scenes::new()?;
+    let size = args.size.map_or_else(|| usual_size(&scene), |size| [size.width, size.height]);
+    let path = scenes.write(&Scene::Skeleton(scene))?;
+    let mut words = words(args, &path, size);
+    words.extend(["--offscreen".into(), out.into()]);
+    viewer::have(&words)?;
+    let mut text = format!("{}: {told}", out.display());
+    notes.iter().for_each(|note| text += &format!("\nnote: {note}"));
+    let json = json!({ "out": out, "size": size, "skeleton": told, "notes": notes });
+    Ok(Answer { json, text, done: true })
+}
+
+/// `9 bones of 4 groups, frames 3-150`.
+fn told(scene: &SkeletonScene) -> String {
+    let n_bones = scene.joints.iter().skip(1).filter(|joint| joint.copy_of.is_none()).count();
+    let (first, n_frames) = (scene.first_frame as usize, scene.times.len());
+    let frames = format!("frames {first}-{}", (first + n_frames).saturating_sub(1));
+    format!("{} of {}, {frames}", counted(n_bones, "bone"), counted(scene.groups.len(), "group"))
+}
+
+/// So many pixels high, and as wide as the clip has it; even, as movies want it.
+fn usual_size(scene: &SkeletonScene) -> [u32; 2] {
+    let aspect = f64::from(scene.clip.width) / f64::from(scene.clip.height.max(1));
+    [(HEIGHT * aspect / 2.0).round().clamp(1.0, 8192.0) as u32 * 2, HEIGHT as u32]
+}
+
+/// What the viewer is called with.
+fn words(args: &View, scene: &Path, [width, height]: [u32; 2]) -> Vec<OsString> {
+    let names = args.parts.iter().filter_map(clap::ValueEnum::to_possible_value);
+    let names: Vec<String> = names.map(|part| part.get_name().to_owned()).collect();
+    let mut words: Vec<OsString> = vec![scene.into(), format!("--size={width}x{height}").into()];
+    words.extend((!names.is_empty()).then(|| format!("--parts={}", names.join(",")).into()));
+    words.extend(args.shot.words().into_iter().map(OsString::from));
+    words
+}

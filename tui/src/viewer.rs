@@ -1,0 +1,117 @@
+//! The viewer, a program of its own beside this one: found, and had draw scenes.
+
+#[cfg(test)]
+mod tests;
+
+use std::ffi::OsString;
+use std::os::unix::process::ExitStatusExt as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitStatus, Stdio};
+
+use anyhow::{Context as _, ensure};
+use honami_model::unfinished::Unfinished;
+use honami_workbench::media;
+use honami_workbench::scene::{Scene, file};
+use tempfile::TempDir;
+
+/// What it is called.
+const NAME: &str = "honami-viewer";
+
+/// The viewer's file.
+///
+/// # Errors
+/// Where it is not there, with the command that builds it.
+pub(crate) fn program() -> anyhow::Result<PathBuf> {
+    let own = std::env::current_exe().context("cannot find the viewer beside this program")?;
+    beside(&own)
+}
+
+fn beside(own: &Path) -> anyhow::Result<PathBuf> {
+    let path = own.with_file_name(format!("{NAME}{}", std::env::consts::EXE_SUFFIX));
+    let is_debug = own.parent().is_some_and(|folder| folder.ends_with("debug"));
+    let how = if is_debug { "" } else { "--release " };
+    ensure!(
+        path.is_file(),
+        "the viewer is not there: {} was looked for; `cargo build {how}-p {NAME}` builds it",
+        path.display()
+    );
+    Ok(path)
+}
+
+/// Has the viewer do something and waits for its end; what goes wrong it says itself.
+///
+/// # Errors
+/// Where it is not there, does not start, or fails.
+pub(crate) fn have(args: &[OsString]) -> anyhow::Result<()> {
+    let program = program()?;
+    let mut child =
+        command(&program, args).stdin(Stdio::null()).spawn().with_context(|| starting(&program))?;
+    let status = child.wait().with_context(|| starting(&program))?;
+    ending(status).map_or(Ok(()), |how| Err(anyhow::anyhow!(how)))
+}
+
+fn command(program: &Path, args: &[OsString]) -> Command {
+    let mut command = Command::new(program);
+    command.args(args);
+    command
+}
+
+fn starting(program: &Path) -> String {
+    format!("cannot start {}", program.display())
+}
+
+/// How it has ended where that was not as it should.
+fn ending(status: ExitStatus) -> Option<String> {
+    if status.success() {
+        return None;
+    }
+    Some(match (status.code(), status.signal()) {
+        (Some(code), _) => format!("the viewer failed, with status {code}"),
+        (None, Some(signal)) => format!("the viewer crashed, by signal {signal}"),
+        (None, None) => "the viewer crashed".to_owned(),
+    })
+}
+
+/// The files through which a viewer is shown scenes: in a folder with the caches, which goes with this.
+#[derive(Debug)]
+pub(crate) struct Scenes {
+    folder: TempDir,
+    /// Whoever is ended by a signal removes it.
+    _unfinished: Unfinished,
+    /// How many were written.
+    n: u32,
+}
+
+impl Scenes {
+    /// None yet.
+    ///
+    /// # Errors
+    /// Where there is no room for them.
+    pub(crate) fn new() -> anyhow::Result<Self> {
+        let caches = media::cache_folder().unwrap_or_else(std::env::temp_dir);
+        let failed = || format!("cannot write a scene into {}", caches.display());
+        std::fs::create_dir_all(&caches).with_context(failed)?;
+        let begun = Unfinished::begin(|| {
+            tempfile::Builder::new().prefix("scene-").tempdir_in(&caches).map(|folder| {
+                let name = folder.path().to_owned();
+                (folder, name)
+            })
+        });
+        let (folder, unfinished) = begun.with_context(failed)?;
+        Ok(Self { folder, _unfinished: unfinished, n: 0 })
+    }
+
+    /// Writes one, and removes the one before the last: the last may be being read.
+    ///
+    /// # Errors
+    /// What the disk met.
+    pub(crate) fn write(&mut self, scene: &Scene) -> anyhow::Result<PathBuf> {
+        let path = self.folder.path().join(format!("{}.scene", self.n));
+        file::write(&path, scene)?;
+        if let Some(older) = self.n.checked_sub(2) {
+            std::fs::remove_file(path.with_file_name(format!("{older}.scene"))).unwrap_or_default();
+        }
+        self.n += 1;
+        Ok(path)
+    }
+}
