@@ -192,7 +192,7 @@ fn run(command: Command, common: &Common) -> anyhow::Result<Outcome> {
         Command::Cluster(args) => groups::cluster(&args, common)?,
         Command::Grow(args) => grow::grow(&args, common)?,
         Command::Shape(args) => shape::shape(&args)?,
-        Command::View(args) => view::view(&args, common)?,
+        Command::View(args) => return view::view(&args, common),
         Command::Edit(args) => {
             return edit::edit(&args.project, common).map(|()| Outcome::Exit(ExitCode::SUCCESS));
         }

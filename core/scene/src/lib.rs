@@ -29,7 +29,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Scene {
     /// The bones behind tracks, over the clip or in space.
-    Skeleton(SkeletonScene),
+    Skeleton(Box<SkeletonScene>),
     /// Copies of a plant in the wind.
     Forest(Box<ForestScene>),
 }

@@ -55,10 +55,10 @@ pub use honami_mechanics as mechanics;
 pub use honami_media as media;
 /// Motion as colour.
 pub use honami_motion::overlay;
-/// Colours of what is drawn.
-pub use honami_scene::palette;
 /// What is drawn.
 pub use honami_scene as scene;
+/// Colours of what is drawn.
+pub use honami_scene::palette;
 /// Projects.
 pub use honami_store as store;
 /// Generated clips.

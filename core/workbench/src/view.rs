@@ -8,8 +8,8 @@ use std::path::PathBuf;
 use honami_host::{Host, PluginInfo};
 use honami_model::shape::Shape;
 use honami_model::skeleton::{Leaf, Skeleton};
-use honami_scene::{SkeletonScene, palette};
 use honami_scene::skeleton::{Bone, Carried, Film, Group, Joint};
+use honami_scene::{SkeletonScene, palette};
 use honami_store::Project;
 use honami_structure::ellipse::Ellipse;
 

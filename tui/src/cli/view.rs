@@ -1,4 +1,6 @@
-//! `view`: scenes in the viewer's window, or into files.
+//! `view`: scenes in the viewer's window, in the terminal, or into files.
+
+mod forest;
 
 use std::ffi::OsString;
 use std::path::Path;
@@ -12,18 +14,33 @@ use honami_workbench::view;
 use serde_json::json;
 
 use super::args::Common;
-use super::args::view::View;
-use super::{Answer, grow, look, report, there, told_options, want};
+use super::args::view::{View, ViewWhat};
+use super::{Answer, Outcome, Usage, grow, look, report, there, told_options, want};
 use crate::viewer::{self, Scenes};
 
 /// A picture is so high unless it was said how large, pixels.
 const HEIGHT: f64 = 720.0;
 
 /// Shows a scene.
-pub(super) fn view(args: &View, common: &Common) -> anyhow::Result<Answer> {
-    viewer::program()?;
-    there(&args.project)?;
-    offscreen(args, &args.offscreen, common)
+pub(super) fn view(args: &View, common: &Common) -> anyhow::Result<Outcome> {
+    let source = Path::new(&args.plant.source);
+    let is_project = source.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("honami"));
+    match args.what.unwrap_or(if is_project { ViewWhat::Skeleton } else { ViewWhat::Forest }) {
+        ViewWhat::Forest => forest::view(args, common),
+        ViewWhat::Skeleton => {
+            want(is_project, || {
+                format!("{} has no skeleton: a project (.honami) is wanted, or forest", source.display())
+            })?;
+            want(!args.terminal, || {
+                format!("a skeleton is shown in the terminal by v k in `honami {}`", source.display())
+            })?;
+            let out = args.offscreen.as_deref();
+            let out = out.ok_or_else(|| Usage("--offscreen OUT is wanted, what to draw into".to_owned()))?;
+            viewer::program()?;
+            there(source)?;
+            skeleton(args, source, out, common).map(Outcome::Answer)
+        }
+    }
 }
 
 /// What grows, and how.
@@ -79,13 +96,13 @@ impl Grower {
     }
 }
 
-/// Draws into a file.
-fn offscreen(args: &View, out: &Path, common: &Common) -> anyhow::Result<Answer> {
-    let (scene, notes) = Grower::of(args, common)?.grow(&look(&args.project)?, common)?;
+/// Draws a skeleton into a file.
+fn skeleton(args: &View, project: &Path, out: &Path, common: &Common) -> anyhow::Result<Answer> {
+    let (scene, notes) = Grower::of(args, common)?.grow(&look(project)?, common)?;
     let told = told(&scene);
     let mut scenes = Scenes::new()?;
     let size = args.size.map_or_else(|| usual_size(&scene), |size| [size.width, size.height]);
-    let path = scenes.write(&Scene::Skeleton(scene))?;
+    let path = scenes.write(&Scene::Skeleton(Box::new(scene)))?;
     let mut words = words(args, &path, size);
     words.extend(["--offscreen".into(), out.into()]);
     viewer::have(&words)?;

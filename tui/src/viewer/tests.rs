@@ -31,7 +31,7 @@ fn two_scenes_are_there_and_none_in_the_end() {
     let mut scenes = Scenes::new().unwrap();
     let folder = scenes.folder.path().to_owned();
     let there = || std::fs::read_dir(&folder).unwrap().count();
-    let scene = Scene::Skeleton(honami_workbench::scene::SkeletonScene::default());
+    let scene = Scene::Skeleton(Box::default());
     for wanted in [1, 2, 2, 2] {
         let path = scenes.write(&scene).unwrap();
         assert!(path.exists());

@@ -9,13 +9,13 @@ fn scene() -> Scene {
     let film = Film { width: 4, height: 3, n_frames: 1, ..Film::default() };
     let joints = vec![Joint::default(), Joint { parent: Some(0), ..Joint::default() }];
     let places = vec![[0.0, 0.0, 0.0], [1.0, 0.0, -2.5]];
-    Scene::Skeleton(SkeletonScene {
+    Scene::Skeleton(Box::new(SkeletonScene {
         clip: film,
         joints,
         places,
         times: vec![0.0],
         ..SkeletonScene::default()
-    })
+    }))
 }
 
 #[test]

@@ -102,7 +102,8 @@ fn shapes_are_of_the_bone_as_it_grows() {
 
 #[test]
 fn a_scene_that_is_not_whole_is_told() {
-    let wrong: [(&str, fn(&mut SkeletonScene)); 10] = [
+    type Spoil = fn(&mut SkeletonScene);
+    let wrong: [(&str, Spoil); 10] = [
         ("a joint without a place", |scene| scene.places.truncate(3)),
         ("a place that is none", |scene| scene.places[3][1] = f32::NAN),
         ("a parent behind its child", |scene| scene.joints[1].parent = Some(2)),

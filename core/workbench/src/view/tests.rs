@@ -56,7 +56,7 @@ fn a_scene_says_where_everything_is_and_what_it_is_called() {
     assert_eq!((scene.row_of(3), scene.joints[3].copy_of), (Some(2), Some(2)));
     let leaf = &scene.leaves[2];
     assert_eq!((leaf.track, leaf.joint, leaf.group), (7, 2, Some(1)));
-    assert_eq!(leaf.places[0], [32.0, -1.0, -37.0]);
+    assert_eq!(leaf.places[0].map(f32::to_bits), [32.0_f32, -1.0, -37.0].map(f32::to_bits));
 }
 
 /// Of four places 6 px to either side and 3 px up and down of their mean the variances are 24 and 6 px², n less one; 95 % of a

@@ -254,7 +254,7 @@ impl std::str::FromStr for Cell {
 }
 
 /// Copies of a forest.
-fn copies(text: &str) -> Result<u32, String> {
+pub(in crate::cli) fn copies(text: &str) -> Result<u32, String> {
     let copies = text.parse().ok().filter(|n| (1..=10_000_000).contains(n));
     copies.ok_or_else(|| format!("wanted 1 to 10000000 copies, got {text}"))
 }

@@ -5,16 +5,19 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::grow::Place;
+use super::plant::{Plant, copies};
 use super::{Size, WithPlugin};
 
 /// Scenes in a window, or into a file.
 #[derive(Args, Debug)]
 pub(in crate::cli) struct View {
-    /// Project file (.honami).
-    pub(in crate::cli) project: PathBuf,
-    /// What to show of it (default: the skeleton).
+    #[command(flatten)]
+    pub(in crate::cli) plant: Plant,
+    /// What to show of it (default: of a project its skeleton, of anything else a forest).
     #[arg(value_enum)]
     pub(in crate::cli) what: Option<ViewWhat>,
+    #[command(flatten)]
+    pub(in crate::cli) trees: Trees,
     #[command(flatten)]
     pub(in crate::cli) plugin: WithPlugin,
     /// Number of groups to cut the hierarchy into (default: as it is cut).
@@ -31,7 +34,10 @@ pub(in crate::cli) struct View {
     pub(in crate::cli) as_grown: bool,
     /// Draw into a file: .png, .mp4 (needs ffmpeg) or .y4m, else a folder of images, OUT/.
     #[arg(long, value_name = "OUT")]
-    pub(in crate::cli) offscreen: PathBuf,
+    pub(in crate::cli) offscreen: Option<PathBuf>,
+    /// Show a forest in the terminal: keys and the mouse go round it and turn its wind.
+    #[arg(long, conflicts_with = "offscreen")]
+    pub(in crate::cli) terminal: bool,
     /// Pixels of the picture (default: 720 high, as wide as the clip has it).
     #[arg(long, value_name = "WxH")]
     pub(in crate::cli) size: Option<Size>,
@@ -40,6 +46,47 @@ pub(in crate::cli) struct View {
     pub(in crate::cli) parts: Vec<Part>,
     #[command(flatten)]
     pub(in crate::cli) shot: Shot,
+}
+
+/// Copies of a plant in the wind.
+#[derive(Args, Debug)]
+pub(in crate::cli) struct Trees {
+    /// A forest of so many copies, each at its place in the wind.
+    #[arg(long, value_name = "K", default_value_t = 1, value_parser = copies)]
+    pub(in crate::cli) forest: u32,
+    /// What blows, as `honami simulate` takes it: wind:speed=5,towards=90, or storm+vortex.
+    #[arg(long, value_name = "WIND", default_value = "wind")]
+    pub(in crate::cli) wind: String,
+    /// Leaves on the end of every branch, which are drawn and weigh nothing; 0: none (default: as a full crown has).
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=200))]
+    pub(in crate::cli) leaves: Option<u32>,
+    /// Length of a leaf, metres (default: as a plant of that size has).
+    #[arg(long, value_name = "M")]
+    pub(in crate::cli) leaf_length: Option<f64>,
+    /// Copies are up to 1 + X times as large or as small as the plant; the first is as it was measured.
+    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 0.15)]
+    pub(in crate::cli) size_spread: f64,
+    /// Copies are up to 1 + X times as heavy or as light as one of their size.
+    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 0.0)]
+    pub(in crate::cli) mass_spread: f64,
+    /// How far copies stand apart, metres (default: 0.8 times the height of the plant).
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
+    pub(in crate::cli) spacing: Option<f64>,
+    /// Damping by mass, per second.
+    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 0.3)]
+    pub(in crate::cli) alpha: f64,
+    /// Damping by stiffness, seconds.
+    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 0.008)]
+    pub(in crate::cli) beta: f64,
+    /// Damping by the air: so many times what the drag of branches and leaves gives.
+    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 1.0)]
+    pub(in crate::cli) air_damping: f64,
+    /// So many times as heavy as its wood.
+    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 1.0)]
+    pub(in crate::cli) heavier: f64,
+    /// Of where copies stand, how they are turned, and their sizes and masses.
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    pub(in crate::cli) seed: u64,
 }
 
 /// How it is filmed.
@@ -79,6 +126,8 @@ pub(in crate::cli) struct Shot {
 pub(in crate::cli) enum ViewWhat {
     /// The skeleton of the shown groups.
     Skeleton,
+    /// Copies of a plant in the wind; of a project the plant is its skeleton.
+    Forest,
 }
 
 /// A part of a skeleton's picture.

@@ -1,0 +1,110 @@
+//! Forests: a plant and its copies in the wind.
+
+use std::ffi::OsString;
+use std::io::IsTerminal as _;
+use std::path::Path;
+use std::process::ExitCode;
+
+use honami_model::brief::counted;
+use honami_workbench::mechanics::{Damping, Integrator};
+use honami_workbench::plant::scene::{Shown, scene};
+use honami_workbench::plant::sway::Motion;
+use honami_workbench::plant::{self};
+use honami_workbench::scene::{ForestScene, Scene};
+use serde_json::json;
+
+use crate::cli::args::Common;
+use crate::cli::args::view::View;
+use crate::cli::{Answer, Outcome, ends, report, simulate, want};
+use crate::viewer::{self, Scenes};
+
+/// Pixels of a picture, unless it was said how large.
+const SIZE: [u32; 2] = [1280, 720];
+/// Leaves are between so long, metres.
+const LEAF_LENGTHS: std::ops::RangeInclusive<f64> = 1e-4..=10.0;
+
+/// Shows a forest in the terminal, or draws it into a file.
+pub(super) fn view(args: &View, common: &Common) -> anyhow::Result<Outcome> {
+    if let Some(length) = args.trees.leaf_length {
+        want(LEAF_LENGTHS.contains(&length), || {
+            let (least, most) = (LEAF_LENGTHS.start(), LEAF_LENGTHS.end());
+            format!("a leaf is {least:?} to {most:?} m long, not {length:?}")
+        })?;
+    }
+    let is_shown = std::io::stdout().is_terminal() && std::io::stdin().is_terminal() && !common.json;
+    want(args.offscreen.is_some() || is_shown, || {
+        "--offscreen OUT is wanted where there is no terminal to show a forest in".to_owned()
+    })?;
+    if args.offscreen.is_some() {
+        viewer::program()?;
+    }
+    let (scene, told, notes) = made(args, common)?;
+    if let Some(out) = &args.offscreen {
+        return offscreen(args, scene, out, (told, &notes)).map(Outcome::Answer);
+    }
+    notes.iter().for_each(|note| report::say(&format!("note: {note}")));
+    ends::leave();
+    let end = crate::app::run_forest(scene)?;
+    Ok(Outcome::Exit(end.map_or(ExitCode::SUCCESS, |end| ExitCode::from(end.status()))))
+}
+
+/// The scene, what is in it, and what is to be said of the plant.
+fn made(args: &View, common: &Common) -> anyhow::Result<(ForestScene, String, Vec<String>)> {
+    let trees = &args.trees;
+    let bar = report::Bar::with(common);
+    let plant = plant::vibrate(&simulate::wish(&args.plant), &bar)?;
+    let motion = Motion {
+        n_copies: trees.forest as usize,
+        fps: args.shot.fps.unwrap_or(Motion::default().fps),
+        integrator: Integrator::Exact,
+        damping: Damping {
+            alpha: trees.alpha,
+            beta: trees.beta,
+            mass: trees.heavier,
+            air: trees.air_damping,
+        },
+        size_spread: trees.size_spread,
+        mass_spread: trees.mass_spread,
+        spacing: trees.spacing,
+        seed: trees.seed,
+        ..Motion::default()
+    };
+    let name = Path::new(&args.plant.source).file_name();
+    let name = name.map_or_else(|| args.plant.source.clone(), |name| name.to_string_lossy().into_owned());
+    let shown =
+        Shown { name, wind: trees.wind.clone(), leaves: trees.leaves, leaf_length: trees.leaf_length };
+    let scene = scene(&plant, &motion, &shown)?;
+    let leaves = scene.body.levels.first().map_or(0, |level| level.leaves.len());
+    let copies = match scene.places.len() {
+        1 => "1 plant".to_owned(),
+        n => format!("{n} plants"),
+    };
+    let told = format!(
+        "{copies} of {} with {} and {}, in {}",
+        counted(plant.beams.len(), "node"),
+        counted(leaves, "leaf").replace("leafs", "leaves"),
+        counted(plant.modes.len(), "mode"),
+        scene.wind
+    );
+    Ok((scene, told, plant.notes))
+}
+
+/// Draws into a file.
+fn offscreen(
+    args: &View,
+    scene: ForestScene,
+    out: &Path,
+    (told, notes): (String, &[String]),
+) -> anyhow::Result<Answer> {
+    let mut scenes = Scenes::new()?;
+    let [width, height] = args.size.map_or(SIZE, |size| [size.width, size.height]);
+    let path = scenes.write(&Scene::Forest(Box::new(scene)))?;
+    let mut words: Vec<OsString> = vec![path.into(), format!("--size={width}x{height}").into()];
+    words.extend(args.shot.words().into_iter().map(OsString::from));
+    words.extend(["--offscreen".into(), out.into()]);
+    viewer::have(&words)?;
+    let mut text = format!("{}: {told}", out.display());
+    notes.iter().for_each(|note| text += &format!("\nnote: {note}"));
+    let json = json!({ "out": out, "size": [width, height], "forest": told, "notes": notes });
+    Ok(Answer { json, text, done: true })
+}
