@@ -10,6 +10,7 @@ use std::process::{Command, ExitStatus, Stdio};
 
 use anyhow::{Context as _, ensure};
 use honami_model::unfinished::Unfinished;
+use honami_workbench::doctor::Finding;
 use honami_workbench::media;
 use honami_workbench::scene::{Scene, file};
 use tempfile::TempDir;
@@ -29,13 +30,18 @@ pub(crate) fn program() -> anyhow::Result<PathBuf> {
 fn beside(own: &Path) -> anyhow::Result<PathBuf> {
     let path = own.with_file_name(format!("{NAME}{}", std::env::consts::EXE_SUFFIX));
     let is_debug = own.parent().is_some_and(|folder| folder.ends_with("debug"));
-    let how = if is_debug { "" } else { "--release " };
     ensure!(
         path.is_file(),
-        "the viewer is not there: {} was looked for; `cargo build {how}-p {NAME}` builds it",
-        path.display()
+        "the viewer is not there: {} was looked for; `{}` builds it",
+        path.display(),
+        build(!is_debug)
     );
     Ok(path)
+}
+
+/// What builds it.
+fn build(is_release: bool) -> String {
+    format!("cargo build {}-p {NAME}", if is_release { "--release " } else { "" })
 }
 
 /// Has the viewer do something and waits for its end; what goes wrong it says itself.
@@ -48,6 +54,39 @@ pub(crate) fn have(args: &[OsString]) -> anyhow::Result<()> {
         command(&program, args).stdin(Stdio::null()).spawn().with_context(|| starting(&program))?;
     let status = child.wait().with_context(|| starting(&program))?;
     ending(status).map_or(Ok(()), |how| Err(anyhow::anyhow!(how)))
+}
+
+/// What this machine has of it: which adapter it would draw with.
+#[must_use]
+pub(crate) fn finding() -> Finding {
+    let program = program();
+    let adapter = program.as_ref().ok().map(|program| adapter(program));
+    let found = match &adapter {
+        None => "not built".to_owned(),
+        Some(adapter) => adapter.as_ref().map_or_else(String::clone, |name| format!("draws with {name}")),
+    };
+    let advice = match &adapter {
+        None => format!("`{}` builds it", build(true)),
+        Some(_) => "sudo apt-get install mesa-vulkan-drivers draws without a graphics card".to_owned(),
+    };
+    Finding {
+        what: "viewer",
+        there: matches!(adapter, Some(Ok(_))),
+        found,
+        adds: "skeletons and forests in a window and in movies (`honami view`)",
+        advice: Some(advice),
+    }
+}
+
+/// The adapter that a viewer would draw with, or why it has none.
+fn adapter(program: &Path) -> Result<String, String> {
+    let output = command(program, &["--adapters".into(), "--json".into()]).stdin(Stdio::null()).output();
+    let output = output.map_err(|error| format!("{}: {error}", starting(program)))?;
+    let told: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap_or_default();
+    let first = told["adapters"].get(0).ok_or("there is nothing to draw with: no card and no driver")?;
+    let word = |name: &str| first[name].as_str().unwrap_or_default().to_owned();
+    let kind = if first["software"] == true { ", without a graphics card" } else { "" };
+    Ok(format!("{} by {}{kind}", word("name"), word("backend")))
 }
 
 fn command(program: &Path, args: &[OsString]) -> Command {

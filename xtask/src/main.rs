@@ -18,6 +18,7 @@ const HELP: &str = "\
 cargo xtask <command>
 
   demo [--headless]   build what the demo needs (release) and run it
+  demo --viewer       build the viewer too, and show a forest in its window, or draw it where there is no display
   test [args…]        install what the tests need where it may, then run every test
   lint                formatting, clippy and documentation, warnings denied
   opencv              install what OpenCV's trackers need where it may, then build them (release)
@@ -27,6 +28,9 @@ cargo xtask <command>
 
 /// How they are built to be used.
 const BUILD: &[&str] = &["build", "--release"];
+
+/// All packages but the one that needs OpenCV, in one build: what they share is then built once.
+const ALL: [&str; 3] = ["--workspace", "--exclude", "honami-tracker-opencv"];
 
 /// The packages of a working installation: the program and what the demo uses of the plugins.
 const DEMO: [&str; 8] =
@@ -64,8 +68,23 @@ fn main() -> ExitCode {
 /// Builds the program and its plugins and runs the demo.
 fn demo(args: &[&str]) -> anyhow::Result<()> {
     system::need_compiler()?;
+    if args == ["--viewer"] {
+        cargo(BUILD).args(DEMO).args(["-p", "honami-viewer"]).run()?;
+        return viewer();
+    }
     cargo(BUILD).args(DEMO).run()?;
     shell::built("release", "honami")?.arg("demo").args(args).run()
+}
+
+/// Shows a forest of a generated tree, or, where nobody could see its window, draws it.
+fn viewer() -> anyhow::Result<()> {
+    let has_display = ["DISPLAY", "WAYLAND_DISPLAY"].iter().any(|name| std::env::var_os(name).is_some());
+    let view = shell::built("release", "honami")?.args(["view", "synth::tree:3437,1", "--forest", "12"]);
+    if has_display {
+        return view.run();
+    }
+    println!("no display: drawn into honami-forest.png");
+    view.args(["--offscreen", "honami-forest.png"]).run()
 }
 
 /// Installs what the tests need and runs all of them.
@@ -81,12 +100,16 @@ fn test(args: &[&str]) -> anyhow::Result<()> {
     if args.is_empty() && peers.is_none() {
         system::may_skip("what OpenSees, readers of rigs and glTF's validator say")?;
     }
-    // The end-to-end tests run the real program with the real plugins: build them first.
-    cargo(&["build"]).run()?;
+    let all: &[&str] = if args.is_empty() { &ALL } else { &[] };
+    if args.is_empty() {
+        system::want_drawing()?;
+    }
+    // The end-to-end tests run the real programs with the real plugins: build them first.
+    cargo(&["build"]).args(all.iter().copied()).run()?;
     if let Some(opencv) = &opencv {
         opencv.cargo(&["build"]).run()?;
     }
-    let tests = cargo(&["test"]).args(args.iter().copied());
+    let tests = cargo(&["test"]).args(all.iter().copied()).args(args.iter().copied());
     peers.unwrap_or_default().into_iter().fold(tests, |tests, (name, value)| tests.env(name, value)).run()?;
     opencv.map_or(Ok(()), |opencv| opencv.cargo(&["test"]).run())
 }
@@ -96,8 +119,8 @@ fn lint() -> anyhow::Result<()> {
     cargo(&["fmt", "--all", "--check"]).run()?;
     let clippy = ["clippy", "--all-targets", "--", "-D", "warnings"];
     let doc = ["doc", "--no-deps", "--document-private-items"];
-    cargo(&clippy).run()?;
-    cargo(&doc).env("RUSTDOCFLAGS", "-D warnings").run()?;
+    cargo(&clippy[..1]).args(ALL).args(clippy[1..].iter().copied()).run()?;
+    cargo(&doc).args(ALL).env("RUSTDOCFLAGS", "-D warnings").run()?;
     let Some(opencv) = opencv::Kit::find() else {
         eprintln!("skipped: OpenCV's trackers, because OpenCV is not there (`cargo xtask opencv` gets it)");
         return system::may_skip("OpenCV's trackers");

@@ -24,6 +24,23 @@ pub(crate) fn want_ffmpeg() -> anyhow::Result<()> {
     may_skip("the tests that need ffmpeg")
 }
 
+/// A driver that draws without a graphics card, and a display that nobody sees, are wanted: without them the viewer's tests
+/// say that they are skipped.
+pub(crate) fn want_drawing() -> anyhow::Result<()> {
+    let has_driver =
+        || std::fs::read_dir("/usr/share/vulkan/icd.d").is_ok_and(|mut files| files.next().is_some());
+    let missing = [("mesa-vulkan-drivers", has_driver()), ("xvfb", is_there("Xvfb"))];
+    for (package, _) in missing.into_iter().filter(|(_, is_there)| !is_there) {
+        if !install(package) {
+            eprintln!(
+                "{package} is missing: tests that need it say so. To install it: apt-get install {package}"
+            );
+            may_skip(&format!("the viewer's tests that need {package}"))?;
+        }
+    }
+    Ok(())
+}
+
 /// Lets tests be left out for want of a system library, unless `HONAMI_SKIP=never`, as in CI.
 pub(crate) fn may_skip(what: &str) -> anyhow::Result<()> {
     let never = std::env::var_os("HONAMI_SKIP").is_some_and(|value| value == "never");

@@ -38,7 +38,8 @@ pub(super) fn manual(folder: &Path) -> anyhow::Result<Answer> {
 /// What this machine has.
 pub(super) fn doctor(common: &Common) -> Answer {
     let registry = super::options(common).registry();
-    let findings = doctor::examine(&registry);
+    let mut findings = doctor::examine(&registry);
+    findings.push(crate::viewer::finding());
     let mut rows = Vec::new();
     for finding in &findings {
         let mark = if finding.there { "ok" } else { "--" };
