@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Parser;
 
+use crate::skeleton::Part;
 use crate::target::Size;
 
 /// Frames per second where nothing else is said or known.
@@ -46,6 +47,9 @@ pub struct Args {
     /// The camera goes so far round while it is filmed.
     #[arg(long, value_name = "DEG", default_value = "0", allow_negative_numbers = true, value_parser = finite)]
     pub turn: f32,
+    /// What to draw of a skeleton [default: all but ellipsoids].
+    #[arg(long, value_name = "PARTS", value_delimiter = ',')]
+    pub parts: Vec<Part>,
     /// Draw with the adapter that has this in its name.
     #[arg(long, value_name = "NAME")]
     pub adapter: Option<String>,

@@ -9,6 +9,7 @@ pub mod gpu;
 pub mod lens;
 pub mod offscreen;
 pub mod shaders;
+pub mod skeleton;
 pub mod target;
 #[cfg(test)]
 mod testing;
@@ -23,6 +24,7 @@ use args::Args;
 use forest::{By, ForestPicture};
 use gpu::Gpu;
 use offscreen::Picture;
+use skeleton::{Part, SkeletonPicture};
 
 /// Does what is asked for.
 ///
@@ -35,18 +37,27 @@ pub fn run(args: &Args) -> anyhow::Result<()> {
     let (Some(path), Some(out)) = (&args.scene, &args.offscreen) else { return Ok(()) };
     let scene = honami_scene::file::read(path)?;
     let gpu = Gpu::open(args.adapter.as_deref())?;
-    offscreen::run(&gpu, &mut *picture(&gpu, scene, args.cpu)?, out, args)
+    offscreen::run(&gpu, &mut *picture(&gpu, scene, args)?, out, args)
 }
 
 /// What draws a scene.
-fn picture(gpu: &Gpu, scene: Scene, is_cpu: bool) -> anyhow::Result<Box<dyn Picture>> {
+fn picture(gpu: &Gpu, scene: Scene, args: &Args) -> anyhow::Result<Box<dyn Picture>> {
     match scene {
         Scene::Forest(scene) => {
-            let by = if is_cpu { By::Processor } else { By::best(gpu, &scene) };
+            let by = if args.cpu { By::Processor } else { By::best(gpu, &scene) };
             Ok(Box::new(ForestPicture::new(gpu, *scene, by)?))
         }
-        Scene::Skeleton(_) => bail!("this viewer draws forests only"),
+        Scene::Skeleton(scene) => {
+            let picture = SkeletonPicture::new(*scene, Part::these(&args.parts));
+            picture.without_clip.iter().for_each(|why| say(why));
+            Ok(Box::new(picture))
+        }
     }
+}
+
+/// One line on standard error; nobody left to hear it is no reason to fail.
+fn say(line: &str) {
+    writeln!(std::io::stderr(), "honami-viewer: {line}").unwrap_or_default();
 }
 
 /// The adapters there are, the one that would be used first.

@@ -1,12 +1,13 @@
 //! Shaders by their names, with what several of them share.
 
 /// Files in the folder beside this one.
-const FILES: [(&str, &str); 6] = [
+const FILES: [(&str, &str); 7] = [
     ("copies", include_str!("shaders/copies.wgsl")),
     ("cull", include_str!("shaders/cull.wgsl")),
     ("forest", include_str!("shaders/forest.wgsl")),
     ("light", include_str!("shaders/light.wgsl")),
     ("pose", include_str!("shaders/pose.wgsl")),
+    ("skeleton", include_str!("shaders/skeleton.wgsl")),
     ("step", include_str!("shaders/step.wgsl")),
 ];
 

@@ -1,0 +1,218 @@
+//! Skeletons: bones in the colours of their groups, over the clip that they were found in, or in space.
+
+mod drawn;
+mod lens;
+mod pipelines;
+#[cfg(test)]
+mod tests;
+
+use std::collections::BTreeSet;
+
+use honami_media::{Media, OpenOptions, Rect};
+use honami_scene::control::Chosen;
+use honami_scene::{Orbit, SkeletonScene};
+
+use self::drawn::Drawn;
+use self::lens::Lens;
+use self::pipelines::Pipelines;
+use crate::gpu::Gpu;
+use crate::offscreen::{Picture, Shot};
+use crate::target::Target;
+
+/// Between the upper and the lower edge of the clip, radians.
+const ANGLE: f32 = 0.5;
+
+/// A part of the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, clap::ValueEnum)]
+pub enum Part {
+    /// Bones and joints.
+    Bones,
+    /// Ellipsoids about groups.
+    Ellipsoids,
+    /// Tracks that joints carry.
+    Leaves,
+    /// Where tips have been during the last second.
+    Trails,
+    /// The frame of the clip, from the front.
+    Clip,
+    /// Copies round the plant.
+    Copies,
+}
+
+impl Part {
+    /// All of them, in the order in which they are listed.
+    pub const ALL: [Self; 6] =
+        [Self::Bones, Self::Ellipsoids, Self::Leaves, Self::Trails, Self::Clip, Self::Copies];
+
+    /// These, or the usual ones where none are named.
+    #[must_use]
+    pub fn these(named: &[Self]) -> BTreeSet<Self> {
+        if named.is_empty() { Self::usual() } else { named.iter().copied().collect() }
+    }
+
+    /// Those that are shown unless told otherwise.
+    #[must_use]
+    pub fn usual() -> BTreeSet<Self> {
+        Self::ALL.into_iter().filter(|part| *part != Self::Ellipsoids).collect()
+    }
+
+    /// As it is called.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Bones => "bones",
+            Self::Ellipsoids => "ellipsoids",
+            Self::Leaves => "leaves",
+            Self::Trails => "trails",
+            Self::Clip => "clip",
+            Self::Copies => "copies",
+        }
+    }
+}
+
+/// A skeleton that is drawn.
+pub struct SkeletonPicture {
+    /// What it is.
+    pub scene: SkeletonScene,
+    /// What of it is drawn.
+    pub parts: BTreeSet<Part>,
+    /// What is chosen.
+    pub chosen: Option<Chosen>,
+    /// Why the clip is not behind it, though it should be.
+    pub without_clip: Option<String>,
+    media: Option<Media>,
+    /// The clip's frame that is on the card.
+    on_card: Option<u32>,
+    /// What draws, for targets with so many samples.
+    pipelines: Option<(u32, Pipelines)>,
+}
+
+impl SkeletonPicture {
+    /// A skeleton with some of its parts, over its clip where that is to be had.
+    #[must_use]
+    pub fn new(scene: SkeletonScene, parts: BTreeSet<Part>) -> Self {
+        let (media, without_clip) = match open(&scene) {
+            Ok(media) => (media, None),
+            Err(why) => (None, Some(why)),
+        };
+        Self { scene, parts, chosen: None, without_clip, media, on_card: None, pipelines: None }
+    }
+
+    /// Another skeleton of the same clip takes its place.
+    pub fn take(&mut self, scene: SkeletonScene) {
+        if scene.clip != self.scene.clip {
+            *self = Self { chosen: self.chosen, ..Self::new(scene, std::mem::take(&mut self.parts)) };
+            return;
+        }
+        self.scene = scene;
+    }
+
+    /// The row of its own frames that is shown so many seconds from its first.
+    #[must_use]
+    pub fn row_at(&self, time: f64) -> usize {
+        let times = &self.scene.times;
+        let after = times.partition_point(|at| *at <= time);
+        match after {
+            0 => 0,
+            after if after < times.len() && times[after] - time < time - times[after - 1] => after,
+            after => after - 1,
+        }
+    }
+
+    /// How places are seen in a picture.
+    fn lens(&self, shot: &Shot, target: &Target) -> Lens {
+        let clip = &self.scene.clip;
+        Lens::new(&shot.camera, target.aspect(), clip.width as f32 / clip.height as f32)
+    }
+
+    /// Where a place is seen in a picture, pixels from its upper left corner; `None` behind the eye.
+    #[must_use]
+    pub fn seen(&self, shot: &Shot, target: &Target, place: [f32; 3]) -> Option<[f32; 2]> {
+        let size = target.size();
+        let [right, up] = self.lens(shot, target).seen(place)?;
+        Some([(right + 1.0) / 2.0 * size.width as f32, (1.0 - up) / 2.0 * size.height as f32])
+    }
+
+    /// Puts a frame of the clip on the card, as large as the picture needs it.
+    fn film(&mut self, gpu: &Gpu, target: &Target, frame: u32) -> anyhow::Result<()> {
+        let (Some(media), Some((_, pipelines))) = (&self.media, &mut self.pipelines) else { return Ok(()) };
+        if self.on_card == Some(frame) {
+            return Ok(());
+        }
+        let clip = &self.scene.clip;
+        let share = (f64::from(target.size().height) / f64::from(clip.height)).min(1.0);
+        let [width, height] =
+            [clip.width, clip.height].map(|side| (f64::from(side) * share).round().max(1.0) as u32);
+        let pixels = media.rgb_area(frame, Rect::whole(clip.width, clip.height), width, height)?;
+        pipelines.show_film(gpu, &pixels, width, height);
+        self.on_card = Some(frame);
+        Ok(())
+    }
+}
+
+impl Picture for SkeletonPicture {
+    fn orbit(&self) -> Orbit {
+        front(&self.scene)
+    }
+
+    fn filmed(&self) -> Option<(f64, u32)> {
+        let times = &self.scene.times;
+        let long = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
+        let fps = if long > 0.0 { (times.len() - 1) as f64 / long } else { crate::args::FPS };
+        Some((fps, u32::try_from(times.len()).unwrap_or(u32::MAX)))
+    }
+
+    fn draw(&mut self, gpu: &Gpu, target: &Target, shot: &Shot) -> anyhow::Result<()> {
+        let samples = target.size().samples;
+        if self.pipelines.as_ref().is_none_or(|(of, _)| *of != samples) {
+            self.pipelines = Some((samples, Pipelines::new(gpu, samples)));
+            self.on_card = None;
+        }
+        let row = self.row_at(shot.time);
+        let lens = self.lens(shot, target);
+        let is_filmed = self.media.is_some() && self.parts.contains(&Part::Clip) && lens.depth < 1.0;
+        if is_filmed {
+            self.film(gpu, target, self.scene.first_frame + row as u32)?;
+        }
+        let drawn = Drawn::of(self, row, &lens, target, is_filmed);
+        if let Some((_, pipelines)) = &self.pipelines {
+            pipelines.draw(gpu, target, &drawn);
+        }
+        Ok(gpu.check()?)
+    }
+}
+
+/// From the front, as high as the clip. The middle of its upper left pixel is where it begins to count.
+#[must_use]
+pub fn front(scene: &SkeletonScene) -> Orbit {
+    let (width, height) = (scene.clip.width as f32, scene.clip.height as f32);
+    Orbit {
+        target: [(width - 1.0) / 2.0, 0.0, (1.0 - height) / 2.0],
+        distance: height / 2.0 / (ANGLE / 2.0).tan(),
+        azimuth: 0.0,
+        elevation: 0.0,
+        angle: ANGLE,
+    }
+}
+
+/// The clip where there is one, and why it is not behind where it does not open.
+fn open(scene: &SkeletonScene) -> Result<Option<Media>, String> {
+    let Some(path) = &scene.clip.path else { return Ok(None) };
+    let options = OpenOptions { fps: scene.clip.fps, ..OpenOptions::default() };
+    let media =
+        honami_media::open(path, &options).map_err(|error| format!("the clip is not shown: {error}"))?;
+    let (clip, film) = (media.clip(), &scene.clip);
+    match (clip.width, clip.height) == (film.width, film.height) && clip.n_frames() >= film.n_frames {
+        true => Ok(Some(media)),
+        false => Err(format!(
+            "the clip is not shown: {} has {} frames of {}x{}, and {} of {}x{} were wanted",
+            path.display(),
+            clip.n_frames(),
+            clip.width,
+            clip.height,
+            film.n_frames,
+            film.width,
+            film.height
+        )),
+    }
+}
