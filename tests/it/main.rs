@@ -36,4 +36,5 @@ mod simulated;
 mod stopped;
 mod tidy;
 mod trax;
+mod view;
 mod wrong;

@@ -29,8 +29,8 @@ cargo xtask <command>
 /// How they are built to be used.
 const BUILD: &[&str] = &["build", "--release"];
 
-/// All packages but the one that needs OpenCV, in one build: what they share is then built once.
-const ALL: [&str; 3] = ["--workspace", "--exclude", "honami-tracker-opencv"];
+/// The package that is built apart, for it takes minutes.
+const VIEWER: [&str; 2] = ["-p", "honami-viewer"];
 
 /// The packages of a working installation: the program and what the demo uses of the plugins.
 const DEMO: [&str; 8] =
@@ -69,7 +69,7 @@ fn main() -> ExitCode {
 fn demo(args: &[&str]) -> anyhow::Result<()> {
     system::need_compiler()?;
     if args == ["--viewer"] {
-        cargo(BUILD).args(DEMO).args(["-p", "honami-viewer"]).run()?;
+        cargo(BUILD).args(DEMO).args(VIEWER).run()?;
         return viewer();
     }
     cargo(BUILD).args(DEMO).run()?;
@@ -100,17 +100,20 @@ fn test(args: &[&str]) -> anyhow::Result<()> {
     if args.is_empty() && peers.is_none() {
         system::may_skip("what OpenSees, readers of rigs and glTF's validator say")?;
     }
-    let all: &[&str] = if args.is_empty() { &ALL } else { &[] };
+    // The end-to-end tests run the real programs with the real plugins: build them first.
+    cargo(&["build"]).run()?;
     if args.is_empty() {
         system::want_drawing()?;
+        cargo(&["build"]).args(VIEWER).run()?;
     }
-    // The end-to-end tests run the real programs with the real plugins: build them first.
-    cargo(&["build"]).args(all.iter().copied()).run()?;
     if let Some(opencv) = &opencv {
         opencv.cargo(&["build"]).run()?;
     }
-    let tests = cargo(&["test"]).args(all.iter().copied()).args(args.iter().copied());
+    let tests = cargo(&["test"]).args(args.iter().copied());
     peers.unwrap_or_default().into_iter().fold(tests, |tests, (name, value)| tests.env(name, value)).run()?;
+    if args.is_empty() {
+        cargo(&["test"]).args(VIEWER).run()?;
+    }
     opencv.map_or(Ok(()), |opencv| opencv.cargo(&["test"]).run())
 }
 
@@ -119,8 +122,10 @@ fn lint() -> anyhow::Result<()> {
     cargo(&["fmt", "--all", "--check"]).run()?;
     let clippy = ["clippy", "--all-targets", "--", "-D", "warnings"];
     let doc = ["doc", "--no-deps", "--document-private-items"];
-    cargo(&clippy[..1]).args(ALL).args(clippy[1..].iter().copied()).run()?;
-    cargo(&doc).args(ALL).env("RUSTDOCFLAGS", "-D warnings").run()?;
+    cargo(&clippy).run()?;
+    cargo(&["clippy"]).args(VIEWER).args(clippy[1..].iter().copied()).run()?;
+    cargo(&doc).env("RUSTDOCFLAGS", "-D warnings").run()?;
+    cargo(&doc).args(VIEWER).env("RUSTDOCFLAGS", "-D warnings").run()?;
     let Some(opencv) = opencv::Kit::find() else {
         eprintln!("skipped: OpenCV's trackers, because OpenCV is not there (`cargo xtask opencv` gets it)");
         return system::may_skip("OpenCV's trackers");

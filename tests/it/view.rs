@@ -1,0 +1,100 @@
+//! `honami view`: forests drawn by the real viewer, and what is said where they cannot be.
+
+use std::fs;
+use std::path::Path;
+
+use honami_tests::{Bench, missing, program};
+
+/// Whether the viewer was built and can draw; says what is skipped if not.
+fn can_draw(bench: &Bench) -> bool {
+    let viewer = program().with_file_name("honami-viewer");
+    if !viewer.exists() {
+        missing("viewer (cargo build -p honami-viewer)");
+        return false;
+    }
+    let findings = bench.json("doctor")["findings"].clone();
+    let there = findings.as_array().unwrap().iter().find(|finding| finding["what"] == "viewer").unwrap();
+    if there["there"] != true {
+        missing("driver to draw with (apt-get install mesa-vulkan-drivers)");
+        return false;
+    }
+    assert!(there["found"].as_str().unwrap().starts_with("draws with "), "{there}");
+    true
+}
+
+/// Width and height, from the head of a PNG.
+fn size(png: &Path) -> [u32; 2] {
+    let bytes = fs::read(png).unwrap();
+    assert!(bytes.starts_with(b"\x89PNG"), "{}", png.display());
+    [16, 20].map(|at| u32::from_be_bytes(bytes[at..at + 4].try_into().unwrap()))
+}
+
+#[test]
+fn a_forest_is_drawn_into_a_file_and_the_same_again() {
+    let bench = Bench::new();
+    if !can_draw(&bench) {
+        return;
+    }
+    let line = "view synth::tree:60,1 --forest 4 --wind storm --frames 3 --size 160x90 --offscreen";
+    let said = bench.json(&format!("{line} a.png"));
+    assert_eq!((&said["out"], &said["size"]), (&"a.png".into(), &serde_json::json!([160, 90])));
+    assert!(said["forest"].as_str().unwrap().starts_with("4 plants of 60 nodes with "), "{said}");
+    assert_eq!(size(&bench.path("a.png")), [160, 90]);
+    bench.text(&format!("{line} b.png"));
+    assert!(fs::read(bench.path("a.png")).unwrap() == fs::read(bench.path("b.png")).unwrap());
+    bench.text(&format!("{line} frames/"));
+    assert_eq!(fs::read_dir(bench.path("frames")).unwrap().count(), 3);
+    // Its last frame is that of the image; and what moved is elsewhere in the first.
+    let frames: Vec<_> =
+        fs::read_dir(bench.path("frames")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let (first, last) = (frames.iter().min().unwrap(), frames.iter().max().unwrap());
+    assert!(fs::read(first).unwrap() != fs::read(last).unwrap());
+    // Nothing of the scene is left among the caches.
+    let left = fs::read_dir(bench.path("XDG_CACHE_HOME/honami")).map_or(0, |left| {
+        left.filter(|entry| entry.as_ref().unwrap().file_name().to_string_lossy().starts_with("scene-"))
+            .count()
+    });
+    assert_eq!(left, 0);
+}
+
+/// Each: what is typed, what is said, and how it exits.
+#[test]
+fn what_cannot_be_shown_is_said() {
+    let bench = Bench::new();
+    fs::write(bench.path("notes.mtg"), "nothing").unwrap();
+    let cases = [
+        ("view synth::tree:60,1", "--offscreen OUT is wanted where there is no terminal", 2),
+        ("view synth::tree:60,1 --terminal", "--offscreen OUT is wanted where there is no terminal", 2),
+        ("view synth::tree:60,1 --leaf-length 0 --offscreen a.png", "a leaf is 0.0001 to 10.0 m long", 2),
+        ("view synth::tree:60,1 --forest 0 --offscreen a.png", "wanted 1 to 10000000 copies, got 0", 2),
+        (
+            "view synth::tree:60,1 skeleton --offscreen a.png",
+            "has no skeleton: a project (.honami) is wanted",
+            2,
+        ),
+        ("view p.honami --terminal", "a skeleton is shown in the terminal by v k", 2),
+    ];
+    for (line, said, code) in cases {
+        let ran = bench.line(line);
+        assert_eq!(ran.code, Some(code), "{line}: {ran:?}");
+        assert!(ran.stderr.contains(said), "{line}: {}", ran.stderr);
+    }
+    assert!(!bench.path("a.png").exists());
+    if !can_draw(&bench) {
+        return;
+    }
+    let cases = [
+        ("view notes.mtg --offscreen a.png", "notes.mtg", 1),
+        ("view away.mtg --offscreen a.png", "away.mtg", 1),
+        ("view synth::tree:60,1 --wind breeze --offscreen a.png", "\"breeze\" is no wind and no file", 2),
+        ("view synth::tree:60,1 --adapter Voodoo --offscreen a.png", "no adapter is called \"Voodoo\"", 1),
+        ("view synth::tree:60,1 --offscreen a.gif", "not .gif", 1),
+        ("view synth::tree:60,1 --offscreen nowhere/a.png", "nowhere", 1),
+    ];
+    for (line, said, code) in cases {
+        let ran = bench.line(line);
+        assert_eq!(ran.code, Some(code), "{line}: {ran:?}");
+        assert!(ran.stderr.contains(said), "{line}: {}", ran.stderr);
+    }
+    assert!(!bench.path("a.png").exists() && !bench.path("a.gif").exists());
+}
