@@ -15,6 +15,7 @@ mod grow;
 mod help;
 mod keys;
 mod log;
+mod movie;
 mod project;
 mod replay;
 mod report;
@@ -200,7 +201,7 @@ fn run(command: Command, common: &Common) -> anyhow::Result<Outcome> {
         Command::Components(args) => components::components(&args)?,
         Command::Spectrum(args) => spectrum::spectrum(&args)?,
         Command::Simulate(args) => simulate::simulate(&args, common)?,
-        Command::Export(args) => exchange::export(&args)?,
+        Command::Export(args) => exchange::export(&args, common)?,
         Command::Import(args) => exchange::import(&args)?,
         Command::Synth(args) => synth::synth(&args, common)?,
         Command::Demo(args) => return synth::demo(&args, common),

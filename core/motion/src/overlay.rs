@@ -9,6 +9,7 @@
 mod dense;
 
 use std::f64::consts::{PI, TAU};
+use std::ops::Range;
 
 use honami_model::clip::FrameTimes;
 use honami_model::track::Span;
@@ -19,6 +20,8 @@ pub use dense::{VelocityField, paint_field};
 const DISC: (f64, f64) = (1.5, 6.0);
 /// So many velocities tell what is usual.
 const ENOUGH: usize = 20_000;
+/// Rows that are painted together.
+const BAND: usize = 64;
 /// The usual speed is one that so many of all velocities do not pass.
 const USUAL: f64 = 0.9;
 
@@ -137,29 +140,38 @@ pub fn disc_radius(n_discs: usize, n_pixels: usize) -> f64 {
 ///
 /// `radius` is across and down, pixels: those of a screen need not be square.
 pub fn paint_discs(pixels: &mut [[u8; 3]], columns: usize, discs: &[Disc], radius: [f64; 2]) {
-    let rows = pixels.len() / columns.max(1);
-    let mut sums = vec![[0.0_f64; 5]; pixels.len()];
+    // Sums of a few rows at a time: those of a large picture are five times as large as it.
+    let mut sums = vec![[0.0_f64; 5]; BAND * columns];
+    for (band, pixels) in pixels.chunks_mut((BAND * columns).max(1)).enumerate() {
+        let top = band * BAND;
+        sums.fill([0.0; 5]);
+        add(&mut sums, columns, top..top + pixels.len() / columns, discs, radius);
+        for (pixel, [r, g, b, weight, alpha]) in pixels.iter_mut().zip(&sums) {
+            if *weight > 0.0 {
+                *pixel = blended(*pixel, [r, g, b].map(|sum| sum / weight), *alpha);
+            }
+        }
+    }
+}
+
+/// Adds up discs in some rows: colours by weight, weights, and the largest of these.
+fn add(sums: &mut [[f64; 5]], columns: usize, rows: Range<usize>, discs: &[Disc], radius: [f64; 2]) {
     for disc in discs {
-        let reach = |axis: usize, n: usize| {
+        let reach = |axis: usize, n: Range<usize>| {
             let first = (disc.at[axis] - radius[axis]).ceil().max(0.0) as usize;
             let end = (disc.at[axis] + radius[axis] + 1.0).floor().max(0.0) as usize;
-            first..end.min(n)
+            first.max(n.start)..end.min(n.end)
         };
-        for y in reach(1, rows) {
-            for x in reach(0, columns) {
+        for y in reach(1, rows.clone()) {
+            for x in reach(0, 0..columns) {
                 let apart = [x as f64 - disc.at[0], y as f64 - disc.at[1]];
                 let r2 = (apart[0] / radius[0]).powi(2) + (apart[1] / radius[1]).powi(2);
                 let weight = disc.tint.alpha * (1.0 - r2).max(0.0);
-                let sum = &mut sums[y * columns + x];
+                let sum = &mut sums[(y - rows.start) * columns + x];
                 (0..3).for_each(|c| sum[c] += weight * f64::from(disc.tint.rgb[c]));
                 sum[3] += weight;
                 sum[4] = sum[4].max(weight);
             }
-        }
-    }
-    for (pixel, [r, g, b, weight, alpha]) in pixels.iter_mut().zip(sums) {
-        if weight > 0.0 {
-            *pixel = blended(*pixel, [r, g, b].map(|sum| sum / weight), alpha);
         }
     }
 }

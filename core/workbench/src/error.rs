@@ -156,6 +156,16 @@ pub enum WorkbenchError {
         /// Frames of the clip.
         n_frames: u32,
     },
+    /// A movie that is too small or too large.
+    #[error(
+        "a movie is 16 to 8192 pixels wide and high, not {width} x {height}: choose another --size or --scale"
+    )]
+    MovieSize {
+        /// What came, pixels.
+        width: f64,
+        /// What came, pixels.
+        height: f64,
+    },
     /// A point lies outside the clip.
     #[error(
         "point {id} at ({x}, {y}) in frame {frame} is not in the clip of {width}x{height} and {n_frames} frames"
@@ -730,7 +740,8 @@ impl WorkbenchError {
         }
         matches!(
             self,
-            Self::NoPlant { .. }
+            Self::MovieSize { .. }
+                | Self::NoPlant { .. }
                 | Self::Frames { .. }
                 | Self::Groups { .. }
                 | Self::NoSuchTracks

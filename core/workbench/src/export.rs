@@ -68,7 +68,7 @@ pub fn text(out: &Path, text: &str) -> Result<(), WorkbenchError> {
 /// # Errors
 /// [`WorkbenchError::NoTracks`], [`WorkbenchError::NoSuchTracks`], and what the project or the disk met.
 pub fn tracks(project: &Project, out: &Path, request: &ExportRequest) -> Result<Exported, WorkbenchError> {
-    let shown = chosen(project, request)?;
+    let shown = chosen(project, request.tracks.as_ref(), request.groups.as_ref())?;
     let document = project.document();
     let called = |id: TrackId| document.track(id).and_then(|track| track.name.clone());
     let foreign: Vec<ForeignTrack> = shown
@@ -103,17 +103,24 @@ pub fn tracks(project: &Project, out: &Path, request: &ExportRequest) -> Result<
     })
 }
 
-/// The shown tracks that are wanted.
-fn chosen(project: &Project, request: &ExportRequest) -> Result<Vec<(TrackId, Arc<Span>)>, WorkbenchError> {
+/// The shown tracks, or those of them that are wanted, by their numbers or by their groups', which count from 1.
+///
+/// # Errors
+/// [`WorkbenchError::NoTracks`], [`WorkbenchError::NoSuchTracks`], [`WorkbenchError::NoGroups`], and what the project met.
+pub(crate) fn chosen(
+    project: &Project,
+    tracks: Option<&TrackSet>,
+    groups: Option<&BTreeSet<u32>>,
+) -> Result<Vec<(TrackId, Arc<Span>)>, WorkbenchError> {
     let mut shown = project.shown_all()?;
     if shown.is_empty() {
         return Err(WorkbenchError::NoTracks);
     }
-    if let Some(groups) = &request.groups {
+    if let Some(groups) = groups {
         let grouping = project.grouping()?.ok_or(WorkbenchError::NoGroups)?;
         shown.retain(|(id, _)| grouping.group_of.get(id).is_some_and(|group| groups.contains(&(group + 1))));
     }
-    shown.retain(|(id, _)| request.tracks.as_ref().is_none_or(|wanted| wanted.contains(*id)));
+    shown.retain(|(id, _)| tracks.is_none_or(|wanted| wanted.contains(*id)));
     if shown.is_empty() { Err(WorkbenchError::NoSuchTracks) } else { Ok(shown) }
 }
 

@@ -17,6 +17,7 @@ pub mod generate;
 mod ground;
 pub mod grow;
 pub mod import;
+pub mod movie;
 pub mod offer;
 pub mod plant;
 pub mod plots;

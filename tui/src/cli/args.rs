@@ -10,6 +10,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use honami_model::track::{TrackId, TrackSet};
 use honami_workbench::export::BOX_PX;
 use honami_workbench::foreign::Format;
+use honami_workbench::movie::Layer;
 use honami_workbench::origin::Origin;
 
 /// Measures how plants move.
@@ -309,7 +310,8 @@ pub(super) struct Export {
     pub(super) project: PathBuf,
     /// What to write.
     pub(super) what: ExportWhat,
-    /// File to write; its ending names the format: .csv, .parquet, .npz, .txt (MOTChallenge).
+    /// File to write; its ending names the format: .csv, .parquet, .npz, .txt (MOTChallenge); of a movie .mp4 (by ffmpeg),
+    /// .y4m, or a new folder for PNG images.
     pub(super) out: PathBuf,
     /// csv, parquet, cvat, deeplabcut, dltdv, trackmate, tapvid or mot.
     #[arg(long, value_name = "F")]
@@ -329,6 +331,34 @@ pub(super) struct Export {
     /// MOTChallenge: side of the box around a point, pixels.
     #[arg(long = "box", value_name = "PX", default_value_t = BOX_PX)]
     pub(super) box_px: f64,
+    #[command(flatten)]
+    pub(super) movie: Movie,
+}
+
+/// What a movie is to show.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Movies")]
+pub(super) struct Movie {
+    /// What is drawn over the clip: tracks, trails, groups (an ellipse round 95 % of each), skeleton, motion (colours of
+    /// velocities), arrows, labels (numbers and names of groups), time (default: tracks, trails, and the skeleton where one
+    /// grows).
+    #[arg(long, value_name = "WHAT,…", value_delimiter = ',')]
+    pub(super) show: Vec<Layer>,
+    /// Frames of the clip, the last one excluded (default: all).
+    #[arg(long, value_name = "A..B")]
+    pub(super) frames: Option<FrameRange>,
+    /// Size of the movie, pixels: the picture keeps its shape, with black beside it.
+    #[arg(long, value_name = "WxH", conflicts_with = "scale")]
+    pub(super) size: Option<Size>,
+    /// So many times as wide and as high as the clip (default: 1).
+    #[arg(long, value_name = "F", allow_negative_numbers = true)]
+    pub(super) scale: Option<f64>,
+    /// Frames a second of the movie: fewer than of the clip is slow motion (default: as filmed).
+    #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = frames_per_second)]
+    pub(super) fps: Option<f64>,
+    /// How long trails are, seconds of the clip (default: 0.5).
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = seconds)]
+    pub(super) trail: Option<f64>,
 }
 
 #[derive(Args, Debug)]
@@ -368,6 +398,9 @@ pub(super) enum ExportWhat {
     Verdicts,
     /// What the review of every track has taken: track,segments,keystrokes,key_frames,seconds.
     Effort,
+    /// The clip with what was measured drawn over it. Filled marks were measured, hollow ones predicted or put between, crosses
+    /// are where a track was lost; key-frames have a ring.
+    Movie,
 }
 
 #[derive(Args, Debug)]

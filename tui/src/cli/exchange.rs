@@ -11,9 +11,9 @@ use honami_workbench::review;
 use honami_workbench::store::{Access, Project};
 use serde_json::json;
 
-use super::args::{Export, ExportWhat, Import, Size};
+use super::args::{Common, Export, ExportWhat, Import, Size};
 use super::report::Bar;
-use super::{Answer, look, there, want};
+use super::{Answer, look, movie, there, want};
 
 /// Reads somebody else's tracks into a project.
 pub(super) fn import(args: &Import) -> anyhow::Result<Answer> {
@@ -77,12 +77,16 @@ pub(super) fn import(args: &Import) -> anyhow::Result<Answer> {
 }
 
 /// Writes what was asked for.
-pub(super) fn export(args: &Export) -> anyhow::Result<Answer> {
+pub(super) fn export(args: &Export, common: &Common) -> anyhow::Result<Answer> {
     want(args.out != Path::new("-"), || {
         "export writes a file that is whole or not there, never to standard output: name one instead of -"
             .to_owned()
     })?;
+    if args.what != ExportWhat::Movie {
+        movie::refuse(&args.movie)?;
+    }
     match args.what {
+        ExportWhat::Movie => movie::movie(args, common),
         ExportWhat::Tracks => tracks(args),
         ExportWhat::Groups => groups(args),
         ExportWhat::Verdicts => of_review(args, review::tables::verdicts, "verdicts"),

@@ -30,7 +30,10 @@ impl Mp4 {
     pub fn create(path: &Path, format: &Format) -> Result<Self, MediaError> {
         format.check()?;
         if programs::ffmpeg_version().is_none() {
-            return Err(MediaError::NeedsFfmpeg { path: path.to_path_buf(), what: "writing MP4".to_owned() });
+            return Err(MediaError::NeedsFfmpeg {
+                path: path.to_path_buf(),
+                what: "writing MP4, unlike .y4m or a folder of images,".to_owned(),
+            });
         }
         let unfinished = Unfinished::beside(path);
         let (pixels, range) = match format.range {

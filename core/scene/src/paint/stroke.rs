@@ -28,10 +28,10 @@ impl Canvas {
         self.joined(points, width, ink, |_| 1.0);
     }
 
-    /// The same, fading: all of the ink at the last point, nothing at the first.
-    pub fn trail(&mut self, points: &[Point], width: f64, ink: Ink) {
-        let last = points.len().saturating_sub(1).max(1) as f64;
-        self.joined(points, width, ink, |place| place / last);
+    /// The same, fading: so much of the ink at the first point, and so much at the last, 0 to 1.
+    pub fn trail(&mut self, points: &[Point], width: f64, ink: Ink, [first, last]: [f64; 2]) {
+        let steps = points.len().saturating_sub(1).max(1) as f64;
+        self.joined(points, width, ink, |place| first + (last - first) * place / steps);
     }
 
     /// A line to where something goes, with a head; of a way that is shorter than the head, a smaller head alone.

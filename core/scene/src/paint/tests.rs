@@ -125,7 +125,7 @@ fn ink_lies_over_the_picture_and_once_where_lines_join() {
 #[test]
 fn trails_fade_to_where_they_began() {
     let trail = drawn([12, 1], |c| {
-        c.trail(&[[0.0, 0.0], [4.0, 0.0], [8.0, 0.0]], 1.0, WHITE);
+        c.trail(&[[0.0, 0.0], [4.0, 0.0], [8.0, 0.0]], 1.0, WHITE, [0.0, 1.0]);
     });
     let want: Vec<u8> = (0..=8).map(|x| (255.0 / 8.0 * f64::from(x)).round() as u8).collect();
     assert_eq!(rows(&trail)[0][..9], want);
