@@ -1,22 +1,48 @@
-//! The viewer, a program of its own beside this one: found, and had draw scenes.
+//! The viewer, a program of its own beside this one: found, had draw scenes, told what to show, and heard.
 
 #[cfg(test)]
 mod tests;
 
 use std::ffi::OsString;
+use std::io::{BufRead as _, BufReader, Write as _};
 use std::os::unix::process::ExitStatusExt as _;
 use std::path::{Path, PathBuf};
-use std::process::{Command, ExitStatus, Stdio};
+use std::process::{Child, ChildStdin, ChildStdout, Command, ExitStatus, Stdio};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use anyhow::{Context as _, ensure};
 use honami_model::unfinished::Unfinished;
 use honami_workbench::doctor::Finding;
 use honami_workbench::media;
+use honami_workbench::scene::control::{self, Event, Garbled};
 use honami_workbench::scene::{Scene, file};
 use tempfile::TempDir;
 
 /// What it is called.
 const NAME: &str = "honami-viewer";
+
+/// What a viewer has said, or that it has ended.
+#[derive(Debug)]
+pub(crate) enum Heard {
+    /// Something.
+    Said(Event),
+    /// Nothing that is known.
+    Garbled(Garbled),
+    /// It is gone; how, where that was not as it should.
+    Ended(Option<String>),
+}
+
+/// Who tells a viewer what to do. The viewer ends when the last of these goes.
+#[derive(Clone, Debug)]
+pub(crate) struct Teller(Arc<Mutex<ChildStdin>>);
+
+impl Teller {
+    /// Writes lines. A viewer that has gone hears nothing, which its end tells.
+    pub(crate) fn tell(&self, lines: &str) {
+        let mut pipe = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        pipe.write_all(lines.as_bytes()).and_then(|()| pipe.flush()).unwrap_or_default();
+    }
+}
 
 /// The viewer's file.
 ///
@@ -54,6 +80,37 @@ pub(crate) fn have(args: &[OsString]) -> anyhow::Result<()> {
         command(&program, args).stdin(Stdio::null()).spawn().with_context(|| starting(&program))?;
     let status = child.wait().with_context(|| starting(&program))?;
     ending(status).map_or(Ok(()), |how| Err(anyhow::anyhow!(how)))
+}
+
+/// Starts the viewer's window; what it says comes to `heard`, on a thread of its own, its end last.
+///
+/// # Errors
+/// Where it is not there, or does not start.
+pub(crate) fn start(
+    args: &[OsString],
+    errors: Stdio,
+    heard: impl FnMut(Heard) + Send + 'static,
+) -> anyhow::Result<Teller> {
+    let program = program()?;
+    let mut command = command(&program, args);
+    let spawned = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(errors).spawn();
+    let mut child = spawned.with_context(|| starting(&program))?;
+    let (tell, hear) = child.stdin.take().zip(child.stdout.take()).with_context(|| starting(&program))?;
+    std::thread::Builder::new()
+        .name("viewer".to_owned())
+        .spawn(move || listen(hear, child, heard))
+        .with_context(|| starting(&program))?;
+    Ok(Teller(Arc::new(Mutex::new(tell))))
+}
+
+fn listen(hear: ChildStdout, mut child: Child, mut heard: impl FnMut(Heard)) {
+    for line in BufReader::new(hear).lines().map_while(Result::ok) {
+        heard(control::event(&line).map_or_else(Heard::Garbled, Heard::Said));
+    }
+    heard(Heard::Ended(match child.wait() {
+        Ok(status) => ending(status),
+        Err(error) => Some(format!("the viewer: {error}")),
+    }));
 }
 
 /// What this machine has of it: which adapter it would draw with.

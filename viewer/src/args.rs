@@ -17,8 +17,8 @@ pub struct Args {
     /// The scene.
     #[arg(required_unless_present = "adapters")]
     pub scene: Option<PathBuf>,
-    /// Draw into a file: .png, .mp4 (needs ffmpeg) or .y4m, else a folder of PNG images.
-    #[arg(long, value_name = "OUT", required_unless_present = "adapters")]
+    /// Draw into a file instead of a window: .png, .mp4 (needs ffmpeg) or .y4m, else a folder of PNG images.
+    #[arg(long, value_name = "OUT")]
     pub offscreen: Option<PathBuf>,
     /// Pixels.
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size)]
@@ -56,6 +56,10 @@ pub struct Args {
     /// Move a forest on the processor's cores though there is a card, as without one.
     #[arg(long)]
     pub cpu: bool,
+    /// Do what comes by standard input, a command a line, and tell on standard output what is done in the window; the end of
+    /// the input ends the window.
+    #[arg(long, conflicts_with = "offscreen")]
+    pub control: bool,
     /// List what could draw, the best first, which is what does.
     #[arg(long)]
     pub adapters: bool,

@@ -3,6 +3,7 @@
 //! [`gpu`] finds what draws, [`target`] is what is drawn on, [`offscreen`] writes what was drawn into files. What draws a
 //! scene is a [`Picture`].
 
+pub mod app;
 pub mod args;
 pub mod forest;
 pub mod gpu;
@@ -34,7 +35,8 @@ pub fn run(args: &Args) -> anyhow::Result<()> {
     if args.adapters {
         return list(args.json);
     }
-    let (Some(path), Some(out)) = (&args.scene, &args.offscreen) else { return Ok(()) };
+    let Some(path) = &args.scene else { return Ok(()) };
+    let Some(out) = &args.offscreen else { return app::run(path, args) };
     let scene = honami_scene::file::read(path)?;
     let gpu = Gpu::open(args.adapter.as_deref())?;
     offscreen::run(&gpu, &mut *picture(&gpu, scene, args)?, out, args)

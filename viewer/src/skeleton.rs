@@ -133,6 +133,30 @@ impl SkeletonPicture {
         Some([(right + 1.0) / 2.0 * size.width as f32, (1.0 - up) / 2.0 * size.height as f32])
     }
 
+    /// The place of the clip, pixels (right, down), that is seen at a place of a picture, pixels from its upper left corner: as
+    /// it is from the front.
+    #[must_use]
+    pub fn placed(&self, shot: &Shot, target: &Target, [x, y]: [f32; 2]) -> [f64; 2] {
+        let (size, lens) = (target.size(), self.lens(shot, target));
+        let (right, up) = (2.0 * x / size.width as f32 - 1.0, 1.0 - 2.0 * y / size.height as f32);
+        let eye = shot.camera.eye;
+        let place = [eye[0] + right * lens.half * target.aspect(), -(eye[2] + up * lens.half)];
+        place.map(|v| f64::from((v * 10.0).round()) / 10.0)
+    }
+
+    /// The node of the bone whose end is seen nearest to a place of a picture, within so many pixels.
+    #[must_use]
+    pub fn nearest(&self, shot: &Shot, target: &Target, at: [f32; 2], within: f32) -> Option<u32> {
+        let places = self.scene.frame(self.row_at(shot.time));
+        let joints = self.scene.joints.iter().zip(places).filter(|(joint, _)| joint.copy_of.is_none());
+        let ends = joints.filter_map(|(joint, place)| {
+            let [x, y] = self.seen(shot, target, *place)?;
+            Some(((x - at[0]).hypot(y - at[1]), joint.bone?.node))
+        });
+        let near = ends.filter(|(off, _)| *off <= within).min_by(|a, b| a.0.total_cmp(&b.0));
+        near.map(|(_, node)| node)
+    }
+
     /// Puts a frame of the clip on the card, as large as the picture needs it.
     fn film(&mut self, gpu: &Gpu, target: &Target, frame: u32) -> anyhow::Result<()> {
         let (Some(media), Some((_, pipelines))) = (&self.media, &mut self.pipelines) else { return Ok(()) };

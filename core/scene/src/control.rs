@@ -35,6 +35,8 @@ pub enum Command {
     Select(Option<Chosen>),
     /// A line for whoever looks.
     Say(String),
+    /// What the window shows is written as an image, `.png`.
+    Capture(PathBuf),
     /// The viewer ends.
     Quit,
 }
@@ -100,6 +102,8 @@ pub enum Event {
     Undo,
     /// What was taken back last is to be done again.
     Redo,
+    /// The image that was asked for is there.
+    Captured(PathBuf),
     /// Somebody has closed the window.
     Closed,
     /// Something could not be done, and why.

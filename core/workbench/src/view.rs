@@ -1,5 +1,6 @@
 //! What the viewer shows of a project: the skeleton of the shown groups, as a scene.
 
+mod edit;
 #[cfg(test)]
 mod tests;
 
@@ -13,6 +14,7 @@ use honami_scene::{SkeletonScene, palette};
 use honami_store::Project;
 use honami_structure::ellipse::Ellipse;
 
+pub use self::edit::{edit, is_edit};
 use crate::error::WorkbenchError;
 use crate::grow::{Bones, GrowRequest, grow};
 use crate::progress::Progress;

@@ -1,6 +1,7 @@
 //! `view`: scenes in the viewer's window, in the terminal, or into files.
 
 mod forest;
+mod window;
 
 use std::ffi::OsString;
 use std::path::Path;
@@ -15,7 +16,7 @@ use serde_json::json;
 
 use super::args::Common;
 use super::args::view::{View, ViewWhat};
-use super::{Answer, Outcome, Usage, grow, look, report, there, told_options, want};
+use super::{Answer, Outcome, grow, look, report, there, told_options, want};
 use crate::viewer::{self, Scenes};
 
 /// A picture is so high unless it was said how large, pixels.
@@ -34,11 +35,12 @@ pub(super) fn view(args: &View, common: &Common) -> anyhow::Result<Outcome> {
             want(!args.terminal, || {
                 format!("a skeleton is shown in the terminal by v k in `honami {}`", source.display())
             })?;
-            let out = args.offscreen.as_deref();
-            let out = out.ok_or_else(|| Usage("--offscreen OUT is wanted, what to draw into".to_owned()))?;
             viewer::program()?;
             there(source)?;
-            skeleton(args, source, out, common).map(Outcome::Answer)
+            match &args.offscreen {
+                Some(out) => skeleton(args, source, out, common).map(Outcome::Answer),
+                None => window::window(args, source, common).map(Outcome::Exit),
+            }
         }
     }
 }

@@ -19,7 +19,7 @@ pub(super) struct Lens {
     /// How much perspective there is: 0 from the front, 1 from elsewhere.
     pub(super) depth: f32,
     /// From the middle of the picture to its upper edge at what is looked at.
-    half: f32,
+    pub(super) half: f32,
 }
 
 impl Lens {

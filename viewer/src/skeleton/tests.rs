@@ -183,6 +183,14 @@ fn places_are_seen_where_they_are_drawn() {
     let shot = Shot { time: 0.0, camera: picture.orbit().camera() };
     let [x, y] = picture.seen(&shot, &target, [10.0, 33.0, -20.0]).unwrap();
     assert!((x - 31.5).abs() < 1e-2 && (y - 61.5).abs() < 1e-2, "{x} {y}");
+    let [right, down] = picture.placed(&shot, &target, [x, y]);
+    assert!(
+        (right - 10.0).abs() < 1e-6 && (down - 20.0).abs() < 1e-6,
+        "and is what is seen there: {right} {down}"
+    );
+    let tip = |x: f32, y: f32| picture.nearest(&shot, &target, [3.0 * x + 1.5, 3.0 * y + 1.5], 12.0);
+    assert_eq!((tip(21.0, 20.0), tip(70.0, 16.0), tip(48.0, 42.0)), (Some(2), Some(3), Some(4)));
+    assert_eq!((tip(30.0, 20.0), tip(48.0, 66.0)), (None, None), "too far; and the root ends no bone");
 }
 
 #[test]

@@ -26,6 +26,7 @@ fn commands_are_read_as_they_are_written_and_as_people_type_them() {
         (Command::Select(Some(Chosen::Bone(3))), r#"{"select":{"bone":3}}"#, r#"select {"bone": 3}"#),
         (Command::Select(None), r#"{"select":null}"#, "select"),
         (Command::Say("a line".into()), r#"{"say":"a line"}"#, "say a line"),
+        (Command::Capture("/tmp/a.png".into()), r#"{"capture":"/tmp/a.png"}"#, "capture /tmp/a.png"),
         (Command::Quit, r#""quit""#, "quit"),
     ] {
         assert_eq!(line(&command), format!("{written}\n"));
@@ -48,6 +49,7 @@ fn events_are_read_as_they_are_written() {
         (Event::Cut(4), r#"{"cut":4}"#),
         (Event::Undo, r#""undo""#),
         (Event::Redo, r#""redo""#),
+        (Event::Captured("a.png".into()), r#"{"captured":"a.png"}"#),
         (Event::Closed, r#""closed""#),
         (Event::Failed("why\nnot".into()), r#"{"failed":"why\nnot"}"#),
     ] {

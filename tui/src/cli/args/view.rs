@@ -32,7 +32,7 @@ pub(in crate::cli) struct View {
     /// Leave hand work on the skeleton out.
     #[arg(long)]
     pub(in crate::cli) as_grown: bool,
-    /// Draw into a file: .png, .mp4 (needs ffmpeg) or .y4m, else a folder of images, OUT/.
+    /// Draw into a file instead of a window: .png, .mp4 (needs ffmpeg) or .y4m, else a folder of images, OUT/.
     #[arg(long, value_name = "OUT")]
     pub(in crate::cli) offscreen: Option<PathBuf>,
     /// Show a forest in the terminal: keys and the mouse go round it and turn its wind.

@@ -1,0 +1,122 @@
+//! The window: what is done there are edits of the project, and what scripts say is passed on.
+
+use std::io::{BufRead as _, Write as _};
+use std::path::{Path, PathBuf};
+use std::process::{ExitCode, Stdio};
+use std::sync::mpsc::sync_channel;
+
+use anyhow::bail;
+use honami_workbench::scene::Scene;
+use honami_workbench::scene::control::{self, Command, Event, PROTOCOL};
+use honami_workbench::store::{Access, Project, StoreError};
+use honami_workbench::view;
+
+use super::{Grower, usual_size, words};
+use crate::cli::args::Common;
+use crate::cli::args::view::View;
+use crate::cli::report;
+use crate::viewer::{self, Heard, Scenes, Teller};
+
+/// Lines of the viewer that wait to be heard.
+const WAITING: usize = 256;
+
+/// Shows a window until it is closed. What is done there are edits of the project.
+pub(super) fn window(args: &View, project: &Path, common: &Common) -> anyhow::Result<ExitCode> {
+    let (project, line) = open(project)?;
+    let grower = Grower::of(args, common)?;
+    let (scene, notes) = grower.grow(&project, common)?;
+    line.iter().chain(&notes).for_each(|line| report::say(line));
+    let size = args.size.map_or_else(|| usual_size(&scene), |size| [size.width, size.height]);
+    let mut scenes = Scenes::new()?;
+    let path = scenes.write(&Scene::Skeleton(Box::new(scene)))?;
+    let (said, hear) = sync_channel(WAITING);
+    let heard = move |heard| said.send(heard).unwrap_or_default();
+    let mut words = words(args, &path, size);
+    words.push("--control".into());
+    let tell = viewer::start(&words, Stdio::inherit(), heard)?;
+    if common.json {
+        relay(tell.clone())?;
+    }
+    let mut shown = Shown { project, grower, scenes, tell, common };
+    for heard in hear {
+        match heard {
+            Heard::Said(event) => shown.hear(&event)?,
+            Heard::Garbled(garbled) => report::say(&format!("the viewer: {garbled}")),
+            Heard::Ended(None) => break,
+            Heard::Ended(Some(how)) => bail!(how),
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The project, to write, or to look where another session writes, which is said.
+fn open(path: &Path) -> anyhow::Result<(Project, Option<String>)> {
+    match Project::open(path, Access::Write) {
+        Err(locked @ StoreError::Locked { .. }) => {
+            let line = format!("{locked}; what is done in the window is not kept");
+            Ok((Project::open(path, Access::Read)?, Some(line)))
+        }
+        other => Ok((other?, None)),
+    }
+}
+
+/// Passes on to the viewer what comes by standard input, for as long as anything does.
+fn relay(tell: Teller) -> std::io::Result<()> {
+    let pass = move || {
+        for line in std::io::stdin().lock().lines().map_while(Result::ok) {
+            tell.tell(&format!("{line}\n"));
+        }
+    };
+    std::thread::Builder::new().name("relay".to_owned()).spawn(pass).map(drop)
+}
+
+/// What a window shows.
+struct Shown<'a> {
+    project: Project,
+    grower: Grower,
+    scenes: Scenes,
+    tell: Teller,
+    common: &'a Common,
+}
+
+impl Shown<'_> {
+    /// Does what is asked for, and shows what has become of it.
+    fn hear(&mut self, event: &Event) -> anyhow::Result<()> {
+        if self.common.json {
+            let mut out = std::io::stdout().lock();
+            out.write_all(control::line(event).as_bytes()).and_then(|()| out.flush())?;
+        }
+        match event {
+            Event::Ready { protocol, .. } if *protocol != PROTOCOL => {
+                bail!("the viewer is of another version of honami: build both anew")
+            }
+            Event::Failed(why) => report::say(&format!("the viewer: {why}")),
+            event if view::is_edit(event) => {
+                let line = match self.edit(event) {
+                    Ok(Some(line)) => line,
+                    Ok(None) => return Ok(()),
+                    Err(error) => report::chain(&error),
+                };
+                report::say(&line);
+                self.tell.tell(&control::line(&Command::Say(line)));
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn edit(&mut self, event: &Event) -> anyhow::Result<Option<String>> {
+        let Some(line) = view::edit(&mut self.project, event)? else { return Ok(None) };
+        // The cut that was asked for last is the one to see.
+        if let Event::Cut(_) = event {
+            self.grower.request.groups = None;
+        }
+        if let Event::Root(_) = event {
+            self.grower.request.root = None;
+        }
+        let (scene, _) = self.grower.grow(&self.project, self.common)?;
+        let path: PathBuf = self.scenes.write(&Scene::Skeleton(Box::new(scene)))?;
+        self.tell.tell(&control::line(&Command::Scene { protocol: PROTOCOL, path }));
+        Ok(Some(line))
+    }
+}
