@@ -149,6 +149,10 @@ fn adapter(program: &Path) -> Result<String, String> {
 fn command(program: &Path, args: &[OsString]) -> Command {
     let mut command = Command::new(program);
     command.args(args);
+    // Drivers complain of it where nobody has logged in, as over SSH, though they need nothing of it.
+    if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
+        command.env("XDG_RUNTIME_DIR", std::env::temp_dir());
+    }
     command
 }
 

@@ -18,6 +18,9 @@ const HEIGHT_PX: f64 = 720.0;
 /// Nothing is seen beyond so many metres, nor a plant beyond so many of its heights.
 const FARTHEST: f64 = 5000.0;
 
+/// Air that flows by itself is worked out for so many seconds; from then on it blows as it did at their end.
+const SECONDS: f64 = 120.0;
+
 /// Why a forest does not go on.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -189,12 +192,8 @@ pub fn view(camera: &Camera, aspect: f64) -> View {
 /// # Errors
 /// [`WeatherError`].
 pub fn wind(scene: &ForestScene, words: &str, most_bytes: usize) -> Result<Box<dyn Wind>, WeatherError> {
-    // Whatever flows by itself begins again after as long as it was worked out for.
     read(words)?.over(&scene.ground(SECONDS, most_bytes))
 }
-
-/// Seconds for which air that flows is worked out.
-const SECONDS: f64 = 60.0;
 
 #[cfg(test)]
 mod tests;
