@@ -63,9 +63,14 @@ fn what_cannot_be_shown_is_said() {
     let bench = Bench::new();
     fs::write(bench.path("notes.mtg"), "nothing").unwrap();
     let cases = [
-        ("view synth::tree:60,1", "--offscreen OUT is wanted where there is no terminal", 2),
-        ("view synth::tree:60,1 --terminal", "--offscreen OUT is wanted where there is no terminal", 2),
+        ("view synth::tree:60,1", "--offscreen OUT is wanted where there is no display", 2),
+        ("view synth::tree:60,1 --terminal", "--offscreen OUT is wanted where there is no display", 2),
         ("view synth::tree:60,1 --leaf-length 0 --offscreen a.png", "a leaf is 0.0001 to 10.0 m long", 2),
+        ("view synth::tree:60,1 --samples 3 --offscreen a.png", "wanted 1 or 4 samples, got 3", 2),
+        ("view synth::tree:60,1 --distance 0 --offscreen a.png", "wanted a number above 0, got 0", 2),
+        ("view synth::tree:60,1 --seconds -1 --offscreen a.mp4", "wanted a number above 0, got -1", 2),
+        ("view synth::tree:60,1 --azimuth nan --offscreen a.png", "wanted a number, got nan", 2),
+        ("view synth::tree:60,1 --offscreen notes.mtg", "notes.mtg is there already: choose another name", 1),
         ("view synth::tree:60,1 --forest 0 --offscreen a.png", "wanted 1 to 10000000 copies, got 0", 2),
         (
             "view synth::tree:60,1 skeleton --offscreen a.png",

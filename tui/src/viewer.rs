@@ -76,9 +76,15 @@ fn build(is_release: bool) -> String {
 /// Where it is not there, does not start, or fails.
 pub(crate) fn have(args: &[OsString]) -> anyhow::Result<()> {
     let program = program()?;
-    let mut child =
-        command(&program, args).stdin(Stdio::null()).spawn().with_context(|| starting(&program))?;
+    // Where this process ends, so does the pipe, and with it the viewer.
+    let mut command = command(&program, args);
+    let spawned = command.arg("--attended").stdin(Stdio::piped()).spawn();
+    let mut child = spawned.with_context(|| starting(&program))?;
+    let held = child.stdin.take();
     let status = child.wait().with_context(|| starting(&program))?;
+    drop(held);
+    // What it says by itself need not be said twice.
+    ensure!(status.code() != Some(1), "nothing was drawn");
     ending(status).map_or(Ok(()), |how| Err(anyhow::anyhow!(how)))
 }
 

@@ -1,5 +1,7 @@
 //! The window: the picture, time below it, and beside it what is shown and what is done to it.
 
+mod canvas;
+mod forest;
 mod pipe;
 mod player;
 mod skeleton;
@@ -8,25 +10,22 @@ use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use anyhow::{anyhow, bail, ensure};
-use eframe::egui::{self, Color32, Context, Key, Modifiers, PointerButton, Rect, Response, Sense, Ui, Vec2};
-use eframe::egui_wgpu::{RenderState, WgpuSetup};
+use eframe::egui::{self, Context, Key, Modifiers, Ui};
+use eframe::egui_wgpu::WgpuSetup;
 use eframe::wgpu;
-use honami_scene::control::{Chosen, Command, Event, PROTOCOL, Seat};
+use honami_scene::control::{Chosen, Command, Event, PROTOCOL};
 use honami_scene::{Orbit, Scene};
 
+use self::canvas::Canvas;
+use self::forest::ForestWindow;
 use self::pipe::Pipe;
 use self::player::Player;
 use self::skeleton::Workbench;
 use crate::args::Args;
-use crate::gpu::{Gpu, GpuError};
+use crate::gpu::GpuError;
 use crate::offscreen::{Picture as _, Shot};
 use crate::skeleton::{Part, SkeletonPicture};
-use crate::target::{Size, Target};
 
-/// A drag over so many points goes once round.
-const ROUND_POINTS: f32 = 900.0;
-/// As much of the wheel as doubles the distance, points.
-const DOUBLE_POINTS: f32 = 400.0;
 /// A click so near to a joint chooses its bone, points.
 const NEAR_POINTS: f32 = 14.0;
 /// Width of the panel beside the picture, points.
@@ -46,15 +45,17 @@ pub fn run(path: &Path, args: &Args) -> anyhow::Result<()> {
         is_set("DISPLAY") || is_set("WAYLAND_DISPLAY"),
         "there is no display for a window (neither DISPLAY nor WAYLAND_DISPLAY is set): `--offscreen OUT.png` draws without one"
     );
-    let Scene::Skeleton(scene) = scene else {
-        bail!("this window shows skeletons: `--offscreen` draws the scene")
-    };
-    let picture = SkeletonPicture::new(*scene, Part::these(&args.parts));
     let fault = Fault::default();
     let (kept, args) = (Arc::clone(&fault), args.clone());
     let size = args.size;
     let make = move |creation: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, _> {
-        Ok(Box::new(App::new(creation, picture, &args, kept)?))
+        Ok(match scene {
+            Scene::Skeleton(scene) => {
+                let picture = SkeletonPicture::new(*scene, Part::these(&args.parts));
+                Box::new(App::new(creation, picture, &args, kept)?)
+            }
+            Scene::Forest(scene) => Box::new(ForestWindow::new(creation, *scene, &args, kept)?),
+        })
     };
     let shown = eframe::run_native("honami", options(size), Box::new(make));
     if let Some(fault) = fault.lock().unwrap_or_else(PoisonError::into_inner).take() {
@@ -65,6 +66,12 @@ pub fn run(path: &Path, args: &Args) -> anyhow::Result<()> {
         eframe::Error::Wgpu(why) => anyhow!("{}: {why}", GpuError::None),
         why => anyhow!("the window does not open: {why}"),
     })
+}
+
+/// Ends the window with what went wrong.
+fn fail(fault: &Fault, context: &Context, why: anyhow::Error) {
+    fault.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(why);
+    context.send_viewport_cmd(egui::ViewportCommand::Close);
 }
 
 fn options([width, height]: [u32; 2]) -> eframe::NativeOptions {
@@ -89,14 +96,9 @@ fn options([width, height]: [u32; 2]) -> eframe::NativeOptions {
 struct App {
     pipe: Pipe,
     fault: Fault,
-    screen: RenderState,
-    gpu: Gpu,
-    target: Option<(Target, egui::TextureId)>,
+    canvas: Canvas,
     workbench: Workbench,
     player: Player,
-    orbit: Orbit,
-    /// Of a pixel.
-    samples: u32,
     /// What was said last.
     line: String,
 }
@@ -108,24 +110,12 @@ impl App {
         args: &Args,
         fault: Fault,
     ) -> anyhow::Result<Self> {
-        let Some(screen) = creation.wgpu_render_state.clone() else { bail!(GpuError::None) };
-        let gpu = Gpu::adopt(screen.device.clone(), screen.queue.clone(), screen.adapter.get_info());
+        let mut canvas = Canvas::new(creation, args)?;
         let pipe = Pipe::new(&creation.egui_ctx, args.control)?;
-        let mut orbit = picture.orbit();
-        orbit.azimuth = args.azimuth.map_or(orbit.azimuth, f32::to_radians);
-        orbit.elevation = args.elevation.map_or(orbit.elevation, f32::to_radians);
-        orbit.zoom(args.distance as f32);
-        pipe.tell(&Event::Ready { protocol: PROTOCOL, adapter: gpu.name() });
+        canvas.begin(picture.orbit(), args);
+        pipe.tell(&Event::Ready { protocol: PROTOCOL, adapter: canvas.gpu.name() });
         let player = Player::new(picture.scene.times.clone());
-        let workbench = Workbench::new(picture);
-        let (target, samples, line) = (None, args.samples, String::new());
-        Ok(Self { pipe, fault, screen, gpu, target, workbench, player, orbit, samples, line })
-    }
-
-    /// Ends the window with what went wrong.
-    fn fail(&self, context: &Context, why: anyhow::Error) {
-        self.fault.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(why);
-        context.send_viewport_cmd(egui::ViewportCommand::Close);
+        Ok(Self { pipe, fault, canvas, workbench: Workbench::new(picture), player, line: String::new() })
     }
 
     /// Does what was told by the pipe.
@@ -138,13 +128,13 @@ impl App {
                 Command::Scene { protocol, path } => self.show(protocol, &path),
                 Command::Cut(k) => self.pipe.tell(&Event::Cut(k)),
                 Command::Wind(_) => self.pipe.tell(&Event::Failed("no wind blows in a skeleton".to_owned())),
-                Command::Camera(seat) => self.sit(seat),
+                Command::Camera(seat) => self.canvas.sit(seat),
                 Command::Select(chosen) => self.workbench.choose(chosen),
                 Command::Say(line) => {
                     self.line = line;
                     self.workbench.let_be();
                 }
-                Command::Capture(path) => self.capture(context, path),
+                Command::Capture(path) => self.pipe.capture(context, path),
                 Command::Quit => context.send_viewport_cmd(egui::ViewportCommand::Close),
             }
         }
@@ -168,33 +158,6 @@ impl App {
                 }
             }
             Err(why) => self.pipe.tell(&Event::Failed(format!("{why:#}"))),
-        }
-    }
-
-    /// Writes what the window shows into a file, and tells when it is there.
-    fn capture(&self, context: &Context, path: std::path::PathBuf) {
-        let is_steered = self.pipe.is_steered();
-        context.request_screenshot(move |picture| {
-            let [width, height] = picture.size.map(|side| u32::try_from(side).unwrap_or_default());
-            let pixels: Vec<[u8; 3]> = picture.pixels.iter().map(|at| [at.r(), at.g(), at.b()]).collect();
-            let event = match honami_media::write::still(&path, &pixels, width, height) {
-                Ok(()) => Event::Captured(path),
-                Err(why) => Event::Failed(why.to_string()),
-            };
-            if is_steered {
-                pipe::tell(&event);
-            }
-        });
-    }
-
-    fn sit(&mut self, seat: Seat) {
-        let is_good = |v: &f32| v.is_finite();
-        let angle = |v: Option<f32>, was: f32| v.filter(is_good).map_or(was, f32::to_radians);
-        self.orbit.azimuth = angle(seat.azimuth_deg, self.orbit.azimuth);
-        self.orbit.elevation = angle(seat.elevation_deg, self.orbit.elevation);
-        if let Some(distance) = seat.distance.filter(|v| is_good(v) && *v > 0.0) {
-            self.orbit.distance = distance;
-            self.orbit.zoom(1.0);
         }
     }
 
@@ -223,11 +186,15 @@ impl App {
     }
 
     fn front(&mut self) {
-        self.orbit = self.workbench.picture.orbit();
+        self.canvas.orbit = self.workbench.picture.orbit();
     }
 
     /// Keys, as the terminal has them.
     fn keys(&mut self, ui: &Ui) {
+        // What is typed into a field is no key.
+        if ui.ctx().egui_wants_keyboard_input() {
+            return;
+        }
         let pressed = |key| ui.input(|input| input.key_pressed(key) && input.modifiers.is_none());
         let row = self.player.row();
         if pressed(Key::Space) {
@@ -282,16 +249,14 @@ impl App {
 
     /// The picture, as large as there is room, and what a mouse does in it.
     fn picture(&mut self, ui: &mut Ui) -> anyhow::Result<()> {
-        let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
-        let scale = ui.pixels_per_point();
-        let side = |points: f32| (points * scale).round().clamp(1.0, 8192.0) as u32;
-        self.fit(Size { width: side(area.width()), height: side(area.height()), samples: self.samples })?;
+        let (response, area) = self.canvas.place(ui)?;
         if self.workbench.is_rooting {
-            self.orbit = Orbit { azimuth: 0.0, elevation: 0.0, ..self.orbit };
+            self.canvas.orbit = Orbit { azimuth: 0.0, elevation: 0.0, ..self.canvas.orbit };
         }
-        self.look(ui, &response, area);
-        let shot = Shot { time: self.player.now(), camera: self.orbit.camera() };
-        let Some((target, id)) = &self.target else { return Ok(()) };
+        self.canvas.look(ui, &response, area, !self.workbench.is_rooting);
+        let scale = ui.pixels_per_point();
+        let shot = Shot { time: self.player.now(), camera: self.canvas.orbit.camera() };
+        let Some(target) = self.canvas.target() else { return Ok(()) };
         let clicked = response.interact_pointer_pos().filter(|_| response.clicked());
         if let Some(at) = clicked.map(|at| (at - area.min) * scale) {
             let picture = &self.workbench.picture;
@@ -306,54 +271,9 @@ impl App {
                 self.pipe.tell(&Event::Selected(chosen));
             }
         }
-        self.workbench.picture.draw(&self.gpu, target, &shot)?;
-        let whole = Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
-        ui.painter().image(*id, area, whole, Color32::WHITE);
+        self.workbench.picture.draw(&self.canvas.gpu, target, &shot)?;
+        self.canvas.show(ui, area);
         Ok(())
-    }
-
-    /// A target of this size.
-    fn fit(&mut self, size: Size) -> Result<(), GpuError> {
-        if self.target.as_ref().is_some_and(|(target, _)| target.size() == size) {
-            return Ok(());
-        }
-        let target = Target::new(&self.gpu, size)?;
-        let mut renderer = self.screen.renderer.write();
-        if let Some((_, id)) = self.target.take() {
-            renderer.free_texture(&id);
-        }
-        let id = renderer.register_native_texture(&self.gpu.device, target.shown(), wgpu::FilterMode::Linear);
-        drop(renderer);
-        self.target = Some((target, id));
-        Ok(())
-    }
-
-    /// A drag goes round, one with the other button or with shift moves, the wheel goes nearer and farther.
-    fn look(&mut self, ui: &Ui, response: &Response, area: Rect) {
-        let (drag, wheel, is_shift) =
-            ui.input(|input| (response.drag_delta(), input.smooth_scroll_delta().y, input.modifiers.shift));
-        let is_moved = response.dragged_by(PointerButton::Secondary)
-            || response.dragged_by(PointerButton::Middle)
-            || (response.dragged_by(PointerButton::Primary) && is_shift);
-        if is_moved {
-            self.shift(drag, area);
-        } else if response.dragged_by(PointerButton::Primary) && !self.workbench.is_rooting {
-            self.orbit.azimuth -= drag.x / ROUND_POINTS * std::f32::consts::TAU;
-            let steep = self.orbit.elevation + drag.y / ROUND_POINTS * std::f32::consts::TAU;
-            self.orbit.elevation = steep.clamp(-1.5, 1.5);
-        }
-        if response.hovered() && wheel.abs() > 0.0 {
-            self.orbit.zoom((-wheel / DOUBLE_POINTS).exp2());
-        }
-    }
-
-    /// What is looked at goes with the mouse.
-    fn shift(&mut self, drag: Vec2, area: Rect) {
-        let a_point = 2.0 * self.orbit.distance * (self.orbit.angle / 2.0).tan() / area.height().max(1.0);
-        let [right, up, _] = self.orbit.camera().axes();
-        for axis in 0..3 {
-            self.orbit.target[axis] += a_point * (drag.y * up[axis] - drag.x * right[axis]);
-        }
     }
 }
 
@@ -369,8 +289,8 @@ impl eframe::App for App {
         events.iter().for_each(|event| self.pipe.tell(event));
         let drawn =
             egui::CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| self.picture(ui)).inner;
-        if let Err(why) = drawn.and_then(|()| Ok(self.gpu.check()?)) {
-            self.fail(&context, why);
+        if let Err(why) = drawn.and_then(|()| Ok(self.canvas.gpu.check()?)) {
+            fail(&self.fault, &context, why);
         }
         if self.player.is_playing {
             context.request_repaint();

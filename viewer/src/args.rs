@@ -60,6 +60,9 @@ pub struct Args {
     /// the input ends the window.
     #[arg(long, conflicts_with = "offscreen")]
     pub control: bool,
+    /// End where standard input ends.
+    #[arg(long, hide = true, conflicts_with = "control")]
+    pub attended: bool,
     /// List what could draw, the best first, which is what does.
     #[arg(long)]
     pub adapters: bool,

@@ -1,5 +1,7 @@
 //! honami-viewer: shows scenes that `honami view` wrote.
 
+mod ends;
+
 use std::io::Write as _;
 use std::process::ExitCode;
 
@@ -7,7 +9,12 @@ use clap::Parser as _;
 use honami_viewer::args::Args;
 
 fn main() -> ExitCode {
-    match honami_viewer::run(&Args::parse()) {
+    let args = Args::parse();
+    if let Err(error) = ends::heed(args.attended) {
+        writeln!(std::io::stderr(), "honami-viewer: signals cannot be caught here: {error}")
+            .unwrap_or_default();
+    }
+    match honami_viewer::run(&args) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             // Nobody left to tell is no reason to fail otherwise.

@@ -90,6 +90,9 @@ pub struct Leaf {
     pub open: f32,
 }
 
+/// No level has fewer nodes, where a plant has so many: without them its shape would be another, and little is won.
+const FEWEST: u32 = 300;
+
 impl Body {
     /// What beams with these leaves look like.
     #[must_use]
@@ -103,8 +106,7 @@ impl Body {
         let top = (0..beams.len()).map(|node| (beams.position(node) - root).norm()).fold(0.0, f64::max);
         let share = |n: usize, share: f64| (n as f64 * share).ceil() as u32;
         let levels = LEVELS.iter().map(|&(from, nodes, modes, n_sides, leaves)| {
-            // A segment at least.
-            let n_nodes = share(beams.len(), nodes).max(2.min(beams.len() as u32));
+            let n_nodes = share(beams.len(), nodes).max(FEWEST).min(beams.len() as u32);
             let tubes = Tubes::of(beams, |node| rows[node as usize] < n_nodes);
             let rings: Vec<Ring> =
                 tubes.rings().iter().map(|ring| seen(beams, &rows, ring, &light)).collect();

@@ -19,6 +19,8 @@ use stroke::Stroke;
 
 /// Samples along a side of a pixel.
 const FINE: u32 = 2;
+/// Copies whose strokes are laid out at a time.
+const SOME: usize = 128;
 /// Rows of samples that are drawn together.
 const BAND: usize = 16;
 /// From where the sun shines: length 1.
@@ -55,22 +57,25 @@ pub fn forest(
 ) -> Vec<[u8; 3]> {
     let (wide, high) = ((width * FINE) as usize, (height * FINE) as usize);
     let lens = Lens::new(camera, [wide, high]);
-    let strokes: Vec<Stroke> =
-        seen.par_iter().flat_map_iter(|seen| of_copy(scene, grove, seen, &lens)).collect();
     let ground = Ground::under(scene);
     let mut colours = vec![[0.0; 3]; wide * high];
-    colours.par_chunks_mut(wide * BAND).enumerate().for_each(|(band, colours)| {
-        let first = band * BAND;
-        for (k, row) in colours.chunks_mut(wide).enumerate() {
-            for (x, colour) in row.iter_mut().enumerate() {
-                *colour = ground.behind(&lens, [x as f32 + 0.5, (first + k) as f32 + 0.5]);
-            }
-        }
-        let mut depths = vec![f32::INFINITY; colours.len()];
-        for stroke in &strokes {
-            stroke.draw(first, wide, colours, &mut depths, &|colour, depth| ground.hazy(colour, depth));
+    colours.par_chunks_mut(wide).enumerate().for_each(|(y, row)| {
+        for (x, colour) in row.iter_mut().enumerate() {
+            *colour = ground.behind(&lens, [x as f32 + 0.5, y as f32 + 0.5]);
         }
     });
+    let mut depths = vec![f32::INFINITY; colours.len()];
+    // Some copies at a time: strokes of a large forest would take gigabytes.
+    for some in seen.chunks(SOME) {
+        let strokes: Vec<Stroke> =
+            some.par_iter().flat_map_iter(|seen| of_copy(scene, grove, seen, &lens)).collect();
+        let bands = colours.par_chunks_mut(wide * BAND).zip(depths.par_chunks_mut(wide * BAND));
+        bands.enumerate().for_each(|(band, (colours, depths))| {
+            for stroke in &strokes {
+                stroke.draw(band * BAND, wide, colours, depths, &|colour, depth| ground.hazy(colour, depth));
+            }
+        });
+    }
     let pixel = |k: usize| {
         let (x, y) = (k % width as usize, k / width as usize);
         let fine = FINE as usize;

@@ -28,6 +28,11 @@ impl<T: Send + 'static> Behind<T> {
         self.go_on()
     }
 
+    /// Whether anything is being worked out.
+    pub(super) fn is_busy(&self) -> bool {
+        self.running.is_some()
+    }
+
     /// What has been worked out; a panic was reported where it happened, and gives nothing.
     pub(super) fn news(&mut self) -> std::io::Result<Option<T>> {
         let done = self.running.take_if(|(_, ended)| ended.load(Ordering::Acquire));

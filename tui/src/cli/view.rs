@@ -6,6 +6,7 @@ mod window;
 use std::ffi::OsString;
 use std::path::Path;
 
+use anyhow::bail;
 use honami_model::brief::counted;
 use honami_workbench::grow::GrowRequest;
 use honami_workbench::plugins::{Host, Kind, PluginInfo, Value, Values};
@@ -24,6 +25,10 @@ const HEIGHT: f64 = 720.0;
 
 /// Shows a scene.
 pub(super) fn view(args: &View, common: &Common) -> anyhow::Result<Outcome> {
+    // It may be the clip itself, or a day's work.
+    if let Some(out) = args.offscreen.as_deref().filter(|out| out.exists()) {
+        bail!("{} is there already: choose another name", out.display());
+    }
     let source = Path::new(&args.plant.source);
     let is_project = source.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("honami"));
     match args.what.unwrap_or(if is_project { ViewWhat::Skeleton } else { ViewWhat::Forest }) {
@@ -93,7 +98,9 @@ impl Grower {
                 "the clip is not where it was, and is not shown: `honami relink` says where it is".to_owned(),
             );
         }
-        let is_open = project.access() == Access::Write;
+        // Where what is shown is not what the project has, what would be done to it is not what is seen.
+        let is_its_own = !self.request.as_grown && self.request.groups.is_none();
+        let is_open = project.access() == Access::Write && is_its_own;
         Ok((SkeletonScene { is_open, ..shown.scene }, notes))
     }
 }

@@ -30,11 +30,6 @@ impl Pipe {
         Ok(Self { commands: Some(commands) })
     }
 
-    /// Whether anybody listens.
-    pub(super) fn is_steered(&self) -> bool {
-        self.commands.is_some()
-    }
-
     /// The next command, if there is one.
     pub(super) fn next(&self) -> Option<Command> {
         self.commands.as_ref()?.try_recv().ok()
@@ -45,6 +40,22 @@ impl Pipe {
         if self.commands.is_some() {
             tell(event);
         }
+    }
+
+    /// Writes what the window shows into a file, and tells when it is there.
+    pub(super) fn capture(&self, context: &Context, path: std::path::PathBuf) {
+        let is_steered = self.commands.is_some();
+        context.request_screenshot(move |picture| {
+            let [width, height] = picture.size.map(|side| u32::try_from(side).unwrap_or_default());
+            let pixels: Vec<[u8; 3]> = picture.pixels.iter().map(|at| [at.r(), at.g(), at.b()]).collect();
+            let event = match honami_media::write::still(&path, &pixels, width, height) {
+                Ok(()) => Event::Captured(path),
+                Err(why) => Event::Failed(why.to_string()),
+            };
+            if is_steered {
+                tell(&event);
+            }
+        });
     }
 }
 

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use honami_mechanics::wind::Wind;
 use honami_mechanics::{
-    Damping, Detail, DetailError, Details, Forest, ForestError, Pace, Pose, Threads, ThreadsError, Vector,
-    View,
+    Damping, Detail, DetailError, Details, Forest, ForestError, Pace, Pose, Stand, Threads, ThreadsError,
+    Vector, View,
 };
 
 use super::ForestScene;
@@ -141,24 +141,23 @@ impl Live {
     pub fn seen(&mut self, camera: &Camera, [width, height]: [u32; 2]) -> Result<Vec<Seen<'_>>, LiveError> {
         let view = view(camera, f64::from(width) / f64::from(height.max(1)));
         let (farther, levels) = levels(&self.scene, sharper(height))?;
-        let whole = Detail {
-            n_nodes: self.scene.stirring.n_nodes() as u32,
-            n_modes: self.scene.stirring.n_modes() as u32,
-        };
         let stands = self.grove.places.iter().zip(&self.scene.stands);
-        for (detail, (place, stand)) in self.details.iter_mut().zip(stands) {
-            let scale = f64::from(stand.scale);
-            *detail = farther.of(&self.scene.stirring, &view, place, scale).at_most(whole);
+        let level = |(place, stand): (&Vector, &Stand)| {
+            farther.level(&self.scene.stirring, &view, place, f64::from(stand.scale))
+        };
+        let seen_as: Vec<Option<usize>> = stands.map(level).collect();
+        for (detail, level) in self.details.iter_mut().zip(&seen_as) {
+            *detail = level.map_or_else(Detail::default, |level| levels[level]);
         }
         let n: usize = self.details.iter().map(|detail| detail.n_nodes as usize).sum();
         self.motion.resize(n, [0.0; 3]);
         let pose = Pose { details: Some(&self.details), motion: &mut self.motion };
         self.forest.pose(pose, &self.threads);
         let (mut seen, mut rest) = (Vec::new(), self.motion.as_slice());
-        for (copy, detail) in self.details.iter().enumerate().filter(|(_, detail)| detail.n_nodes > 0) {
-            let (motion, others) = rest.split_at(detail.n_nodes as usize);
+        for (copy, level) in seen_as.into_iter().enumerate() {
+            let Some(level) = level else { continue };
+            let (motion, others) = rest.split_at(levels[level].n_nodes as usize);
             rest = others;
-            let level = levels.iter().position(|level| level == detail).unwrap_or_default();
             seen.push(Seen { copy, level, motion });
         }
         Ok(seen)

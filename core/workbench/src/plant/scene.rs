@@ -13,9 +13,9 @@ const ANGLE: f32 = 0.6;
 /// Of the eye above the level of what it looks at, radians: of one plant, and of a forest.
 const ELEVATIONS: [f32; 2] = [0.06, 0.2];
 /// So many heights away is the eye from one plant.
-const AWAY: f32 = 2.1;
+const AWAY: f32 = 2.4;
 /// Of the side of a forest.
-const AWAY_FROM_MANY: f32 = 0.75;
+const AWAY_FROM_MANY: f32 = 1.0;
 /// Seconds that a wind blows before what is shown begins: what it sets swinging by beginning has died away by then.
 const RUN_IN_S: f64 = 20.0;
 

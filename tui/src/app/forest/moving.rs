@@ -35,6 +35,8 @@ pub(super) struct Worker {
     is_busy: bool,
     /// What was asked for last, and when.
     last: Option<(Order, Duration)>,
+    /// Seconds that the forest is to have come to.
+    clock: f64,
     /// The wind that blows.
     wind: String,
 }
@@ -48,6 +50,7 @@ impl Worker {
             drawing: Behind::new("forest", waker),
             is_busy: false,
             last: None,
+            clock: 0.0,
             wind,
         }
     }
@@ -70,28 +73,36 @@ impl Worker {
         let since = self.last.as_ref().map_or(0.0, |(last, then)| {
             if last.is_playing { now.saturating_sub(*then).as_secs_f64().min(MOST_S) } else { 0.0 }
         });
-        let seconds = if order.is_playing { since } else { 0.0 };
+        let played = if order.is_playing { since } else { 0.0 };
+        self.clock += played + f64::from(order.n_steps) * self.scene.pace.step;
         self.last = Some((Order { n_steps: 0, ..order.clone() }, now));
         self.is_busy = true;
         let (live, scene, wind) = (Arc::clone(&self.live), Arc::clone(&self.scene), self.wind.clone());
-        self.drawing.ask(move || draw(&live, &scene, wind, &order, seconds))
+        let until = self.clock;
+        self.drawing.ask(move || draw(&live, &scene, wind, &order, until))
     }
 
     /// What has been drawn, or why nothing was.
     pub(super) fn news(&mut self) -> std::io::Result<Option<Result<Shot, String>>> {
-        let Some((shot, wind)) = self.drawing.news()? else { return Ok(None) };
+        let Some((shot, wind)) = self.drawing.news()? else {
+            if self.is_busy && !self.drawing.is_busy() {
+                self.is_busy = false;
+                return Ok(Some(Err("drawing was stopped by a fault of its own".to_owned())));
+            }
+            return Ok(None);
+        };
         (self.is_busy, self.wind) = (false, wind);
         Ok(Some(shot))
     }
 }
 
-/// Goes on by so many seconds, and draws; what it says is wrong with a wind leaves the one that blows.
+/// Goes on until a time, seconds, and draws; what it says is wrong with a wind leaves the one that blows.
 fn draw(
     live: &Mutex<Option<Live>>,
     scene: &Arc<ForestScene>,
     mut wind: String,
     order: &Order,
-    seconds: f64,
+    until: f64,
 ) -> (Result<Shot, String>, String) {
     let mut live = live.lock().unwrap_or_else(PoisonError::into_inner);
     let drawn = (|| {
@@ -106,8 +117,7 @@ fn draw(
             live.blow(&order.wind)?;
             wind.clone_from(&order.wind);
         }
-        let n_steps = (seconds / scene.pace.step).round() as u32 + order.n_steps;
-        (0..n_steps).try_for_each(|_| live.step())?;
+        (0..steps_until(until, live.time(), scene.pace.step)).try_for_each(|_| live.step())?;
         let (time, blowing) = (live.time(), live.blowing(0));
         let camera = order.orbit.camera();
         let grove = live.grove().clone();
@@ -117,6 +127,11 @@ fn draw(
         Ok(Shot { size: order.size, pixels, time, wind: blowing.into() })
     })();
     (drawn.map_err(|error: honami_workbench::scene::forest::live::LiveError| error.to_string()), wind)
+}
+
+/// Whole steps from a time to another: what is left of one is there the next time.
+fn steps_until(until: f64, time: f64, step: f64) -> u32 {
+    ((until - time) / step + 1e-6).floor().max(0.0) as u32
 }
 
 /// The same picture in so many rows: each the mean of what it covers.
@@ -143,9 +158,22 @@ fn squeezed(pixels: Vec<[u8; 3]>, [width, height]: [u32; 2], n_rows: u32) -> Vec
 
 #[cfg(test)]
 mod tests {
-    //! Rows that become fewer.
+    //! Rows that become fewer, and steps.
 
-    use super::squeezed;
+    use super::{squeezed, steps_until};
+
+    /// A hundred pictures, 50 ms apart, take five seconds, however long a step is.
+    #[test]
+    fn no_part_of_a_step_is_lost() {
+        for step in [0.01, 0.04, 0.1, 0.2] {
+            let (mut n, mut clock) = (0, 0.0);
+            for _ in 0..100 {
+                clock += 0.05;
+                n += steps_until(clock, f64::from(n) * step, step);
+            }
+            assert_eq!(n, (5.0_f64 / step).round() as u32, "steps of {step} s");
+        }
+    }
 
     #[test]
     fn rows_are_means_of_what_they_cover() {

@@ -38,7 +38,7 @@ pub(in crate::cli) struct View {
     /// Show a forest in the terminal: keys and the mouse go round it and turn its wind.
     #[arg(long, conflicts_with = "offscreen")]
     pub(in crate::cli) terminal: bool,
-    /// Pixels of the picture (default: 720 high, as wide as the clip has it).
+    /// Pixels of the picture (default: 720 high, as wide as the clip has it; of a forest 1280x720).
     #[arg(long, value_name = "WxH")]
     pub(in crate::cli) size: Option<Size>,
     /// What to draw, of bones, ellipsoids, leaves, trails, clip and copies (default: bones, leaves, trails, clip and copies).
@@ -96,25 +96,25 @@ pub(in crate::cli) struct Shot {
     #[arg(long, value_name = "N", conflicts_with = "seconds", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(in crate::cli) frames: Option<u32>,
     /// Seconds of a movie.
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = positive)]
     pub(in crate::cli) seconds: Option<f64>,
-    /// Frames per second (default: those of the clip).
-    #[arg(long, value_name = "F")]
+    /// Frames per second (default: those of the clip; of a forest 25).
+    #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = positive)]
     pub(in crate::cli) fps: Option<f64>,
     /// Samples of a pixel, 1 or 4 (default: 4, for smooth edges).
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = samples)]
     pub(in crate::cli) samples: Option<u32>,
     /// Seen from so far round, counterclockwise from above, degrees (default: 0, the front, over the clip).
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true, value_parser = finite)]
     pub(in crate::cli) azimuth: Option<f64>,
     /// Seen from so far above the horizon, degrees.
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true, value_parser = finite)]
     pub(in crate::cli) elevation: Option<f64>,
     /// Seen from so many times as far away.
-    #[arg(long, value_name = "TIMES")]
+    #[arg(long, value_name = "TIMES", allow_negative_numbers = true, value_parser = positive)]
     pub(in crate::cli) distance: Option<f64>,
     /// The camera goes so far round meanwhile, degrees.
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true, value_parser = finite)]
     pub(in crate::cli) turn: Option<f64>,
     /// Draw with the adapter that has this in its name.
     #[arg(long, value_name = "NAME")]
@@ -139,6 +139,21 @@ pub(in crate::cli) enum Part {
     Trails,
     Clip,
     Copies,
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|v: &f64| v.is_finite() && *v > 0.0);
+    number.ok_or_else(|| format!("wanted a number above 0, got {text}"))
+}
+
+fn finite(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|v: &f64| v.is_finite());
+    number.ok_or_else(|| format!("wanted a number, got {text}"))
+}
+
+fn samples(text: &str) -> Result<u32, String> {
+    let number = text.parse().ok().filter(|n| [1, 4].contains(n));
+    number.ok_or_else(|| format!("wanted 1 or 4 samples, got {text}"))
 }
 
 impl Shot {

@@ -1,6 +1,5 @@
 //! Forests: a plant and its copies in the wind.
 
-use std::ffi::OsString;
 use std::io::IsTerminal as _;
 use std::path::Path;
 use std::process::ExitCode;
@@ -13,17 +12,18 @@ use honami_workbench::plant::{self};
 use honami_workbench::scene::{ForestScene, Scene};
 use serde_json::json;
 
+use super::{window, words};
 use crate::cli::args::Common;
 use crate::cli::args::view::View;
 use crate::cli::{Answer, Outcome, ends, report, simulate, want};
 use crate::viewer::{self, Scenes};
 
 /// Pixels of a picture, unless it was said how large.
-const SIZE: [u32; 2] = [1280, 720];
+pub(super) const SIZE: [u32; 2] = [1280, 720];
 /// Leaves are between so long, metres.
 const LEAF_LENGTHS: std::ops::RangeInclusive<f64> = 1e-4..=10.0;
 
-/// Shows a forest in the terminal, or draws it into a file.
+/// Shows a forest in a window, or in the terminal, or draws it into a file.
 pub(super) fn view(args: &View, common: &Common) -> anyhow::Result<Outcome> {
     if let Some(length) = args.trees.leaf_length {
         want(LEAF_LENGTHS.contains(&length), || {
@@ -31,9 +31,14 @@ pub(super) fn view(args: &View, common: &Common) -> anyhow::Result<Outcome> {
             format!("a leaf is {least:?} to {most:?} m long, not {length:?}")
         })?;
     }
-    let is_shown = std::io::stdout().is_terminal() && std::io::stdin().is_terminal() && !common.json;
+    let has_display = ["DISPLAY", "WAYLAND_DISPLAY"]
+        .into_iter()
+        .any(|name| std::env::var_os(name).is_some_and(|value| !value.is_empty()));
+    let in_window = args.offscreen.is_none() && !args.terminal && has_display && viewer::program().is_ok();
+    let is_shown =
+        in_window || (std::io::stdout().is_terminal() && std::io::stdin().is_terminal() && !common.json);
     want(args.offscreen.is_some() || is_shown, || {
-        "--offscreen OUT is wanted where there is no terminal to show a forest in".to_owned()
+        "--offscreen OUT is wanted where there is no display and no terminal to show a forest in".to_owned()
     })?;
     if args.offscreen.is_some() {
         viewer::program()?;
@@ -43,6 +48,9 @@ pub(super) fn view(args: &View, common: &Common) -> anyhow::Result<Outcome> {
         return offscreen(args, scene, out, (told, &notes)).map(Outcome::Answer);
     }
     notes.iter().for_each(|note| report::say(&format!("note: {note}")));
+    if in_window {
+        return window::forest(args, scene, common).map(Outcome::Exit);
+    }
     ends::leave();
     let end = crate::app::run_forest(scene)?;
     Ok(Outcome::Exit(end.map_or(ExitCode::SUCCESS, |end| ExitCode::from(end.status()))))
@@ -99,8 +107,7 @@ fn offscreen(
     let mut scenes = Scenes::new()?;
     let [width, height] = args.size.map_or(SIZE, |size| [size.width, size.height]);
     let path = scenes.write(&Scene::Forest(Box::new(scene)))?;
-    let mut words: Vec<OsString> = vec![path.into(), format!("--size={width}x{height}").into()];
-    words.extend(args.shot.words().into_iter().map(OsString::from));
+    let mut words = words(args, &path, [width, height]);
     words.extend(["--offscreen".into(), out.into()]);
     viewer::have(&words)?;
     let mut text = format!("{}: {told}", out.display());

@@ -1,16 +1,18 @@
 //! The window: what is done there are edits of the project, and what scripts say is passed on.
 
+use std::ffi::OsString;
 use std::io::{BufRead as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::{ExitCode, Stdio};
-use std::sync::mpsc::sync_channel;
+use std::sync::mpsc::{Receiver, sync_channel};
 
 use anyhow::bail;
-use honami_workbench::scene::Scene;
 use honami_workbench::scene::control::{self, Command, Event, PROTOCOL};
+use honami_workbench::scene::{ForestScene, Scene};
 use honami_workbench::store::{Access, Project, StoreError};
 use honami_workbench::view;
 
+use super::forest::SIZE;
 use super::{Grower, usual_size, words};
 use crate::cli::args::Common;
 use crate::cli::args::view::View;
@@ -29,22 +31,60 @@ pub(super) fn window(args: &View, project: &Path, common: &Common) -> anyhow::Re
     let size = args.size.map_or_else(|| usual_size(&scene), |size| [size.width, size.height]);
     let mut scenes = Scenes::new()?;
     let path = scenes.write(&Scene::Skeleton(Box::new(scene)))?;
+    let (tell, hear) = start(words(args, &path, size), common)?;
+    let mut shown = Shown { project, grower, scenes, tell, common };
+    listen(hear, common, |event| shown.hear(event))
+}
+
+/// Shows a forest in a window until it is closed.
+pub(super) fn forest(args: &View, scene: ForestScene, common: &Common) -> anyhow::Result<ExitCode> {
+    let mut scenes = Scenes::new()?;
+    let path = scenes.write(&Scene::Forest(Box::new(scene)))?;
+    let size = args.size.map_or(SIZE, |size| [size.width, size.height]);
+    let (_tell, hear) = start(words(args, &path, size), common)?;
+    listen(hear, common, |_event| Ok(()))
+}
+
+/// Starts a window; what scripts say is passed on to it.
+fn start(mut words: Vec<OsString>, common: &Common) -> anyhow::Result<(Teller, Receiver<Heard>)> {
     let (said, hear) = sync_channel(WAITING);
     let heard = move |heard| said.send(heard).unwrap_or_default();
-    let mut words = words(args, &path, size);
     words.push("--control".into());
     let tell = viewer::start(&words, Stdio::inherit(), heard)?;
     if common.json {
         relay(tell.clone())?;
     }
-    let mut shown = Shown { project, grower, scenes, tell, common };
+    Ok((tell, hear))
+}
+
+/// Hears a window until it is closed; tells scripts what it says.
+fn listen(
+    hear: Receiver<Heard>,
+    common: &Common,
+    mut each: impl FnMut(&Event) -> anyhow::Result<()>,
+) -> anyhow::Result<ExitCode> {
     for heard in hear {
-        match heard {
-            Heard::Said(event) => shown.hear(&event)?,
-            Heard::Garbled(garbled) => report::say(&format!("the viewer: {garbled}")),
+        let event = match heard {
+            Heard::Said(event) => event,
+            Heard::Garbled(garbled) => {
+                report::say(&format!("the viewer: {garbled}"));
+                continue;
+            }
             Heard::Ended(None) => break,
             Heard::Ended(Some(how)) => bail!(how),
+        };
+        if common.json {
+            let mut out = std::io::stdout().lock();
+            out.write_all(control::line(&event).as_bytes()).and_then(|()| out.flush())?;
         }
+        match &event {
+            Event::Ready { protocol, .. } if *protocol != PROTOCOL => {
+                bail!("the viewer is of another version of honami: build both anew")
+            }
+            Event::Failed(why) => report::say(&format!("the viewer: {why}")),
+            _ => {}
+        }
+        each(&event)?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -82,15 +122,7 @@ struct Shown<'a> {
 impl Shown<'_> {
     /// Does what is asked for, and shows what has become of it.
     fn hear(&mut self, event: &Event) -> anyhow::Result<()> {
-        if self.common.json {
-            let mut out = std::io::stdout().lock();
-            out.write_all(control::line(event).as_bytes()).and_then(|()| out.flush())?;
-        }
         match event {
-            Event::Ready { protocol, .. } if *protocol != PROTOCOL => {
-                bail!("the viewer is of another version of honami: build both anew")
-            }
-            Event::Failed(why) => report::say(&format!("the viewer: {why}")),
             event if view::is_edit(event) => {
                 let line = match self.edit(event) {
                     Ok(Some(line)) => line,
