@@ -11,11 +11,13 @@ mod card;
 mod chains;
 mod host;
 mod paint;
+mod skin;
 mod stage;
 #[cfg(test)]
 mod tests;
 
 use std::sync::Arc;
+use std::time::Instant;
 
 use anyhow::ensure;
 use honami_mechanics::{Damping, Following};
@@ -27,8 +29,11 @@ use crate::target::Target;
 use card::Card;
 use host::Host;
 use paint::Paint;
+use skin::Eye;
 use stage::Stage;
 
+/// By so much nearer levels begin where only a driver draws.
+const LESS: u32 = 2;
 /// Memory that air may take which flows by itself.
 const MOST_BYTES: usize = 256 << 20;
 
@@ -130,18 +135,16 @@ impl ForestPicture {
         Ok(())
     }
 
-    /// What the stage is told of what a camera sees in a picture: airs, nodes, copies.
+    /// What the stage is told of what a camera sees in a picture: nodes and copies.
     fn put(&mut self, gpu: &Gpu, target: &Target, shot: &Shot) -> anyhow::Result<()> {
-        let copies = 0..self.scene.places.len();
         match &mut self.mover {
             Mover::Host(host) => {
-                let live = host.live();
-                self.stage.feel(gpu, copies.map(|copy| live.blowing(copy).norm() as f32));
-                host.put(gpu, &shot.camera, target.size(), &self.stage)
+                let pixel = paint::pixel(&shot.camera, target.size().height);
+                let eye = Eye { eye: shot.camera.eye, pixel, time: shot.time as f32 };
+                host.put(gpu, &self.scene, &shot.camera, of_levels(gpu, target), &eye)
             }
             Mover::Card(card) => {
-                self.stage.feel(gpu, copies.map(|copy| card.blowing(copy).norm() as f32));
-                card.put(gpu, &shot.camera, target.size(), &self.stage);
+                card.put(gpu, &shot.camera, of_levels(gpu, target), &self.stage);
                 Ok(())
             }
         }
@@ -153,9 +156,64 @@ impl ForestPicture {
             self.paint = Some(Paint::new(gpu, &self.stage, samples));
         }
         if let Some(paint) = &self.paint {
-            paint.draw(gpu, target, &self.scene, &self.stage, shot);
+            let skinned = match &self.mover {
+                Mover::Host(host) => host.seen(),
+                Mover::Card(_) => None,
+            };
+            paint.draw(gpu, target, (&self.scene, &self.stage), skinned, shot);
         }
     }
+}
+
+/// What a frame takes, seconds.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Times {
+    /// To find the wind at all copies once.
+    pub wind: f64,
+    /// Steps of all modes, with the winds of these.
+    pub modes: f64,
+    /// What is seen, and where its nodes are.
+    pub pose: f64,
+    /// The picture, and to read it.
+    pub draw: f64,
+}
+
+impl ForestPicture {
+    /// Draws and reads, and waits for each part by itself.
+    ///
+    /// # Errors
+    /// As [`draw`](Picture::draw).
+    pub fn timed(&mut self, gpu: &Gpu, target: &Target, shot: &Shot) -> anyhow::Result<Times> {
+        let mut last = Instant::now();
+        let mut took = || std::mem::replace(&mut last, Instant::now()).elapsed().as_secs_f64();
+        self.feel();
+        let wind = took();
+        self.go_on(gpu, shot.time)?;
+        gpu.wait()?;
+        let modes = took();
+        self.put(gpu, target, shot)?;
+        gpu.wait()?;
+        let pose = took();
+        self.paint(gpu, target, shot);
+        target.read(gpu)?;
+        Ok(Times { wind, modes, pose, draw: took() })
+    }
+
+    fn feel(&mut self) {
+        let copies = 0..self.scene.places.len();
+        match &mut self.mover {
+            Mover::Host(host) => {
+                copies.for_each(|copy| drop(std::hint::black_box(host.live().blowing(copy))))
+            }
+            Mover::Card(card) => copies.for_each(|copy| drop(std::hint::black_box(card.blowing(copy)))),
+        }
+    }
+}
+
+/// The size of a picture by which levels are chosen: without a card a plant has less of everything from nearer on.
+fn of_levels(gpu: &Gpu, target: &Target) -> [u32; 2] {
+    let less = if gpu.is_software() { LESS } else { 1 };
+    [target.size().width, target.size().height].map(|side| side.div_ceil(less))
 }
 
 impl Picture for ForestPicture {

@@ -15,7 +15,6 @@ use super::chains::Chains;
 use super::stage::{LEVEL_BYTES, Stage};
 use crate::gpu::Gpu;
 use crate::shaders;
-use crate::target::Size;
 
 /// Modes that a workgroup takes, and workgroups in a row, of which an adapter has no more than so many.
 const MODES: u32 = 64;
@@ -74,11 +73,19 @@ struct Work {
 impl Card {
     /// One that has felt its wind for as long as the scene says; on this stage.
     pub(super) fn new(gpu: &Gpu, scene: &ForestScene, stage: &Stage) -> anyhow::Result<Self> {
-        let forest = Forest::new(&scene.stirring, &scene.body.order, &scene.stands, &scene.pace)?;
-        let wind = live::wind(scene, &scene.wind, MOST_BYTES)?;
+        let mut made = Self::at_rest(gpu, scene, stage)?;
+        gpu.check()?;
+        for _ in 0..(scene.run_in / scene.pace.step).round() as u32 {
+            made.step(gpu)?;
+        }
+        Ok(made)
+    }
+
+    fn at_rest(gpu: &Gpu, scene: &ForestScene, stage: &Stage) -> anyhow::Result<Self> {
         let Following::Turns(turning) = scene.stirring.following() else {
             anyhow::bail!("the plant {} does not move by turns, which a card adds up", scene.name);
         };
+        let forest = Forest::new(&scene.stirring, &scene.body.order, &scene.stands, &scene.pace)?;
         let numbers = forest.numbers();
         let (n_copies, n_modes, n_nodes) = (forest.len(), numbers.n_modes, scene.body.order.len());
         let chains = Chains::new(turning, &scene.body.order);
@@ -124,16 +131,11 @@ impl Card {
         let nodes = whole(&nodes);
         let all = [&turns, &rows, &nodes, &state, &stage.seen, &groups, &stage.firsts, &stage.moved];
         let pose = poses(gpu, &plant, stage, &all);
-        let (middle, reach) = (scene.stirring.height() / 2.0, scene.stirring.reach());
-        let felt = vec![Felt::default(); n_copies];
-        gpu.check()?;
-        let (grove, n_steps) = (scene.grove(), 0);
-        let mut made = Self {
-            grove,
-            wind,
-            forest,
-            n_steps,
-            felt,
+        Ok(Self {
+            grove: scene.grove(),
+            wind: live::wind(scene, &scene.wind, MOST_BYTES)?,
+            n_steps: 0,
+            felt: vec![Felt::default(); n_copies],
             feels,
             steps,
             eye,
@@ -142,13 +144,10 @@ impl Card {
             list,
             share,
             pose,
-            middle,
-            reach,
-        };
-        for _ in 0..(scene.run_in / scene.pace.step).round() as u32 {
-            made.step(gpu)?;
-        }
-        Ok(made)
+            middle: scene.stirring.height() / 2.0,
+            reach: scene.stirring.reach(),
+            forest,
+        })
     }
 
     /// From now on this wind blows.
@@ -199,8 +198,10 @@ impl Card {
     }
 
     /// Poses what is seen of copies in a picture, on the stage.
-    pub(super) fn put(&self, gpu: &Gpu, camera: &Camera, size: Size, stage: &Stage) {
-        let eye = self.eye(camera, size, stage);
+    pub(super) fn put(&self, gpu: &Gpu, camera: &Camera, [width, height]: [u32; 2], stage: &Stage) {
+        let airs = (0..stage.n_copies).map(|copy| self.blowing(copy).norm() as f32);
+        stage.feel(gpu, airs);
+        let eye = self.eye(camera, [width, height], stage);
         gpu.queue.write_buffer(&self.eye, 0, bytemuck::bytes_of(&eye));
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let mut pass = encoder.begin_compute_pass(&Default::default());
@@ -216,8 +217,8 @@ impl Card {
         gpu.queue.submit([encoder.finish()]);
     }
 
-    fn eye(&self, camera: &Camera, size: Size, stage: &Stage) -> Eye {
-        let view = live::view(camera, f64::from(size.width) / f64::from(size.height));
+    fn eye(&self, camera: &Camera, [width, height]: [u32; 2], stage: &Stage) -> Eye {
+        let view = live::view(camera, f64::from(width) / f64::from(height));
         let forward = view.towards.normalize();
         let right = forward.cross(&Vector::z()).normalize();
         let half = (view.angle / 2.0).tan();
@@ -235,7 +236,7 @@ impl Card {
             middle: self.middle as f32,
             reach: self.reach as f32,
             n_rows: stage.n_rows as u32,
-            sharper: live::sharper(size.height) as f32,
+            sharper: live::sharper(height) as f32,
             filler: [0; 3],
         }
     }

@@ -8,27 +8,24 @@ use honami_scene::forest::live::Live;
 use honami_scene::{Camera, ForestScene};
 
 use super::MOST_BYTES;
-use super::stage::Stage;
+use super::skin::{self, Drawn, Eye, Vertex};
 use crate::gpu::Gpu;
-use crate::target::Size;
 
-/// What lives on the cores, and what of it the stage is told.
+/// What lives on the cores, and the vertices of what is seen of it.
 pub(super) struct Host {
     live: Live,
-    /// Where the displacements of each copy begin, and those of all that are seen.
-    firsts: Vec<u32>,
-    moved: Vec<[f32; 3]>,
-    /// Of every level the copies that are drawn by it.
-    lists: Vec<Vec<u32>>,
+    n_threads: usize,
+    vertices: Vec<Vertex>,
+    buffer: Option<wgpu::Buffer>,
+    drawn: Vec<Drawn>,
 }
 
 impl Host {
     /// One that has felt its wind for as long as the scene says.
     pub(super) fn new(scene: &Arc<ForestScene>) -> anyhow::Result<Self> {
-        let (n_copies, n_levels) = (scene.places.len(), scene.body.levels.len());
         let n_threads = available_parallelism().map_or(1, usize::from);
         let live = Live::new(Arc::clone(scene), n_threads, MOST_BYTES)?;
-        Ok(Self { live, firsts: vec![0; n_copies], moved: Vec::new(), lists: vec![Vec::new(); n_levels] })
+        Ok(Self { live, n_threads, vertices: Vec::new(), buffer: None, drawn: Vec::new() })
     }
 
     /// What goes on.
@@ -36,31 +33,43 @@ impl Host {
         &mut self.live
     }
 
-    /// Poses what is seen of copies in a picture and hands it to the stage.
+    /// Puts all that is seen in a picture where it is now.
     pub(super) fn put(
         &mut self,
         gpu: &Gpu,
+        scene: &ForestScene,
         camera: &Camera,
-        size: Size,
-        stage: &Stage,
+        size: [u32; 2],
+        eye: &Eye,
     ) -> anyhow::Result<()> {
-        self.lists.iter_mut().for_each(Vec::clear);
-        self.moved.clear();
-        for seen in self.live.seen(camera, [size.width, size.height])? {
-            self.firsts[seen.copy] = self.moved.len() as u32;
-            self.moved.extend_from_slice(seen.motion);
-            self.lists[seen.level].push(seen.copy as u32);
-        }
-        let n_rows = self.moved.len();
+        let airs: Vec<f32> =
+            (0..scene.places.len()).map(|copy| self.live.blowing(copy).norm() as f32).collect();
+        let seen = self.live.seen(camera, size)?;
+        self.drawn = skin::skin(scene, &seen, eye, &airs, (self.n_threads, &mut self.vertices));
+        let bytes: &[u8] = bytemuck::cast_slice(&self.vertices);
+        let (wanted, most) = (bytes.len() as u64, gpu.device.limits().max_buffer_size);
         ensure!(
-            n_rows <= stage.n_rows,
-            "{} has room for {} nodes, and {n_rows} are seen at once: come nearer, or take fewer copies",
-            gpu.name(),
-            stage.n_rows
+            wanted <= most,
+            "{} draws {most} bytes of vertices, and {wanted} are seen at once: take fewer copies",
+            gpu.name()
         );
-        gpu.queue.write_buffer(&stage.firsts, 0, bytemuck::cast_slice(&self.firsts));
-        gpu.queue.write_buffer(&stage.moved, 0, bytemuck::cast_slice(&self.moved));
-        stage.list(gpu, &self.lists);
+        if self.buffer.as_ref().is_none_or(|buffer| buffer.size() < wanted) {
+            // A half more than is wanted now: what moves is not made anew for every leaf that comes into view.
+            self.buffer = Some(gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("vertices"),
+                size: (wanted + wanted / 2).next_multiple_of(4).clamp(4, most),
+                usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            }));
+        }
+        if let Some(buffer) = &self.buffer {
+            gpu.queue.write_buffer(buffer, 0, bytes);
+        }
         Ok(())
+    }
+
+    /// What was put: vertices, and of which copies.
+    pub(super) fn seen(&self) -> Option<(&wgpu::Buffer, &[Drawn])> {
+        self.buffer.as_ref().map(|buffer| (buffer, self.drawn.as_slice()))
     }
 }

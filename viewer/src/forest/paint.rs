@@ -1,9 +1,10 @@
 //! How a forest looks: sky and ground, shadows on it, wood, leaves.
 
 use bytemuck::{Pod, Zeroable};
-use honami_scene::ForestScene;
+use honami_scene::{Camera, ForestScene};
 use wgpu::{BindingType, BufferBindingType, ShaderStages};
 
+use super::skin::{self, Drawn};
 use super::stage::{CALL_BYTES, LEVEL_BYTES, Stage};
 use crate::gpu::Gpu;
 use crate::offscreen::Shot;
@@ -39,6 +40,8 @@ pub(super) struct Paint {
     shadows: wgpu::RenderPipeline,
     wood: wgpu::RenderPipeline,
     leaves: wgpu::RenderPipeline,
+    /// Of vertices that are worked out already: wood, leaves.
+    skinned: [wgpu::RenderPipeline; 2],
 }
 
 /// How a pipeline draws.
@@ -73,6 +76,8 @@ const BACKDROP: Way = Way {
 const SHADOWS: Way = Way { vertex: "shadow_at", fragment: "shadow", blend: Some(DARKEST), ..BACKDROP };
 const WOOD: Way =
     Way { vertex: "wood_at", fragment: "wood", is_solid: true, cull: Some(wgpu::Face::Back), ..BACKDROP };
+const SKINNED_WOOD: Way = Way { vertex: "wood_skinned", ..WOOD };
+const SKINNED_LEAVES: Way = Way { vertex: "leaf_skinned", ..LEAVES };
 const LEAVES: Way = Way { vertex: "leaf_at", fragment: "leaf", is_solid: true, is_cut: true, ..BACKDROP };
 
 impl Paint {
@@ -117,15 +122,23 @@ impl Paint {
         let module = shaders::module(device, "forest");
         let of = |way: &Way| pipeline(gpu, &layout, &module, samples, way);
         let [sky, shadows, wood, leaves] = [&BACKDROP, &SHADOWS, &WOOD, &LEAVES].map(of);
-        Self { samples, look, looked, read, sky, shadows, wood, leaves }
+        let skinned = [&SKINNED_WOOD, &SKINNED_LEAVES].map(of);
+        Self { samples, look, looked, read, sky, shadows, wood, leaves, skinned }
     }
 
     pub(super) fn samples(&self) -> u32 {
         self.samples
     }
 
-    /// Draws what is on the stage.
-    pub(super) fn draw(&self, gpu: &Gpu, target: &Target, scene: &ForestScene, stage: &Stage, shot: &Shot) {
+    /// Draws what is on the stage, or what was skinned.
+    pub(super) fn draw(
+        &self,
+        gpu: &Gpu,
+        target: &Target,
+        (scene, stage): (&ForestScene, &Stage),
+        skinned: Option<(&wgpu::Buffer, &[Drawn])>,
+        shot: &Shot,
+    ) {
         gpu.queue.write_buffer(&self.look, 0, bytemuck::bytes_of(&look(target, scene, shot)));
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let mut pass = target.pass(&mut encoder);
@@ -136,6 +149,15 @@ impl Paint {
         pass.set_pipeline(&self.shadows);
         pass.draw(0..4, 0..stage.n_copies as u32);
         pass.set_index_buffer(stage.indices.slice(..), wgpu::IndexFormat::Uint32);
+        match skinned {
+            Some((vertices, drawn)) => self.draw_skinned(&mut pass, stage, vertices, drawn),
+            None => self.draw_posed(&mut pass, stage),
+        }
+        drop(pass);
+        gpu.queue.submit([encoder.finish()]);
+    }
+
+    fn draw_posed(&self, pass: &mut wgpu::RenderPass<'_>, stage: &Stage) {
         for (which, pipeline) in (0..).zip([&self.wood, &self.leaves]) {
             pass.set_pipeline(pipeline);
             for level in 0..stage.n_levels() as u32 {
@@ -144,8 +166,24 @@ impl Paint {
                 pass.draw_indexed_indirect(&stage.calls, call);
             }
         }
-        drop(pass);
-        gpu.queue.submit([encoder.finish()]);
+    }
+
+    fn draw_skinned(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        stage: &Stage,
+        vertices: &wgpu::Buffer,
+        drawn: &[Drawn],
+    ) {
+        pass.set_vertex_buffer(0, vertices.slice(..));
+        for (which, pipeline) in self.skinned.iter().enumerate() {
+            pass.set_pipeline(pipeline);
+            for drawn in drawn {
+                let first = [drawn.wood, drawn.leaves][which] as i32;
+                let indices = &stage.indices_of(drawn.level)[which];
+                pass.draw_indexed(indices.clone(), first, 0..1);
+            }
+        }
     }
 }
 
@@ -162,8 +200,13 @@ fn look(target: &Target, scene: &ForestScene, shot: &Shot) -> Look {
         up: up.map(|v| v * half),
         crown: crown as f32,
         forward,
-        pixel: 2.0 * half / target.size().height as f32,
+        pixel: pixel(&shot.camera, target.size().height),
     }
+}
+
+/// Metres that a pixel is wide a metre away.
+pub(super) fn pixel(camera: &Camera, height: u32) -> f32 {
+    2.0 * (camera.angle / 2.0).tan() / height as f32
 }
 
 fn entry(
@@ -188,6 +231,7 @@ fn pipeline(
     way: &Way,
 ) -> wgpu::RenderPipeline {
     let is_strip = way.vertex == SHADOWS.vertex;
+    let is_skinned = [SKINNED_WOOD.vertex, SKINNED_LEAVES.vertex].contains(&way.vertex);
     let topology = match is_strip {
         true => wgpu::PrimitiveTopology::TriangleStrip,
         false => wgpu::PrimitiveTopology::TriangleList,
@@ -203,7 +247,7 @@ fn pipeline(
             module,
             entry_point: Some(way.vertex),
             compilation_options: Default::default(),
-            buffers: &[],
+            buffers: if is_skinned { &[Some(skin::LAYOUT)] } else { &[] },
         },
         primitive: wgpu::PrimitiveState { topology, cull_mode: way.cull, ..Default::default() },
         depth_stencil: Some(depth),

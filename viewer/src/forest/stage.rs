@@ -122,7 +122,7 @@ impl Stage {
             leaves: made("leaves", &leaves, Uses::STORAGE),
             indices: made("indices", bytemuck::cast_slice(&parts.indices), Uses::INDEX),
             levels: made("levels", &levels(scene, &parts), Uses::UNIFORM | Uses::STORAGE),
-            calls: made("calls", &calls(&parts, |_| 0), both | Uses::INDIRECT),
+            calls: made("calls", &calls(&parts), both | Uses::INDIRECT),
             parts: parts.levels,
             first_card: parts.first_card,
         };
@@ -140,14 +140,13 @@ impl Stage {
         gpu.queue.write_buffer(&self.airs, 0, bytemuck::cast_slice(&speeds.collect::<Vec<_>>()));
     }
 
-    /// Which copies are drawn by which level: a list a level.
-    pub(super) fn list(&self, gpu: &Gpu, lists: &[Vec<u32>]) {
-        for (level, list) in lists.iter().enumerate() {
-            let begin = 4 * (level * self.n_copies) as u64;
-            gpu.queue.write_buffer(&self.seen, begin, bytemuck::cast_slice(list));
-        }
-        let calls = calls_of(&self.parts, self.first_card, |level| lists[level].len() as u32);
-        gpu.queue.write_buffer(&self.calls, 0, &calls);
+    /// Indices of the wood of a level, and of all its leaves.
+    pub(super) fn indices_of(&self, level: usize) -> [std::ops::Range<u32>; 2] {
+        let part = &self.parts[level];
+        [
+            part.first_index..part.first_index + part.n_indices,
+            self.first_card..self.first_card + 6 * part.n_leaves,
+        ]
     }
 
     /// What the paint reads, in the order of its bindings.
@@ -158,9 +157,12 @@ impl Stage {
 
 fn copy((k, (place, stand)): (usize, (&[f32; 2], &honami_mechanics::Stand))) -> Copy {
     let (sin, cos) = stand.turn.sin_cos();
-    // As good as by chance: parts of the golden ratio.
-    let chance = (k as f64 * 0.618_033_988_749_895).fract() as f32;
-    Copy { place: *place, turn: [sin, cos], scale: stand.scale, chance, filler: [0; 2] }
+    Copy { place: *place, turn: [sin, cos], scale: stand.scale, chance: chance(k), filler: [0; 2] }
+}
+
+/// What chance made of a copy, 0 to 1: as good as that, parts of the golden ratio.
+pub(super) fn chance(copy: usize) -> f32 {
+    (copy as f64 * 0.618_033_988_749_895).fract() as f32
 }
 
 fn levels(scene: &ForestScene, parts: &Parts) -> Vec<u8> {
@@ -182,21 +184,12 @@ fn levels(scene: &ForestScene, parts: &Parts) -> Vec<u8> {
     bytes
 }
 
-fn calls(parts: &Parts, n_copies: impl Fn(usize) -> u32) -> Vec<u8> {
-    calls_of(&parts.levels, parts.first_card, n_copies)
-}
-
-fn calls_of(parts: &[Part], first_card: u32, n_copies: impl Fn(usize) -> u32) -> Vec<u8> {
-    let call = |n_indices, first_index, level| Call {
-        n_indices,
-        n_copies: n_copies(level),
-        first_index,
-        base_vertex: 0,
-        first_copy: 0,
-    };
-    let of_level = |(level, part): (usize, &Part)| {
-        [call(part.n_indices, part.first_index, level), call(6 * part.n_leaves, first_card, level)]
-    };
-    let calls: Vec<Call> = parts.iter().enumerate().flat_map(of_level).collect();
+/// Two a level, of no copy yet.
+fn calls(parts: &Parts) -> Vec<u8> {
+    let call =
+        |n_indices, first_index| Call { n_indices, n_copies: 0, first_index, base_vertex: 0, first_copy: 0 };
+    let of_level =
+        |part: &Part| [call(part.n_indices, part.first_index), call(6 * part.n_leaves, parts.first_card)];
+    let calls: Vec<Call> = parts.levels.iter().flat_map(of_level).collect();
     bytemuck::cast_slice(&calls).to_vec()
 }

@@ -1,12 +1,12 @@
 //! Forests against the simulation that they show, and pictures against pictures.
 
 use super::chains::Chains;
-use super::{By, ForestPicture};
+use super::{By, ForestPicture, of_levels};
 use crate::gpu::{Gpu, adapters, name};
 use crate::offscreen::{Picture as _, Shot};
 use crate::target::{Size, Target};
 use crate::testing;
-use honami_mechanics::{Following, Forest, Pose, Threads};
+use honami_mechanics::{Details, Following, Forest, Pose, Threads};
 use honami_scene::forest::live;
 use honami_scene::{ForestScene, Orbit};
 
@@ -110,13 +110,16 @@ fn numbers(bytes: &[u8]) -> Vec<u32> {
 fn a_card_has_every_node_where_the_simulation_has_it() {
     let Some(gpu) = testing::gpu() else { return };
     let scene = testing::forest(300, 8, 40);
-    let (details, grove) = (scene.body.details().unwrap(), scene.grove());
+    let grove = scene.grove();
     let threads = Threads::new(1).unwrap();
     let wind = live::wind(&scene, &scene.wind, 0).unwrap();
     let mut forest = Forest::new(&scene.stirring, &scene.body.order, &scene.stands, &scene.pace).unwrap();
     let mut picture = ForestPicture::new(&gpu, scene.clone(), By::Card).unwrap();
     let target = Target::new(&gpu, Size { width: 1280, height: 720, samples: 1 }).unwrap();
     let orbit = picture.orbit();
+    let sharper = live::sharper(of_levels(&gpu, &target)[1]);
+    let farther = scene.body.levels.iter().skip(1).map(|level| (level.from * sharper, level.detail()));
+    let details = Details::new(&farther.collect::<Vec<_>>()).unwrap();
     let (mut n_of_levels, mut farthest) = (vec![0; scene.body.levels.len()], 0.0_f32);
     for (time, times) in [(0.0, 0.6), (3.0, 1.5), (8.0, 6.0)] {
         let camera = Orbit { distance: orbit.distance * times, ..orbit }.camera();

@@ -260,6 +260,20 @@ fn wood(wood: Wood) -> @location(0) vec4f {
     return vec4f(shown(hazed(bark * light, distance)), 1.0);
 }
 
+// A vertex that was worked out elsewhere: see the skin of the viewer's forest.
+struct Skinned {
+    @location(0) place: vec4f,
+    @location(1) normal: vec4f,
+    @location(2) across: vec4f,
+    @location(3) at: vec4f,
+}
+
+@vertex
+fn wood_skinned(v: Skinned) -> Wood {
+    let position = look.matrix * vec4f(v.place.xyz, 1.0);
+    return Wood(position, v.normal.xyz, v.place.xyz, vec2f(TAU * v.at.x, v.place.w), v.at.z, v.across.w);
+}
+
 struct Blade {
     @builtin(position) position: vec4f,
     // Across the leaf from -1 to 1, along it from 0 to 1.
@@ -299,8 +313,14 @@ fn leaf_at(@builtin(vertex_index) k: u32, @builtin(instance_index) row: u32) -> 
     blade.normal = in_world(copy, turned(turn, cross(across, tip)));
     blade.across = in_world(copy, turned(turn, across));
     blade.open = leaf.open;
-    blade.hue = leaf.chance + 0.35 * (copy.chance - 0.5);
+    blade.hue = clamp(leaf.chance + 0.35 * (copy.chance - 0.5), 0.0, 1.0);
     return blade;
+}
+
+@vertex
+fn leaf_skinned(v: Skinned) -> Blade {
+    let position = look.matrix * vec4f(v.place.xyz, 1.0);
+    return Blade(position, v.at.xy, v.place.xyz, v.normal.xyz, v.across.xyz, v.at.z, v.at.w);
 }
 
 // Half the breadth of a leaf, of the most: widest below the middle, with a point.
