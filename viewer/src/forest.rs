@@ -20,7 +20,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use anyhow::ensure;
-use honami_mechanics::{Damping, Following};
+use honami_mechanics::{Damping, Following, Vector};
 use honami_scene::{ForestScene, Orbit};
 
 use crate::gpu::Gpu;
@@ -200,13 +200,11 @@ impl ForestPicture {
     }
 
     fn feel(&mut self) {
-        let copies = 0..self.scene.places.len();
-        match &mut self.mover {
-            Mover::Host(host) => {
-                copies.for_each(|copy| drop(std::hint::black_box(host.live().blowing(copy))))
-            }
-            Mover::Card(card) => copies.for_each(|copy| drop(std::hint::black_box(card.blowing(copy)))),
-        }
+        let blowing = |copy| match &mut self.mover {
+            Mover::Host(host) => host.live().blowing(copy),
+            Mover::Card(card) => card.blowing(copy),
+        };
+        std::hint::black_box((0..self.scene.places.len()).map(blowing).sum::<Vector>());
     }
 }
 
