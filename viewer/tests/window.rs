@@ -9,6 +9,10 @@ use honami_scene::control::Event;
 use honami_scene::skeleton::{Bone, Film, Group, Joint};
 use honami_scene::{Scene, SkeletonScene};
 
+#[expect(unreachable_pub, reason = "it is that of the library's tests")]
+#[path = "../src/testing/forest.rs"]
+mod forest;
+
 const VIEWER: &str = env!("CARGO_BIN_EXE_honami-viewer");
 
 /// A trunk with one branch, of a red group, that sways.
@@ -122,6 +126,38 @@ fn a_window_is_opened_driven_captured_and_ended() {
     heard(&mut lines, |event| matches!(event, Event::Failed(why) if why.contains("cut short")));
     heard(&mut lines, |event| *event == Event::Cut(3));
     // The end of the pipe is its end.
+    drop(tell);
+    heard(&mut lines, |event| *event == Event::Closed);
+    assert!(child.wait().unwrap().success());
+}
+
+#[test]
+fn a_forest_sways_in_its_window_and_its_wind_is_turned() {
+    let Some((_server, display)) = display() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let (path, picture) = (folder.path().join("a.scene"), folder.path().join("window.png"));
+    honami_scene::file::write(&path, &Scene::Forest(Box::new(forest::forest(60, 6, 4)))).unwrap();
+    let mut child = Command::new(VIEWER)
+        .arg(&path)
+        .args(["--control", "--size", "640x480"])
+        .env("DISPLAY", display)
+        .env_remove("WAYLAND_DISPLAY")
+        .env("XDG_RUNTIME_DIR", folder.path())
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut tell = child.stdin.take().unwrap();
+    let mut lines = BufReader::new(child.stdout.take().unwrap());
+    heard(&mut lines, |event| matches!(event, Event::Ready { protocol: 1, .. }));
+    writeln!(tell, "wind storm+vortex:x=2,y=1\nwind breeze\ncut 3\npause\nframe 25").unwrap();
+    heard(&mut lines, |event| matches!(event, Event::Failed(why) if why.contains("\"breeze\" is no wind")));
+    heard(&mut lines, |event| matches!(event, Event::Failed(why) if why.contains("a forest has no groups")));
+    writeln!(tell, "{{\"capture\":{:?}}}", picture.to_str().unwrap()).unwrap();
+    heard(&mut lines, |event| *event == Event::Captured(picture.clone()));
+    let window = image::open(&picture).unwrap().into_rgb8();
+    let n_green = window.pixels().filter(|at| at.0[1] > at.0[0] && at.0[0] > at.0[2]).count();
+    assert!(n_green > 20_000, "the ground is seen: {n_green} green pixels");
     drop(tell);
     heard(&mut lines, |event| *event == Event::Closed);
     assert!(child.wait().unwrap().success());

@@ -54,7 +54,7 @@ struct Leaf {
 const TAU = 6.2831853;
 
 // Metres in which haze takes most of what is seen, in heights of the plant.
-const HAZY = 55.0;
+const HAZY = 170.0;
 
 fn hazed(light: vec3f, distance: f32) -> vec3f {
     let clear = exp(-distance / (HAZY * look.height));

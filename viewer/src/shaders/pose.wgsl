@@ -17,7 +17,6 @@ struct Chain {
 
 @group(0) @binding(0) var<uniform> plant: Plant;
 @group(0) @binding(1) var<uniform> level: Level;
-// By what a unit of a mode's amplitude turns the segment of a node: x, y and z of all nodes, mode after mode.
 // By what a unit of a mode's amplitude turns the segment of a node: x, y and z of all nodes, mode after mode. At the end, as if
 // of another mode, the segments at rest.
 @group(0) @binding(2) var<storage, read> turns: array<f32>;
