@@ -7,10 +7,12 @@ use honami_scene::weather::{value, with_value};
 
 /// What of a wind has a slider: its name, what it is, and from where to where.
 const VALUES: [(&str, &str, std::ops::RangeInclusive<f64>); 3] = [
-    ("speed", "m/s", 0.5..=40.0),
-    ("towards", "°, 0 is x", -180.0..=180.0),
-    ("deviation", "m/s of gusts", 0.0..=10.0),
+    ("speed", "speed, m/s", 0.5..=40.0),
+    ("towards", "towards, °", -180.0..=180.0),
+    ("deviation", "gusts, m/s", 0.0..=10.0),
 ];
+/// Width of a slider, points: with its number and its word it goes into the panel.
+const SLIDER: f32 = 84.0;
 /// Winds about an upright axis that can be put where somebody clicks.
 const KINDS: [&str; 3] = ["vortex", "source", "sink"];
 /// Their strength at first, square metres per second.
@@ -74,16 +76,16 @@ impl Knobs {
     /// Returns what was turned.
     pub(super) fn show(&mut self, ui: &mut Ui) -> Turned {
         let mut turned = Turned::default();
+        ui.spacing_mut().slider_width = SLIDER;
         ui.strong("wind");
         let field = ui.text_edit_singleline(&mut self.typed);
         if field.lost_focus() && self.typed.trim() != self.wind {
             self.wind = self.typed.trim().to_owned();
             turned.wind = true;
         }
-        for (name, unit, range) in VALUES {
+        for (name, told, range) in VALUES {
             let Some(mut now) = value(&self.wind, name) else { continue };
-            let slider = Slider::new(&mut now, range).text(format!("{name}, {unit}"));
-            if ui.add(slider).changed()
+            if ui.add(Slider::new(&mut now, range).text(told)).changed()
                 && let Some(words) = with_value(&self.wind, name, now)
             {
                 self.type_wind(&words);
@@ -95,10 +97,10 @@ impl Knobs {
         ui.strong("plants");
         let Damping { alpha, beta, mass, air } = &mut self.damping;
         let sliders = [
-            Slider::new(alpha, 0.0..=5.0).text("α, damping by mass, 1/s"),
-            Slider::new(beta, 0.0..=0.1).text("β, by stiffness, s"),
-            Slider::new(mass, 0.2..=10.0).text("m, times as heavy").logarithmic(true),
-            Slider::new(air, 0.0..=5.0).text("by the air, times"),
+            Slider::new(alpha, 0.0..=5.0).text("α, by mass, 1/s"),
+            Slider::new(beta, 0.0..=0.1).text("β, by stiffness"),
+            Slider::new(mass, 0.2..=10.0).text("m, times").logarithmic(true),
+            Slider::new(air, 0.0..=5.0).text("air, times"),
         ];
         for slider in sliders {
             turned.damping |= ui.add(slider).changed();
@@ -125,7 +127,7 @@ impl Knobs {
                 }
                 let [x, y] = planted.at;
                 let slider = Slider::new(&mut planted.strength, 0.0..=2000.0);
-                is_changed |= ui.add(slider.text(format!("{} at {x:.0}, {y:.0}", planted.kind))).changed();
+                is_changed |= ui.add(slider.text(format!("{} {x:.0}, {y:.0}", planted.kind))).changed();
             });
         }
         if let Some(row) = gone {
