@@ -1,6 +1,6 @@
 //! A forest in the terminal: copies of a plant in the wind, seen from wherever keys and mouse go.
 //!
-//! What keys do is pure; [`Forest::watch`] is the only part that knows the screen and the thread that moves and draws.
+//! What keys do is pure; `Forest::watch` is the only part that knows the screen and the thread that moves and draws.
 
 mod moving;
 #[cfg(test)]
