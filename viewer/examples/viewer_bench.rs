@@ -1,7 +1,8 @@
-//! What a forest in the viewer takes: `viewer_bench [COPIES [NODES [MODES]]] [--card|--cpu] [--all] [--out IMAGE.png]`.
+//! What a forest in the viewer takes: `viewer_bench [COPIES [NODES [MODES]]] [--card|--cpu] [--all] [--sharp] [--out IMAGE.png]`.
 //!
 //! A tree of 3437 nodes with 25 modes, a hundred times, at 1280x720: frames per second and milliseconds by part, median and
-//! spread (from the first quartile to the third), memory, start. `--all`: every node of every copy.
+//! spread (from the first quartile to the third), memory, start. `--all`: every node of every copy;
+//! `--sharp`: one sample a pixel in place of four.
 #![expect(clippy::unwrap_used, reason = "a benchmark that cannot go on ends")]
 
 use std::time::Instant;
@@ -12,7 +13,7 @@ use honami_viewer::offscreen::{Picture as _, Shot};
 use honami_viewer::target::{Size, Target};
 use serde_json::json;
 
-#[expect(unreachable_pub, reason = "it is that of the tests")]
+#[expect(unreachable_pub, clippy::unwrap_used, reason = "it is that of the tests, of a tree that there is")]
 #[path = "../src/testing/forest.rs"]
 mod forest;
 
@@ -39,7 +40,8 @@ fn main() -> anyhow::Result<()> {
         _ => By::best(&gpu, &scene),
     };
     let mut picture = ForestPicture::new(&gpu, scene, by)?;
-    let target = Target::new(&gpu, Size { width: 1280, height: 720, samples: 4 })?;
+    let target =
+        Target::new(&gpu, Size { width: 1280, height: 720, samples: if is("--sharp") { 1 } else { 4 } })?;
     let camera = picture.orbit().camera();
     picture.draw(&gpu, &target, &Shot { time: 0.0, camera })?;
     let pixels = target.read(&gpu)?;

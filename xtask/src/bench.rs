@@ -10,7 +10,7 @@ use crate::{BUILD, accuracy, forest};
 /// Name, what it measures, and how to run it.
 type Bench = (&'static str, &'static str, fn(&[&str]) -> anyhow::Result<()>);
 
-const BENCHES: [Bench; 17] = [
+const BENCHES: [Bench; 18] = [
     ("encode", "the encoder's time, bytes and likeness: `bench encode [BYTES] [CLIP…]`", encode),
     ("trackers", "KLT against OpenCV's calcOpticalFlowPyrLK, same frames, alternating", trackers),
     ("box", "box matching against OpenCV's matchTemplate: `bench box [CLIP…]`", box_matching),
@@ -56,6 +56,11 @@ const BENCHES: [Bench; 17] = [
         "what a plugin costs: a call in this process and in its own, its start, its death, the list",
         plugins,
     ),
+    (
+        "viewer",
+        "a forest drawn, part by part: `bench viewer [COPIES [NODES [MODES]]] [--card|--cpu] [--all] [--sharp] [--out IMAGE]`",
+        viewer,
+    ),
 ];
 
 pub(crate) fn run(args: &[&str]) -> anyhow::Result<()> {
@@ -73,6 +78,10 @@ pub(crate) fn run(args: &[&str]) -> anyhow::Result<()> {
 
 fn example(package: &str, name: &str, args: &[&str]) -> Step {
     cargo(&["run", "--quiet", "--release", "-p", package, "--example", name, "--"]).args(args)
+}
+
+fn viewer(args: &[&str]) -> anyhow::Result<()> {
+    example("honami-viewer", "viewer_bench", args).run()
 }
 
 fn trackers(args: &[&str]) -> anyhow::Result<()> {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::thread::available_parallelism;
 
 use anyhow::ensure;
-use honami_scene::forest::live::Live;
+use honami_scene::forest::live::{Live, Seen};
 use honami_scene::{Camera, ForestScene};
 
 use super::MOST_BYTES;
@@ -44,7 +44,13 @@ impl Host {
     ) -> anyhow::Result<()> {
         let airs: Vec<f32> =
             (0..scene.places.len()).map(|copy| self.live.blowing(copy).norm() as f32).collect();
-        let seen = self.live.seen(camera, size)?;
+        let mut seen = self.live.seen(camera, size)?;
+        // Near ones first: what they hide is not shaded.
+        let away = |seen: &Seen<'_>| {
+            let [x, y] = scene.places[seen.copy];
+            (x - camera.eye[0]).hypot(y - camera.eye[1])
+        };
+        seen.sort_by(|a, b| away(a).total_cmp(&away(b)));
         self.drawn = skin::skin(scene, &seen, eye, &airs, (self.n_threads, &mut self.vertices));
         let bytes: &[u8] = bytemuck::cast_slice(&self.vertices);
         let (wanted, most) = (bytes.len() as u64, gpu.device.limits().max_buffer_size);

@@ -144,15 +144,16 @@ impl Paint {
         let mut pass = target.pass(&mut encoder);
         pass.set_bind_group(0, &self.looked, &[]);
         pass.set_bind_group(1, &self.read, &[0]);
-        pass.set_pipeline(&self.sky);
-        pass.draw(0..3, 0..1);
-        pass.set_pipeline(&self.shadows);
-        pass.draw(0..4, 0..stage.n_copies as u32);
         pass.set_index_buffer(stage.indices.slice(..), wgpu::IndexFormat::Uint32);
         match skinned {
             Some((vertices, drawn)) => self.draw_skinned(&mut pass, stage, vertices, drawn),
             None => self.draw_posed(&mut pass, stage),
         }
+        // What nothing hides.
+        pass.set_pipeline(&self.sky);
+        pass.draw(0..3, 0..1);
+        pass.set_pipeline(&self.shadows);
+        pass.draw(0..4, 0..stage.n_copies as u32);
         drop(pass);
         gpu.queue.submit([encoder.finish()]);
     }
@@ -236,10 +237,6 @@ fn pipeline(
         true => wgpu::PrimitiveTopology::TriangleStrip,
         false => wgpu::PrimitiveTopology::TriangleList,
     };
-    let mut depth = nearest(way.is_solid);
-    if !way.is_solid {
-        depth.depth_compare = Some(wgpu::CompareFunction::Always);
-    }
     gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(way.fragment),
         layout: Some(layout),
@@ -250,7 +247,7 @@ fn pipeline(
             buffers: if is_skinned { &[Some(skin::LAYOUT)] } else { &[] },
         },
         primitive: wgpu::PrimitiveState { topology, cull_mode: way.cull, ..Default::default() },
-        depth_stencil: Some(depth),
+        depth_stencil: Some(nearest(way.is_solid)),
         multisample: wgpu::MultisampleState {
             count: samples,
             mask: !0,

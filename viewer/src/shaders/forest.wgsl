@@ -89,6 +89,7 @@ struct Seen {
 @vertex
 fn over_all(@builtin(vertex_index) k: u32) -> Seen {
     let at = vec2f(f32(k & 1u) * 4.0 - 1.0, f32(k >> 1u) * 4.0 - 1.0);
+    // Behind all that is drawn.
     return Seen(vec4f(at, 0.0, 1.0), look.forward + look.right * at.x + look.up * at.y);
 }
 
@@ -278,11 +279,40 @@ struct Blade {
     @builtin(position) position: vec4f,
     // Across the leaf from -1 to 1, along it from 0 to 1.
     @location(0) at: vec2f,
-    @location(1) place: vec3f,
-    @location(2) normal: vec3f,
-    @location(3) across: vec3f,
-    @location(4) @interpolate(flat) open: f32,
-    @location(5) @interpolate(flat) hue: f32,
+    // As they are shown: its halves, which a fold along the midrib has look two ways.
+    @location(1) @interpolate(flat) left: vec3f,
+    @location(2) @interpolate(flat) right: vec3f,
+}
+
+// A leaf in the light: once a vertex, for pixels of small leaves are many, and light is the same all over one.
+fn blade_at(place: vec3f, at: vec2f, normal: vec3f, across: vec3f, open: f32, hue: f32) -> Blade {
+    let towards = look.eye - place;
+    let distance = length(towards);
+    let green = mix(vec3f(0.040, 0.088, 0.016), vec3f(0.092, 0.140, 0.022), hue);
+    let sunlit = smoothstep(0.10, 0.80, open);
+    var blade: Blade;
+    blade.position = look.matrix * vec4f(place, 1.0);
+    blade.at = at;
+    for (var side = 0; side < 2; side++) {
+        let fold = select(0.32, -0.32, side == 0);
+        var looks = normalize(normal - fold * across);
+        // The side that is seen is the one that counts.
+        looks *= select(-1.0, 1.0, dot(looks, towards) >= 0.0);
+        let towards_sun = dot(looks, SUN);
+        let facing = max(towards_sun, 0.0);
+        let through = 0.55 * max(-towards_sun, 0.0);
+        let glow = vec3f(1.55, 1.75, 0.55) * green;
+        let bright = 0.035 * pow(max(dot(reflect(-SUN, looks), towards / distance), 0.0), 18.0);
+        var light = SUNLIGHT * sunlit * (green * facing + glow * through + vec3f(bright));
+        light += green * ambient(looks) * (0.18 + 0.95 * open);
+        let colour = shown(hazed(light, distance));
+        if side == 0 {
+            blade.left = colour;
+        } else {
+            blade.right = colour;
+        }
+    }
+    return blade;
 }
 
 @vertex
@@ -306,56 +336,34 @@ fn leaf_at(@builtin(vertex_index) k: u32, @builtin(instance_index) row: u32) -> 
     let at = leaf.base + leaf.length * (tip * corner.y + across * (0.5 * leaf.breadth * corner.x));
     let own = ring.rest + move_of(first, ring.node) + turned(turn, at);
     let place = vec3f(copy.place, 0.0) + copy.scale * in_world(copy, own);
-    var blade: Blade;
-    blade.position = look.matrix * vec4f(place, 1.0);
-    blade.at = corner;
-    blade.place = place;
-    blade.normal = in_world(copy, turned(turn, cross(across, tip)));
-    blade.across = in_world(copy, turned(turn, across));
-    blade.open = leaf.open;
-    blade.hue = clamp(leaf.chance + 0.35 * (copy.chance - 0.5), 0.0, 1.0);
-    return blade;
+    let hue = clamp(leaf.chance + 0.35 * (copy.chance - 0.5), 0.0, 1.0);
+    let normal = in_world(copy, turned(turn, cross(across, tip)));
+    return blade_at(place, corner, normal, in_world(copy, turned(turn, across)), leaf.open, hue);
 }
 
 @vertex
 fn leaf_skinned(v: Skinned) -> Blade {
-    let position = look.matrix * vec4f(v.place.xyz, 1.0);
-    return Blade(position, v.at.xy, v.place.xyz, v.normal.xyz, v.across.xyz, v.at.z, v.at.w);
+    return blade_at(v.place.xyz, v.at.xy, v.normal.xyz, v.across.xyz, v.at.z, v.at.w);
 }
 
 // Half the breadth of a leaf, of the most: widest below the middle, with a point.
 fn outline(along: f32) -> f32 {
     let a = clamp(along, 0.0, 1.0);
-    return 2.6 * pow(a, 0.75) * pow(1.0 - a, 0.9) * (1.0 - 0.18 * a);
+    return 2.6 * sqrt(a * sqrt(a)) * (1.0 - a) * (1.0 - 0.1 * a);
 }
 
 @fragment
-fn leaf(blade: Blade, @builtin(front_facing) is_front: bool) -> @location(0) vec4f {
+fn leaf(blade: Blade) -> @location(0) vec4f {
     // How much of the pixel is leaf: distance from the outline, in pixels.
-    let inside = outline(blade.at.y) - abs(blade.at.x);
+    let beside = abs(blade.at.x);
+    let inside = outline(blade.at.y) - beside;
     let cover = clamp(inside / max(fwidth(inside), 1e-4) + 0.5, 0.0, 1.0);
     let fine = clamp(1.4 - 70.0 * fwidth(blade.at.y), 0.0, 1.0);
     if cover < 0.1 {
         discard;
     }
-    let towards = look.eye - blade.place;
-    let distance = length(towards);
-    // Folded along the midrib; the side that is seen is the one that counts.
-    let fold = 0.32 * sign(blade.at.x) * smoothstep(0.0, 0.12, abs(blade.at.x));
-    var normal = normalize(blade.normal - fold * blade.across);
-    normal *= select(-1.0, 1.0, dot(normal, towards) >= 0.0);
-    let rib = 1.0 - smoothstep(0.02, 0.07, abs(blade.at.x));
-    let veins = 0.5 + 0.5 * cos((blade.at.y - 0.35 * abs(blade.at.x)) * 44.0);
-    let young = clamp(blade.hue, 0.0, 1.0);
-    var green = mix(vec3f(0.040, 0.088, 0.016), vec3f(0.092, 0.140, 0.022), young);
-    green *= 1.0 + fine * (0.45 * rib - 0.10 * veins);
-    let towards_sun = dot(normal, SUN);
-    let sunlit = smoothstep(0.10, 0.80, blade.open);
-    let facing = max(towards_sun, 0.0);
-    let through = max(-towards_sun, 0.0);
-    let glow = vec3f(1.55, 1.75, 0.55) * green;
-    let bright = pow(max(dot(reflect(-SUN, normal), towards / distance), 0.0), 18.0);
-    var light = SUNLIGHT * sunlit * (green * facing + glow * (0.55 * through) + vec3f(0.035) * bright);
-    light += green * ambient(normal) * (0.18 + 0.95 * blade.open);
-    return vec4f(shown(hazed(light, distance)), cover);
+    let rib = 1.0 - smoothstep(0.02, 0.07, beside);
+    let veins = abs(fract((blade.at.y - 0.35 * beside) * 7.0) - 0.5) * 2.0;
+    let colour = select(blade.right, blade.left, blade.at.x < 0.0);
+    return vec4f(colour * (1.0 + fine * (0.20 * rib - 0.05 * veins)), cover);
 }
