@@ -3,7 +3,6 @@
 //! A tree of 3437 nodes with 25 modes, a hundred times, at 1280x720: frames per second and milliseconds by part, median and
 //! spread (from the first quartile to the third), memory, start. `--all`: every node of every copy;
 //! `--sharp`: one sample a pixel in place of four.
-#![expect(clippy::unwrap_used, reason = "a benchmark that cannot go on ends")]
 
 use std::time::Instant;
 
