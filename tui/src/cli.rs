@@ -35,6 +35,7 @@ use std::process::ExitCode;
 use clap::error::ErrorKind;
 use clap::{CommandFactory as _, Parser as _};
 use honami_workbench::WorkbenchError;
+use honami_workbench::plant::weather::WeatherError;
 use honami_workbench::plugins::{HostError, ValueError, file_of, quoted};
 use honami_workbench::session::{Session, SessionOptions};
 use honami_workbench::store::{Access, Project};
@@ -153,6 +154,7 @@ fn is_usage(error: &anyhow::Error) -> bool {
         cause.is::<Usage>()
             || cause.is::<ValueError>()
             || cause.downcast_ref::<HostError>().is_some_and(by_plugin)
+            || cause.downcast_ref::<WeatherError>().is_some_and(WeatherError::is_as_typed)
             || wrapped.is_some_and(|error| {
                 error.is_as_typed() || matches!(error, WorkbenchError::Plugin(error) if by_plugin(error))
             })

@@ -143,7 +143,9 @@ pub(crate) fn finding() -> Finding {
 
 /// The adapter that a viewer would draw with, or why it has none.
 fn adapter(program: &Path) -> Result<String, String> {
-    let output = command(program, &["--adapters".into(), "--json".into()]).stdin(Stdio::null()).output();
+    // Whoever only asks wants no cache of compiled shaders at home.
+    let mut command = command(program, &["--adapters".into(), "--json".into()]);
+    let output = command.env("MESA_SHADER_CACHE_DISABLE", "true").stdin(Stdio::null()).output();
     let output = output.map_err(|error| format!("{}: {error}", starting(program)))?;
     let told: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap_or_default();
     let first = told["adapters"].get(0).ok_or("there is nothing to draw with: no card and no driver")?;
