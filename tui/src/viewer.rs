@@ -8,12 +8,14 @@ use std::io::{BufRead as _, BufReader, Write as _};
 use std::os::unix::process::ExitStatusExt as _;
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Command, ExitStatus, Stdio};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 
 use anyhow::{Context as _, ensure};
 use honami_model::unfinished::Unfinished;
+use honami_workbench::WorkbenchError;
 use honami_workbench::doctor::Finding;
 use honami_workbench::media;
+use honami_workbench::progress::{Flow, Progress};
 use honami_workbench::scene::control::{self, Event, Garbled};
 use honami_workbench::scene::{Scene, file};
 use tempfile::TempDir;
@@ -32,15 +34,34 @@ pub(crate) enum Heard {
     Ended(Option<String>),
 }
 
+/// Lines for a viewer that wait to be written.
+const WAITING: usize = 1024;
+
 /// Who tells a viewer what to do. The viewer ends when the last of these goes.
+///
+/// A thread of its own writes: whoever waited for the viewer to read could not hear what that waits to say.
 #[derive(Clone, Debug)]
-pub(crate) struct Teller(Arc<Mutex<ChildStdin>>);
+pub(crate) struct Teller(SyncSender<String>);
 
 impl Teller {
-    /// Writes lines. A viewer that has gone hears nothing, which its end tells.
-    pub(crate) fn tell(&self, lines: &str) {
-        let mut pipe = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        pipe.write_all(lines.as_bytes()).and_then(|()| pipe.flush()).unwrap_or_default();
+    /// Tells it lines without waiting; whether they will be written. A viewer that has gone hears nothing, which its end
+    /// tells.
+    pub(crate) fn tell(&self, lines: &str) -> bool {
+        !matches!(self.0.try_send(lines.to_owned()), Err(TrySendError::Full(_)))
+    }
+
+    /// Tells it lines, as soon as there is room for them.
+    pub(crate) fn pass(&self, lines: &str) {
+        self.0.send(lines.to_owned()).unwrap_or_default();
+    }
+}
+
+/// Writes what is told, until nobody tells any more or nobody reads.
+fn write(mut pipe: ChildStdin, told: &Receiver<String>) {
+    for lines in told {
+        if pipe.write_all(lines.as_bytes()).and_then(|()| pipe.flush()).is_err() {
+            return;
+        }
     }
 }
 
@@ -70,17 +91,28 @@ fn build(is_release: bool) -> String {
     format!("cargo build {}-p {NAME}", if is_release { "--release " } else { "" })
 }
 
-/// Has the viewer do something and waits for its end; what goes wrong it says itself.
+/// Has the viewer draw so many frames, or as many as there are, and waits for its end; what goes wrong it says itself.
 ///
 /// # Errors
 /// Where it is not there, does not start, or fails.
-pub(crate) fn have(args: &[OsString]) -> anyhow::Result<()> {
+pub(crate) fn have(args: &[OsString], n_frames: u32, progress: &dyn Progress) -> anyhow::Result<()> {
     let program = program()?;
     // Where this process ends, so does the pipe, and with it the viewer.
     let mut command = command(&program, args);
-    let spawned = command.arg("--attended").stdin(Stdio::piped()).spawn();
+    let spawned = command.arg("--attended").stdin(Stdio::piped()).stdout(Stdio::piped()).spawn();
     let mut child = spawned.with_context(|| starting(&program))?;
     let held = child.stdin.take();
+    for line in
+        child.stdout.take().into_iter().flat_map(|told| BufReader::new(told).lines().map_while(Result::ok))
+    {
+        if let Ok(Event::Frame(frame)) = control::event(&line)
+            && progress.report(u64::from(frame) + 1, u64::from(n_frames), "frames") == Flow::Stop
+        {
+            drop(held);
+            child.wait().with_context(|| starting(&program))?;
+            return Err(WorkbenchError::Stopped.into());
+        }
+    }
     let status = child.wait().with_context(|| starting(&program))?;
     drop(held);
     // What it says by itself need not be said twice.
@@ -106,7 +138,12 @@ pub(crate) fn start(
         .name("viewer".to_owned())
         .spawn(move || listen(hear, child, heard))
         .with_context(|| starting(&program))?;
-    Ok(Teller(Arc::new(Mutex::new(tell))))
+    let (teller, told) = sync_channel(WAITING);
+    std::thread::Builder::new()
+        .name("to the viewer".to_owned())
+        .spawn(move || write(tell, &told))
+        .with_context(|| starting(&program))?;
+    Ok(Teller(teller))
 }
 
 fn listen(hear: ChildStdout, mut child: Child, mut heard: impl FnMut(Heard)) {

@@ -2,7 +2,7 @@
 
 mod canvas;
 mod forest;
-mod pipe;
+pub(crate) mod pipe;
 mod player;
 mod skeleton;
 

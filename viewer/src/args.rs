@@ -60,7 +60,7 @@ pub struct Args {
     /// the input ends the window.
     #[arg(long, conflicts_with = "offscreen")]
     pub control: bool,
-    /// End where standard input ends.
+    /// End where standard input ends, and tell of every frame that is written.
     #[arg(long, hide = true, conflicts_with = "control")]
     pub attended: bool,
     /// List what could draw, the best first, which is what does.

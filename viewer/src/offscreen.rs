@@ -5,8 +5,10 @@ use std::path::Path;
 use anyhow::{Context as _, ensure};
 use honami_media::write::{self, Format, Movie, PngFolder};
 use honami_model::picture::Range;
+use honami_scene::control::Event;
 use honami_scene::{Camera, Orbit};
 
+use crate::app::pipe;
 use crate::args::{Args, FPS};
 use crate::gpu::Gpu;
 use crate::target::Target;
@@ -54,6 +56,9 @@ pub fn run(gpu: &Gpu, picture: &mut dyn Picture, out: &Path, args: &Args) -> any
     for k in 0..reel.n_frames {
         picture.draw(gpu, &target, &reel.shot(k)).with_context(|| format!("frame {k}"))?;
         movie.push_rgb(&target.read(gpu)?)?;
+        if args.attended {
+            pipe::tell(&Event::Frame(k));
+        }
     }
     Ok(movie.finish()?)
 }
@@ -108,7 +113,10 @@ fn is_folder(out: &Path) -> bool {
 
 fn create(out: &Path, target: &Target, fps: f64) -> anyhow::Result<Box<dyn Movie>> {
     let size = target.size();
-    let format = Format { width: size.width, height: size.height, fps, colour: true, range: Range::Full };
+    // Players of compressed movies know limited range best.
+    let is_mp4 = out.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mp4"));
+    let range = if is_mp4 { Range::Limited } else { Range::Full };
+    let format = Format { width: size.width, height: size.height, fps, colour: true, range };
     if is_folder(out) {
         return Ok(Box::new(PngFolder::create(out, &format)?));
     }

@@ -19,6 +19,8 @@ use crate::gpu::Gpu;
 use crate::offscreen::{Picture, Shot};
 use crate::target::Target;
 
+/// Frames that begin so much later have begun, seconds.
+const SAME_S: f64 = 1e-6;
 /// Between the upper and the lower edge of the clip, radians.
 const ANGLE: f32 = 0.5;
 
@@ -81,8 +83,8 @@ pub struct SkeletonPicture {
     /// Why the clip is not behind it, though it should be.
     pub without_clip: Option<String>,
     media: Option<Media>,
-    /// The clip's frame that is on the card.
-    on_card: Option<u32>,
+    /// The clip's frame that is on the card, and how large.
+    on_card: Option<(u32, [u32; 2])>,
     /// What draws, for targets with so many samples.
     pipelines: Option<(u32, Pipelines)>,
 }
@@ -107,16 +109,11 @@ impl SkeletonPicture {
         self.scene = scene;
     }
 
-    /// The row of its own frames that is shown so many seconds from its first.
+    /// The row of its own frames that is shown so many seconds from its first: the last that has begun.
     #[must_use]
     pub fn row_at(&self, time: f64) -> usize {
-        let times = &self.scene.times;
-        let after = times.partition_point(|at| *at <= time);
-        match after {
-            0 => 0,
-            after if after < times.len() && times[after] - time < time - times[after - 1] => after,
-            after => after - 1,
-        }
+        // Times of movies are sums of their own, off by rounding.
+        self.scene.times.partition_point(|at| *at <= time + SAME_S).saturating_sub(1)
     }
 
     /// How places are seen in a picture.
@@ -160,16 +157,17 @@ impl SkeletonPicture {
     /// Puts a frame of the clip on the card, as large as the picture needs it.
     fn film(&mut self, gpu: &Gpu, target: &Target, frame: u32) -> anyhow::Result<()> {
         let (Some(media), Some((_, pipelines))) = (&self.media, &mut self.pipelines) else { return Ok(()) };
-        if self.on_card == Some(frame) {
-            return Ok(());
-        }
         let clip = &self.scene.clip;
         let share = (f64::from(target.size().height) / f64::from(clip.height)).min(1.0);
         let [width, height] =
             [clip.width, clip.height].map(|side| (f64::from(side) * share).round().max(1.0) as u32);
+        let wanted = Some((frame, [width, height]));
+        if self.on_card == wanted {
+            return Ok(());
+        }
         let pixels = media.rgb_area(frame, Rect::whole(clip.width, clip.height), width, height)?;
         pipelines.show_film(gpu, &pixels, width, height);
-        self.on_card = Some(frame);
+        self.on_card = wanted;
         Ok(())
     }
 }

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+/// Of how far the target is from 0, so near an eye may come.
+const NEAREST: f32 = 1e-4;
 /// Nearer to straight up or down than so many radians no camera looks: it would have no upright.
 const POLE: f32 = 0.01;
 
@@ -44,9 +46,11 @@ impl Orbit {
         Camera { eye, target: self.target, angle: self.angle }
     }
 
-    /// So many times as far away, within a millionth and a million of the lengths of the scene.
+    /// So many times as far away: to a million of the lengths of the scene, and not so near that places about the target are
+    /// one in single precision.
     pub fn zoom(&mut self, times: f32) {
-        self.distance = (self.distance * times).clamp(1e-6, 1e6);
+        let least = NEAREST * dot(self.target, self.target).sqrt().max(1.0);
+        self.distance = (self.distance * times).clamp(least, 1e6);
     }
 }
 

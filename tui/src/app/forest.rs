@@ -30,10 +30,12 @@ const NEARER: f32 = 1.0 / 1.25;
 /// Radians by a cell that the mouse drags.
 const BY_CELL: f32 = 0.03;
 /// Of the eye above the ground, radians.
-const ELEVATIONS: [f32; 2] = [-0.05, 1.5];
+const ELEVATIONS: [f32; 2] = [0.0, 1.5];
 /// Keys make a wind so many times as strong; one that is still becomes one of so much, metres per second.
 const STRONGER: f64 = 1.25;
 const LEAST_SPEED: f64 = 0.5;
+/// No keys make it stronger than hurricanes are.
+const MOST_SPEED: f64 = 60.0;
 /// And turn it by so much, degrees.
 const VEER: f64 = 15.0;
 
@@ -69,6 +71,8 @@ pub struct Forest {
     steps: u32,
     /// What is being typed as another wind.
     pub typed: Option<String>,
+    /// What was typed last and is none.
+    refused: String,
     /// What went wrong.
     pub complaint: Option<String>,
     /// The picture at hand.
@@ -113,6 +117,7 @@ impl Forest {
             is_playing: true,
             steps: 0,
             typed: None,
+            refused: String::new(),
             complaint: config.complaint(),
             shot: None,
             size: (80, 24),
@@ -188,18 +193,23 @@ impl Forest {
                 self.is_playing = false;
                 self.steps += 1;
             }
-            Action::MoreGroups => self.turn_wind("speed", |v| (v * STRONGER).max(LEAST_SPEED)),
+            Action::MoreGroups => self.turn_wind("speed", |v| (v * STRONGER).clamp(LEAST_SPEED, MOST_SPEED)),
             Action::FewerGroups => self.turn_wind("speed", |v| v / STRONGER),
             Action::FineLeft => self.turn_wind("towards", |v| v + VEER),
             Action::FineRight => self.turn_wind("towards", |v| v - VEER),
-            Action::Wind => self.typed = Some(self.wind.clone()),
+            Action::Wind => self.typed = Some(std::mem::take(&mut self.refused)),
             Action::Accept => {
-                self.wind = self.typed.take().map_or(self.wind.clone(), |v| v.trim().to_owned())
+                let typed = self.typed.take().map(|typed| typed.trim().to_owned());
+                self.wind = typed.filter(|typed| !typed.is_empty()).unwrap_or(self.wind.clone());
             }
             Action::Erase => drop(self.typed.as_mut().map(String::pop)),
             Action::Glyphs => self.glyphs = self.glyphs.next(),
             Action::Back if self.typed.take().is_some() => {}
-            Action::Back | Action::Quit | Action::Leave => return Some(Wish::Leave),
+            Action::Back => {
+                let quit = self.keys.keys_of(Context::Forest, Action::Quit).unwrap_or_default();
+                self.complaint = Some(format!("{quit} leaves"));
+            }
+            Action::Quit | Action::Leave => return Some(Wish::Leave),
             Action::Redraw => return Some(Wish::Redraw),
             Action::Suspend => return Some(Wish::Suspend),
             // The rest does not work here.
@@ -216,7 +226,8 @@ impl Forest {
 
     /// Changes a value of the wind, where it has one of that name.
     fn turn_wind(&mut self, name: &str, turned: impl Fn(f64) -> f64) {
-        let value = weather::value(&self.wind, name).map(turned);
+        // To a hundredth: nobody wants to read more.
+        let value = weather::value(&self.wind, name).map(|v| (turned(v) * 100.0).round() / 100.0);
         match value.and_then(|value| weather::with_value(&self.wind, name, value)) {
             Some(wind) => self.wind = wind,
             None => self.complaint = Some(format!("{} has no {name} to change: choose another", self.wind)),
@@ -242,8 +253,8 @@ impl Forest {
                 }
                 Some(Err(why)) => {
                     self.complaint = Some(why);
-                    // What blows on is the wind before.
-                    self.wind = worker.wind().to_owned();
+                    // What blows on is the wind before; what was typed is there to be mended.
+                    self.refused = std::mem::replace(&mut self.wind, worker.wind().to_owned());
                     painted = None;
                 }
                 None => {}

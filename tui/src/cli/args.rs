@@ -67,7 +67,8 @@ pub(super) enum Command {
     /// `honami simulate` lay it over what grows, and `honami edit` undoes it. Numbers are of the bone as it grows, so that the
     /// same twice is the same, and all that a bone bears goes along. docs/skeletons.md has more.
     Shape(grow::Shape),
-    /// Show the skeleton over the clip or in space, into a file.
+    /// Show a skeleton over its clip or in space, or a plant or a forest of it in the wind: in a window, in the terminal, in a
+    /// file.
     ///
     /// The viewer, a program of its own beside this one, draws it: `cargo build --release -p honami-viewer` builds that.
     /// docs/viewer.md has more.

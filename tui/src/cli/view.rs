@@ -17,9 +17,37 @@ use serde_json::json;
 
 use super::args::Common;
 use super::args::view::{View, ViewWhat};
-use super::{Answer, Outcome, grow, look, report, there, told_options, want};
+use super::{Answer, Outcome, Usage, grow, look, report, there, told_options, want};
 use crate::viewer::{self, Scenes};
 
+/// Options of forests and of plants.
+const OF_FORESTS: [&str; 25] = [
+    "forest",
+    "wind",
+    "leaves",
+    "leaf_length",
+    "size_spread",
+    "mass_spread",
+    "spacing",
+    "alpha",
+    "beta",
+    "air_damping",
+    "heavier",
+    "seed",
+    "modes",
+    "classes",
+    "unit",
+    "diameters",
+    "radius",
+    "longest",
+    "young",
+    "poisson",
+    "density",
+    "leaf_mass",
+    "leaf_drag",
+    "drag",
+    "air_density",
+];
 /// A picture is so high unless it was said how large, pixels.
 const HEIGHT: f64 = 720.0;
 
@@ -29,6 +57,12 @@ pub(super) fn view(args: &View, common: &Common) -> anyhow::Result<Outcome> {
     if let Some(out) = args.offscreen.as_deref().filter(|out| out.exists()) {
         bail!("{} is there already: choose another name", out.display());
     }
+    let is_mp4 = |out: &Path| out.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mp4"));
+    if let Some(size) = args.size.filter(|_| args.offscreen.as_deref().is_some_and(is_mp4)) {
+        want(size.width % 2 == 0 && size.height % 2 == 0, || {
+            format!("an .mp4 has even sides, not {}x{}", size.width, size.height)
+        })?;
+    }
     let source = Path::new(&args.plant.source);
     let is_project = source.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("honami"));
     match args.what.unwrap_or(if is_project { ViewWhat::Skeleton } else { ViewWhat::Forest }) {
@@ -37,6 +71,14 @@ pub(super) fn view(args: &View, common: &Common) -> anyhow::Result<Outcome> {
             want(is_project, || {
                 format!("{} has no skeleton: a project (.honami) is wanted, or forest", source.display())
             })?;
+            let of_forests = |id: &&String| OF_FORESTS.contains(&id.as_str());
+            if let Some(option) = args.typed.0.iter().find(of_forests) {
+                let (option, source) = (option.replace('_', "-"), source.display());
+                return Err(Usage(format!(
+                    "--{option} is of forests, and a skeleton is shown: `honami view {source} forest`, or leave it out"
+                ))
+                .into());
+            }
             want(!args.terminal, || {
                 format!("a skeleton is shown in the terminal by v k in `honami {}`", source.display())
             })?;
@@ -109,12 +151,17 @@ impl Grower {
 fn skeleton(args: &View, project: &Path, out: &Path, common: &Common) -> anyhow::Result<Answer> {
     let (scene, notes) = Grower::of(args, common)?.grow(&look(project)?, common)?;
     let told = told(&scene);
+    let there = u32::try_from(scene.times.len()).unwrap_or(u32::MAX);
+    let n_frames = args.shot.frames.unwrap_or(there);
+    want(args.shot.fps.is_some() || n_frames <= there, || {
+        format!("the skeleton has {}, not {n_frames}", counted(there as usize, "frame"))
+    })?;
     let mut scenes = Scenes::new()?;
     let size = args.size.map_or_else(|| usual_size(&scene), |size| [size.width, size.height]);
     let path = scenes.write(&Scene::Skeleton(Box::new(scene)))?;
     let mut words = words(args, &path, size);
     words.extend(["--offscreen".into(), out.into()]);
-    viewer::have(&words)?;
+    viewer::have(&words, n_frames, &report::Bar::with(common))?;
     let mut text = format!("{}: {told}", out.display());
     notes.iter().for_each(|note| text += &format!("\nnote: {note}"));
     let json = json!({ "out": out, "size": size, "skeleton": told, "notes": notes });

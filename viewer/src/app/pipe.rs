@@ -60,7 +60,7 @@ impl Pipe {
 }
 
 /// Writes an event.
-pub(super) fn tell(event: &Event) {
+pub(crate) fn tell(event: &Event) {
     let mut out = std::io::stdout().lock();
     out.write_all(control::line(event).as_bytes()).and_then(|()| out.flush()).unwrap_or_default();
 }

@@ -7,6 +7,7 @@ use honami_scene::forest::live;
 use honami_scene::grove::Grove;
 use honami_scene::weather::WeatherError;
 use honami_scene::{Camera, ForestScene};
+use rayon::prelude::*;
 use wgpu::BufferUsages as Uses;
 use wgpu::util::{BufferInitDescriptor, DeviceExt as _};
 
@@ -51,6 +52,8 @@ pub(super) struct Card {
     forest: Forest,
     n_steps: u64,
     felt: Vec<Felt>,
+    /// At the crowns of all copies in the last step, metres per second.
+    winds: Vec<Vector>,
     feels: wgpu::Buffer,
     steps: wgpu::Buffer,
     eye: wgpu::Buffer,
@@ -136,6 +139,7 @@ impl Card {
             wind: live::wind(scene, &scene.wind, MOST_BYTES)?,
             n_steps: 0,
             felt: vec![Felt::default(); n_copies],
+            winds: vec![Vector::zeros(); n_copies],
             feels,
             steps,
             eye,
@@ -176,12 +180,14 @@ impl Card {
     /// A step of all modes, in the wind at every copy.
     pub(super) fn step(&mut self, gpu: &Gpu) -> Result<(), ForestError> {
         let time = self.time();
-        for copy in 0..self.felt.len() {
-            let wind = self.blowing(copy);
-            if !wind.iter().all(|v| v.is_finite()) {
-                return Err(ForestError::Wind { copy, time });
-            }
-            self.felt[copy] = self.forest.felt(copy, &wind);
+        let (grove, wind) = (&self.grove, &self.wind);
+        let copies = (0..self.felt.len()).into_par_iter();
+        copies.map(|copy| grove.blowing(wind, copy, time)).collect_into_vec(&mut self.winds);
+        if let Some(copy) = self.winds.iter().position(|wind| !wind.iter().all(|v| v.is_finite())) {
+            return Err(ForestError::Wind { copy, time });
+        }
+        for (copy, (felt, wind)) in self.felt.iter_mut().zip(&self.winds).enumerate() {
+            *felt = self.forest.felt(copy, wind);
         }
         let bytes: Vec<f32> =
             self.felt.iter().flat_map(|felt| felt.pressed.into_iter().chain(felt.held)).collect();
@@ -199,7 +205,8 @@ impl Card {
 
     /// Poses what is seen of copies in a picture, on the stage.
     pub(super) fn put(&self, gpu: &Gpu, camera: &Camera, [width, height]: [u32; 2], stage: &Stage) {
-        let airs = (0..stage.n_copies).map(|copy| self.blowing(copy).norm() as f32);
+        // What leaves flutter in is what was felt last.
+        let airs = self.winds.iter().map(|wind| wind.norm() as f32);
         stage.feel(gpu, airs);
         let eye = self.eye(camera, [width, height], stage);
         gpu.queue.write_buffer(&self.eye, 0, bytemuck::bytes_of(&eye));

@@ -42,7 +42,7 @@ impl Stroke {
         let way = [self.to[0] - self.from[0], self.to[1] - self.from[1]];
         let square = (way[0] * way[0] + way[1] * way[1]).max(1e-12);
         let length = square.sqrt();
-        let near = hazy(self.colour, f32::midpoint(self.depths[0], self.depths[1]));
+        let colour = hazy(self.colour, f32::midpoint(self.depths[0], self.depths[1]));
         for y in top.max(first)..bottom {
             for x in left..right {
                 let at = [x as f32 + 0.5 - self.from[0], y as f32 + 0.5 - self.from[1]];
@@ -53,7 +53,9 @@ impl Stroke {
                 if away > radius.max(0.5) || is_left_out(radius, x, y) {
                     continue;
                 }
-                let depth = self.depths[0] + (self.depths[1] - self.depths[0]) * share;
+                // Along a line on the screen it is one over the distance that goes evenly.
+                let [near, far] = self.depths.map(f32::recip);
+                let depth = (near + (far - near) * share).recip();
                 let place = (y - first) * wide + x;
                 if depth >= depths[place] {
                     continue;
@@ -63,7 +65,7 @@ impl Stroke {
                 let across = (off[0] * way[1] - off[1] * way[0]) / (length * radius.max(0.5));
                 let across = if way[1] < 0.0 { -across } else { across };
                 let shade = 1.0 + self.round * across.clamp(-1.0, 1.0);
-                colours[place] = near.map(|v| v * shade);
+                colours[place] = colour.map(|v| v * shade);
             }
         }
     }

@@ -2,10 +2,11 @@
 
 use honami_mechanics::{Form, Pace, Stirring};
 use honami_scene::body::{Body, Foliage};
+use honami_scene::forest::live;
 use honami_scene::{ForestScene, Orbit};
 
 use super::Vibrating;
-use super::sway::Motion;
+use super::sway::{Motion, free};
 use crate::error::WorkbenchError;
 
 /// Between the upper and the lower edge of a picture, radians.
@@ -40,8 +41,6 @@ pub fn scene(plant: &Vibrating, motion: &Motion, shown: &Shown) -> Result<Forest
     motion.check()?;
     let grove = motion.grove(plant);
     motion.bears(plant, &grove.stands)?;
-    // Whether there is such a wind is said before anything is shown.
-    super::weather::read(&shown.wind)?.over(&super::weather::ground(plant, motion))?;
     let usual = Foliage::usual(&plant.beams);
     let foliage = Foliage {
         per_end: shown.leaves.unwrap_or(usual.per_end),
@@ -50,7 +49,7 @@ pub fn scene(plant: &Vibrating, motion: &Motion, shown: &Shown) -> Result<Forest
     };
     let pace = Pace { step: motion.step(), integrator: motion.integrator, damping: motion.damping };
     let places: Vec<[f32; 2]> = grove.places.iter().map(|at| [at.x as f32, at.y as f32]).collect();
-    Ok(ForestScene {
+    let scene = ForestScene {
         name: shown.name.clone(),
         stirring: Stirring::new(&plant.beams, &plant.modes, plant.basis.clone(), Form::Turn),
         body: Body::new(&plant.beams, plant.modes.len(), &foliage),
@@ -61,7 +60,10 @@ pub fn scene(plant: &Vibrating, motion: &Motion, shown: &Shown) -> Result<Forest
         pace,
         wind: shown.wind.clone(),
         run_in: RUN_IN_S,
-    })
+    };
+    // Whether there is such a wind here is said before anything is shown.
+    live::wind(&scene, &scene.wind, free())?;
+    Ok(scene)
 }
 
 /// One plant whole, from the front; of many most, from over the nearest.

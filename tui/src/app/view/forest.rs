@@ -31,15 +31,19 @@ pub fn draw(forest: &Forest, is_mono: bool) -> Frame {
     ];
     put(&mut frame, all, 0, &Line::from(title));
     if let Some(shot) = &forest.shot {
-        let clock = format!("{}{:.1} s", if forest.is_playing { "" } else { "paused at " }, shot.time);
+        let clock = match forest.is_playing {
+            true => format!("{:.1} s", shot.time),
+            false => format!("paused at {:.2} s", shot.time),
+        };
         put(&mut frame, all, 0, &Line::styled(clock, style::DIM).right_aligned());
     }
     if rows > 2 {
         let line = match (&forest.typed, &forest.complaint) {
             (Some(typed), _) => Line::from(vec![
-                Span::styled("wind: ", style::ACCENT),
+                Span::styled("other wind: ", style::ACCENT),
                 Span::raw(typed.clone()),
                 Span::styled("▏", style::ACCENT),
+                Span::styled(format!("  now {}", forest.wind), style::DIM),
             ]),
             (None, Some(complaint)) => Line::styled(complaint.clone(), style::ERROR),
             (None, None) => Line::from(blowing(forest)),
@@ -64,7 +68,7 @@ pub fn picture(forest: &Forest) -> Rect {
 
 /// The wind as typed, and how it blows where the first plant stands: which way, as on a compass whose north is up the screen.
 fn blowing(forest: &Forest) -> Vec<Span<'static>> {
-    let mut spans = vec![Span::styled("wind ", style::DIM), Span::styled(forest.wind.clone(), style::ACCENT)];
+    let mut spans = vec![Span::styled(forest.wind.clone(), style::ACCENT)];
     let Some(Shot { wind: [x, y, _], .. }) = forest.shot else { return spans };
     let speed = x.hypot(y);
     let arrows = ["→", "↗", "↑", "↖", "←", "↙", "↓", "↘"];

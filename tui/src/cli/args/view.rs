@@ -5,12 +5,15 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::grow::Place;
-use super::plant::{Plant, copies};
+use super::plant::{Plant, Typed, copies};
 use super::{Size, WithPlugin};
 
 /// Scenes in a window, or into a file.
 #[derive(Args, Debug)]
 pub(in crate::cli) struct View {
+    // The first, since the others take what they read out of the matches.
+    #[command(flatten)]
+    pub(in crate::cli) typed: Typed,
     #[command(flatten)]
     pub(in crate::cli) plant: Plant,
     /// What to show of it (default: of a project its skeleton, of anything else a forest).
@@ -52,16 +55,16 @@ pub(in crate::cli) struct View {
 #[derive(Args, Debug)]
 pub(in crate::cli) struct Trees {
     /// A forest of so many copies, each at its place in the wind.
-    #[arg(long, value_name = "K", default_value_t = 1, value_parser = copies)]
+    #[arg(long, value_name = "K", default_value_t = 1, allow_negative_numbers = true, value_parser = copies)]
     pub(in crate::cli) forest: u32,
     /// What blows, as `honami simulate` takes it: wind:speed=5,towards=90, or storm+vortex.
     #[arg(long, value_name = "WIND", default_value = "wind")]
     pub(in crate::cli) wind: String,
-    /// Leaves on the end of every branch, which are drawn and weigh nothing; 0: none (default: as a full crown has).
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=200))]
+    /// Leaves on the end of every branch, which are drawn and weigh nothing, 0 (none) to 200 (default: as a full crown has).
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(0..=200))]
     pub(in crate::cli) leaves: Option<u32>,
-    /// Length of a leaf, metres (default: as a plant of that size has).
-    #[arg(long, value_name = "M")]
+    /// Length of a leaf, metres, 0.0001 to 10 (default: as a plant of that size has).
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
     pub(in crate::cli) leaf_length: Option<f64>,
     /// Copies are up to 1 + X times as large or as small as the plant; the first is as it was measured.
     #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 0.15)]
@@ -93,7 +96,7 @@ pub(in crate::cli) struct Trees {
 #[derive(Args, Debug)]
 pub(in crate::cli) struct Shot {
     /// Frames of a movie; an image shows the last of them (default: all; of an image the first).
-    #[arg(long, value_name = "N", conflicts_with = "seconds", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    #[arg(long, value_name = "N", conflicts_with = "seconds", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(in crate::cli) frames: Option<u32>,
     /// Seconds of a movie.
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = positive)]

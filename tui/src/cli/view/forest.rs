@@ -15,11 +15,17 @@ use serde_json::json;
 use super::{window, words};
 use crate::cli::args::Common;
 use crate::cli::args::view::View;
-use crate::cli::{Answer, Outcome, ends, report, simulate, want};
+use crate::cli::{Answer, Outcome, Usage, ends, report, simulate, want};
 use crate::viewer::{self, Scenes};
 
 /// Pixels of a picture, unless it was said how large.
 pub(super) const SIZE: [u32; 2] = [1280, 720];
+/// Seconds of a movie, where nobody says.
+const SECONDS: f64 = 10.0;
+/// From where a forest can be seen, degrees above the horizon.
+const ELEVATIONS: std::ops::RangeInclusive<f64> = 0.0..=90.0;
+/// Options of skeletons.
+const OF_SKELETONS: [&str; 7] = ["with", "set", "groups", "root", "flat", "as_grown", "parts"];
 /// Leaves are between so long, metres.
 const LEAF_LENGTHS: std::ops::RangeInclusive<f64> = 1e-4..=10.0;
 
@@ -29,6 +35,15 @@ pub(super) fn view(args: &View, common: &Common) -> anyhow::Result<Outcome> {
         want(LEAF_LENGTHS.contains(&length), || {
             let (least, most) = (LEAF_LENGTHS.start(), LEAF_LENGTHS.end());
             format!("a leaf is {least:?} to {most:?} m long, not {length:?}")
+        })?;
+    }
+    if let Some(option) = args.typed.0.iter().find(|id| OF_SKELETONS.contains(&id.as_str())) {
+        let option = option.replace('_', "-");
+        return Err(Usage(format!("--{option} is of skeletons, and a forest is shown: leave it out")).into());
+    }
+    if let Some(elevation) = args.shot.elevation {
+        want(ELEVATIONS.contains(&elevation), || {
+            format!("a forest is seen from 0 to 90 degrees above the horizon, not from {elevation:?}")
         })?;
     }
     let has_display = ["DISPLAY", "WAYLAND_DISPLAY"]
@@ -45,7 +60,7 @@ pub(super) fn view(args: &View, common: &Common) -> anyhow::Result<Outcome> {
     }
     let (scene, told, notes) = made(args, common)?;
     if let Some(out) = &args.offscreen {
-        return offscreen(args, scene, out, (told, &notes)).map(Outcome::Answer);
+        return offscreen(args, scene, out, (told, &notes), common).map(Outcome::Answer);
     }
     notes.iter().for_each(|note| report::say(&format!("note: {note}")));
     if in_window {
@@ -103,13 +118,17 @@ fn offscreen(
     scene: ForestScene,
     out: &Path,
     (told, notes): (String, &[String]),
+    common: &Common,
 ) -> anyhow::Result<Answer> {
     let mut scenes = Scenes::new()?;
     let [width, height] = args.size.map_or(SIZE, |size| [size.width, size.height]);
     let path = scenes.write(&Scene::Forest(Box::new(scene)))?;
     let mut words = words(args, &path, [width, height]);
     words.extend(["--offscreen".into(), out.into()]);
-    viewer::have(&words)?;
+    let shot = &args.shot;
+    let seconds = shot.seconds.unwrap_or(SECONDS) * shot.fps.unwrap_or(Motion::default().fps);
+    let n_frames = shot.frames.unwrap_or(seconds.round().clamp(1.0, f64::from(u32::MAX)) as u32);
+    viewer::have(&words, n_frames, &report::Bar::with(common))?;
     let mut text = format!("{}: {told}", out.display());
     notes.iter().for_each(|note| text += &format!("\nnote: {note}"));
     let json = json!({ "out": out, "size": [width, height], "forest": told, "notes": notes });

@@ -104,7 +104,7 @@ fn open(path: &Path) -> anyhow::Result<(Project, Option<String>)> {
 fn relay(tell: Teller) -> std::io::Result<()> {
     let pass = move || {
         for line in std::io::stdin().lock().lines().map_while(Result::ok) {
-            tell.tell(&format!("{line}\n"));
+            tell.pass(&format!("{line}\n"));
         }
     };
     std::thread::Builder::new().name("relay".to_owned()).spawn(pass).map(drop)
@@ -130,7 +130,7 @@ impl Shown<'_> {
                     Err(error) => report::chain(&error),
                 };
                 report::say(&line);
-                self.tell.tell(&control::line(&Command::Say(line)));
+                self.tell(&Command::Say(line));
             }
             _ => {}
         }
@@ -148,7 +148,13 @@ impl Shown<'_> {
         }
         let (scene, _) = self.grower.grow(&self.project, self.common)?;
         let path: PathBuf = self.scenes.write(&Scene::Skeleton(Box::new(scene)))?;
-        self.tell.tell(&control::line(&Command::Scene { protocol: PROTOCOL, path }));
+        self.tell(&Command::Scene { protocol: PROTOCOL, path });
         Ok(Some(line))
+    }
+
+    fn tell(&self, command: &Command) {
+        if !self.tell.tell(&control::line(command)) {
+            report::say("the window does not keep up: what it shows is behind");
+        }
     }
 }
