@@ -125,12 +125,12 @@ impl Body {
         Self { levels: levels.collect(), order }
     }
 
-    /// From how far on how much of a copy is moved.
+    /// From how far on how much of a copy is moved, in a picture so many times as high as usual.
     ///
     /// # Errors
     /// [`DetailError`] of levels that do not follow one another.
-    pub fn details(&self) -> Result<Details, DetailError> {
-        let farther = self.levels.iter().skip(1).map(|level| (level.from, level.detail()));
+    pub fn details(&self, sharper: f64) -> Result<Details, DetailError> {
+        let farther = self.levels.iter().skip(1).map(|level| (level.from * sharper, level.detail()));
         Details::new(&farther.collect::<Vec<_>>())
     }
 }

@@ -159,7 +159,7 @@ impl Ring {
 }
 
 /// Any direction at right angles to one.
-fn beside(along: &Vector) -> Vector {
+pub(crate) fn beside(along: &Vector) -> Vector {
     let least = along.iamin();
     let axis = Vector::from_fn(|row, _| if row == least { 1.0 } else { 0.0 });
     (axis - along * axis.dot(along)).normalize()

@@ -6,6 +6,7 @@ use rand::{RngExt as _, SeedableRng as _};
 
 use super::light::Light;
 use super::{Leaf, Ring};
+use crate::tubes::beside;
 
 /// Leaves of a plant, where nobody says how many: so many, shared by the ends of its branches.
 const USUAL: f64 = 14_000.0;
@@ -134,11 +135,4 @@ pub(super) fn of_level(
         });
     }
     seen
-}
-
-/// Any direction at right angles to one.
-fn beside(along: &Vector) -> Vector {
-    let least = along.iamin();
-    let axis = Vector::from_fn(|row, _| if row == least { 1.0 } else { 0.0 });
-    (axis - along * axis.dot(along)).normalize()
 }

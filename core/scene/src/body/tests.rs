@@ -54,7 +54,7 @@ fn levels_have_less_and_less_of_the_same_plant() {
             assert!(square.abs() < 1e-5 && (0.0..=1.0).contains(&leaf.open));
         }
     }
-    assert!(body.details().is_ok());
+    assert!(body.details(1.0).is_ok());
 }
 
 /// Where all nodes are turned about the root by a small angle, every ring turns by it.

@@ -4,8 +4,7 @@ use std::sync::Arc;
 
 use honami_mechanics::wind::Wind;
 use honami_mechanics::{
-    Damping, Detail, DetailError, Details, Forest, ForestError, Pace, Pose, Stand, Threads, ThreadsError,
-    Vector, View,
+    Damping, Detail, DetailError, Forest, ForestError, Pace, Pose, Stand, Threads, ThreadsError, Vector, View,
 };
 
 use super::ForestScene;
@@ -140,14 +139,15 @@ impl Live {
     /// [`LiveError::Levels`].
     pub fn seen(&mut self, camera: &Camera, [width, height]: [u32; 2]) -> Result<Vec<Seen<'_>>, LiveError> {
         let view = view(camera, f64::from(width) / f64::from(height.max(1)));
-        let (farther, levels) = levels(&self.scene, sharper(height))?;
+        let body = &self.scene.body;
+        let (farther, levels) = (body.details(sharper(height))?, &body.levels);
         let stands = self.grove.places.iter().zip(&self.scene.stands);
         let level = |(place, stand): (&Vector, &Stand)| {
             farther.level(&self.scene.stirring, &view, place, f64::from(stand.scale))
         };
         let seen_as: Vec<Option<usize>> = stands.map(level).collect();
         for (detail, level) in self.details.iter_mut().zip(&seen_as) {
-            *detail = level.map_or_else(Detail::default, |level| levels[level]);
+            *detail = level.map_or_else(Detail::default, |level| levels[level].detail());
         }
         let n: usize = self.details.iter().map(|detail| detail.n_nodes as usize).sum();
         self.motion.resize(n, [0.0; 3]);
@@ -168,14 +168,6 @@ impl Live {
 #[must_use]
 pub fn sharper(height: u32) -> f64 {
     f64::from(height) / HEIGHT_PX
-}
-
-/// From how far on there is how much of a copy, in a picture so many times as high as usual; and how much there is in all
-/// levels.
-fn levels(scene: &ForestScene, sharper: f64) -> Result<(Details, Vec<Detail>), DetailError> {
-    let levels = &scene.body.levels;
-    let farther: Vec<_> = levels.iter().skip(1).map(|level| (level.from * sharper, level.detail())).collect();
-    Ok((Details::new(&farther)?, levels.iter().map(crate::body::Level::detail).collect()))
 }
 
 /// What a camera sees, as the mechanics has it.

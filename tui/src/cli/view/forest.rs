@@ -105,7 +105,7 @@ fn made(args: &View, common: &Common) -> anyhow::Result<(ForestScene, String, Ve
     let told = format!(
         "{copies} of {} with {} and {}, in {}",
         counted(plant.beams.len(), "node"),
-        counted(leaves, "leaf").replace("leafs", "leaves"),
+        if leaves == 1 { "1 leaf".to_owned() } else { format!("{leaves} leaves") },
         counted(plant.modes.len(), "mode"),
         scene.wind
     );
