@@ -87,7 +87,7 @@ impl ForestPicture {
     /// A wind that there is not, more than the system or the card gives, or modes that a card has no way to add up.
     pub fn new(gpu: &Gpu, scene: ForestScene, by: By) -> anyhow::Result<Self> {
         let scene = Arc::new(scene);
-        let stage = Stage::new(gpu, &scene)?;
+        let stage = Stage::new(gpu, &scene, by)?;
         let mover = Mover::new(gpu, &scene, by, &stage)?;
         gpu.check()?;
         Ok(Self { scene, by, mover, stage, paint: None, n_steps: 0 })
@@ -143,10 +143,7 @@ impl ForestPicture {
                 let eye = Eye { eye: shot.camera.eye, pixel, time: shot.time as f32 };
                 host.put(gpu, &self.scene, &shot.camera, of_levels(gpu, target), &eye)
             }
-            Mover::Card(card) => {
-                card.put(gpu, &shot.camera, of_levels(gpu, target), &self.stage);
-                Ok(())
-            }
+            Mover::Card(card) => Ok(card.put(gpu, &shot.camera, of_levels(gpu, target), &self.stage)?),
         }
     }
 

@@ -40,6 +40,25 @@ pub enum GpuError {
         /// Its limit.
         most: String,
     },
+    /// More copies are seen at once than it holds.
+    #[error(
+        "{adapter} holds {most} bytes of {what}, and the {n_copies} copies that are seen at once have {wanted}: take fewer \
+         copies or a narrower view{}", if *has_processor { ", or move them by the processor (honami-viewer --cpu)" } else { "" }
+    )]
+    Copies {
+        /// Its name.
+        adapter: String,
+        /// What copies have in it.
+        what: &'static str,
+        /// How many are seen.
+        n_copies: usize,
+        /// What they have, bytes,
+        wanted: u64,
+        /// and what it holds.
+        most: u64,
+        /// Whether the processor could move them instead.
+        has_processor: bool,
+    },
     /// It was there, and is no more.
     #[error("{adapter} was lost while it drew ({why}): try again, or another by --adapter")]
     Lost {
@@ -87,15 +106,24 @@ impl Gpu {
         let Some(adapter) = found.first() else {
             return Err(GpuError::Name { wanted: wanted.unwrap_or_default().to_owned(), there });
         };
+        Self::of(adapter, adapter.limits())
+    }
+
+    /// One that holds no more than these limits say.
+    fn of(adapter: &wgpu::Adapter, required_limits: wgpu::Limits) -> Result<Self, GpuError> {
         let info = adapter.get_info();
-        let device = wgpu::DeviceDescriptor {
-            label: Some("honami"),
-            required_limits: adapter.limits(),
-            ..Default::default()
-        };
+        let device = wgpu::DeviceDescriptor { label: Some("honami"), required_limits, ..Default::default() };
         let (device, queue) = pollster::block_on(adapter.request_device(&device))
             .map_err(|error| GpuError::Closed { adapter: name(&info), why: error.to_string() })?;
         Ok(Self::adopt(device, queue, info))
+    }
+
+    /// The best adapter, as if it held no more than so many bytes in one piece; `None` without one.
+    #[cfg(test)]
+    pub(crate) fn small(bytes: u64) -> Option<Self> {
+        let adapter = found().into_iter().next()?;
+        let limits = wgpu::Limits { max_storage_buffer_binding_size: bytes, ..adapter.limits() };
+        Self::of(&adapter, limits).ok()
     }
 
     /// One that another has opened, such as a window: from now on its errors are kept here.

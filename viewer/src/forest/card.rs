@@ -14,14 +14,14 @@ use wgpu::util::{BufferInitDescriptor, DeviceExt as _};
 use super::MOST_BYTES;
 use super::chains::Chains;
 use super::stage::{LEVEL_BYTES, Stage};
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, GpuError};
 use crate::shaders;
 
 /// Modes that a workgroup takes, and workgroups in a row, of which an adapter has no more than so many.
 const MODES: u32 = 64;
 const ROW: u32 = 32_768;
-/// Bytes of what a level's nodes are posed by: workgroups, and where its displacements begin.
-const GROUPS_BYTES: u64 = 20;
+/// Bytes of what a level's nodes are posed by: workgroups, where its displacements begin, copies with room and copies seen.
+const GROUPS_BYTES: u64 = 24;
 
 /// What is seen from where, as shaders read it.
 #[repr(C)]
@@ -204,7 +204,16 @@ impl Card {
     }
 
     /// Poses what is seen of copies in a picture, on the stage.
-    pub(super) fn put(&self, gpu: &Gpu, camera: &Camera, [width, height]: [u32; 2], stage: &Stage) {
+    ///
+    /// # Errors
+    /// [`GpuError::Copies`].
+    pub(super) fn put(
+        &self,
+        gpu: &Gpu,
+        camera: &Camera,
+        [width, height]: [u32; 2],
+        stage: &Stage,
+    ) -> Result<(), GpuError> {
         // What leaves flutter in is what was felt last.
         let airs = self.winds.iter().map(|wind| wind.norm() as f32);
         stage.feel(gpu, airs);
@@ -222,6 +231,14 @@ impl Card {
         }
         drop(pass);
         gpu.queue.submit([encoder.finish()]);
+        if stage.is_roomy() { Ok(()) } else { stage.check(gpu, &self.seen(gpu)?) }
+    }
+
+    /// How many copies of each level were seen.
+    fn seen(&self, gpu: &Gpu) -> Result<Vec<u32>, GpuError> {
+        let bytes = gpu.read(&self.groups)?;
+        let numbers: Vec<u32> = bytes.as_chunks().0.iter().map(|four| u32::from_ne_bytes(*four)).collect();
+        Ok(numbers.chunks_exact(GROUPS_BYTES as usize / 4).map(|groups| groups[5]).collect())
     }
 
     fn eye(&self, camera: &Camera, [width, height]: [u32; 2], stage: &Stage) -> Eye {

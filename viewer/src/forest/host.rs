@@ -3,13 +3,12 @@
 use std::sync::Arc;
 use std::thread::available_parallelism;
 
-use anyhow::ensure;
 use honami_scene::forest::live::{Live, Seen};
 use honami_scene::{Camera, ForestScene};
 
 use super::MOST_BYTES;
 use super::skin::{self, Drawn, Eye, Vertex};
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, GpuError};
 
 /// What lives on the cores, and the vertices of what is seen of it.
 pub(super) struct Host {
@@ -54,11 +53,11 @@ impl Host {
         self.drawn = skin::skin(scene, &seen, eye, &airs, (self.n_threads, &mut self.vertices));
         let bytes: &[u8] = bytemuck::cast_slice(&self.vertices);
         let (wanted, most) = (bytes.len() as u64, gpu.device.limits().max_buffer_size);
-        ensure!(
-            wanted <= most,
-            "{} draws {most} bytes of vertices, and {wanted} are seen at once: take fewer copies",
-            gpu.name()
-        );
+        if wanted > most {
+            let (adapter, what, n_copies) = (gpu.name(), "vertices", seen.len());
+            let fault = GpuError::Copies { adapter, what, n_copies, wanted, most, has_processor: false };
+            return Err(fault.into());
+        }
         if self.buffer.as_ref().is_none_or(|buffer| buffer.size() < wanted) {
             // A half more than is wanted now: what moves is not made anew for every leaf that comes into view.
             self.buffer = Some(gpu.device.create_buffer(&wgpu::BufferDescriptor {

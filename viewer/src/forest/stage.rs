@@ -1,10 +1,12 @@
 //! Buffers of a forest: what is drawn of which copies. Those who move it write here, and the paint reads.
 
 use bytemuck::{Pod, Zeroable};
+use honami_mechanics::Felt;
 use honami_scene::ForestScene;
 use wgpu::BufferUsages as Uses;
 use wgpu::util::{BufferInitDescriptor, DeviceExt as _};
 
+use super::By;
 use super::body::{Part, Parts};
 use crate::gpu::{Gpu, GpuError};
 
@@ -12,6 +14,10 @@ use crate::gpu::{Gpu, GpuError};
 pub(super) const LEVEL_BYTES: u32 = 256;
 /// Bytes of what draws something so many times: how many indices, how many times, the first index, and two that are 0.
 pub(super) const CALL_BYTES: u64 = 20;
+
+/// Bytes of a displacement, and what all of them take at most: a card has other things to hold, too.
+const MOVED_BYTES: usize = 12;
+const MOST_MOVED: usize = 1 << 30;
 
 /// A copy, as shaders read it.
 #[repr(C)]
@@ -59,6 +65,9 @@ pub(super) struct Stage {
     pub(super) n_copies: usize,
     /// How many displacements there is room for.
     pub(super) n_rows: usize,
+    /// How many nodes each level has.
+    n_nodes: Vec<u32>,
+    is_roomy: bool,
     pub(super) copies: wgpu::Buffer,
     /// Of every copy that is drawn: its first displacement.
     pub(super) firsts: wgpu::Buffer,
@@ -80,13 +89,23 @@ pub(super) struct Stage {
 }
 
 impl Stage {
-    /// Room for all of a forest, or as much as the adapter has.
-    pub(super) fn new(gpu: &Gpu, scene: &ForestScene) -> Result<Self, GpuError> {
+    /// Room for all of a forest; for displacements, where the card works them out, as much as the adapter has, 1 GiB at most.
+    ///
+    /// # Errors
+    /// [`GpuError::TooLarge`] where what every copy has does not fit, and what the adapter met.
+    pub(super) fn new(gpu: &Gpu, scene: &ForestScene, by: By) -> Result<Self, GpuError> {
         let parts = Parts::new(&scene.body);
         let n_copies = scene.places.len();
         let limits = gpu.device.limits();
-        let most = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size) as usize;
-        let n_rows = (n_copies * scene.body.order.len()).min(most / 12);
+        // Shaders count by 32 bits, four bytes a number.
+        let most =
+            limits.max_buffer_size.min(limits.max_storage_buffer_binding_size).min(4 * u64::from(u32::MAX));
+        let most = most as usize;
+        let all_rows = match by {
+            By::Processor => 0,
+            By::Card => n_copies.saturating_mul(scene.body.order.len()),
+        };
+        let n_rows = all_rows.min(most.min(MOST_MOVED) / MOVED_BYTES);
         let made = |label, contents: &[u8], usage| {
             gpu.device.create_buffer_init(&BufferInitDescriptor { label: Some(label), contents, usage })
         };
@@ -102,9 +121,9 @@ impl Stage {
         let both = Uses::STORAGE | Uses::COPY_DST | Uses::COPY_SRC;
         let copies: Vec<Copy> = scene.places.iter().zip(&scene.stands).enumerate().map(copy).collect();
         let rings = bytemuck::cast_slice(&parts.rings);
-        let needed = [rings.len(), 64 * parts.leaves.len(), 4 * n_copies * scene.body.levels.len()];
-        if let Some(bytes) = needed.into_iter().find(|bytes| *bytes > most) {
-            let (what, most) = (format!("forest of {bytes} bytes in one piece"), format!("{most} bytes"));
+        if let Some(bytes) = pieces(scene, by, &parts).into_iter().find(|bytes| *bytes > most) {
+            let what = format!("forest of {n_copies} copies, which has {bytes} bytes in one piece");
+            let most = format!("{most} bytes at most; take fewer copies");
             return Err(GpuError::TooLarge { adapter: gpu.name(), what, most });
         }
         // A plant without leaves has a buffer of them nevertheless.
@@ -113,11 +132,13 @@ impl Stage {
         let stage = Self {
             n_copies,
             n_rows,
+            n_nodes: scene.body.levels.iter().map(|level| level.n_nodes).collect(),
+            is_roomy: n_rows == all_rows,
             copies: made("copies", bytemuck::cast_slice(&copies), Uses::STORAGE),
             firsts: empty("firsts", 4 * n_copies, both),
             airs: empty("airs", 4 * n_copies, both),
             seen: empty("seen", 4 * n_copies * parts.levels.len(), both),
-            moved: empty("moved", 12 * n_rows, both),
+            moved: empty("moved", MOVED_BYTES * n_rows, both),
             rings: made("rings", rings, Uses::STORAGE),
             leaves: made("leaves", &leaves, Uses::STORAGE),
             indices: made("indices", bytemuck::cast_slice(&parts.indices), Uses::INDEX),
@@ -128,6 +149,26 @@ impl Stage {
         };
         gpu.check()?;
         Ok(stage)
+    }
+
+    /// Whether there is room for the displacements of all copies at once, whatever is seen.
+    pub(super) fn is_roomy(&self) -> bool {
+        self.is_roomy
+    }
+
+    /// Whether there is room for so many copies of each level.
+    ///
+    /// # Errors
+    /// [`GpuError::Copies`].
+    pub(super) fn check(&self, gpu: &Gpu, n_seen: &[u32]) -> Result<(), GpuError> {
+        let rows = n_seen.iter().zip(&self.n_nodes).map(|(n, n_nodes)| u64::from(*n) * u64::from(*n_nodes));
+        let (wanted, most) = (MOVED_BYTES as u64 * rows.sum::<u64>(), (MOVED_BYTES * self.n_rows) as u64);
+        if wanted <= most {
+            return Ok(());
+        }
+        let n_copies = n_seen.iter().map(|n| *n as usize).sum();
+        let (adapter, what) = (gpu.name(), "displacements");
+        Err(GpuError::Copies { adapter, what, n_copies, wanted, most, has_processor: true })
     }
 
     /// Levels.
@@ -153,6 +194,24 @@ impl Stage {
     pub(super) fn read(&self) -> [&wgpu::Buffer; 7] {
         [&self.copies, &self.firsts, &self.airs, &self.seen, &self.moved, &self.rings, &self.leaves]
     }
+}
+
+/// What must fit as it is, bytes: whatever is seen, all copies have it.
+fn pieces(scene: &ForestScene, by: By, parts: &Parts) -> [usize; 5] {
+    let n_copies = scene.places.len();
+    let n_modes = match by {
+        By::Processor => 0,
+        By::Card => scene.stirring.n_modes(),
+    };
+    let of_all = |bytes: usize| n_copies.saturating_mul(bytes);
+    [
+        size_of_val(parts.rings.as_slice()),
+        size_of_val(parts.leaves.as_slice()),
+        of_all(size_of::<Copy>().max(size_of::<Felt>())),
+        of_all(4 * parts.levels.len()),
+        // Amplitudes and speeds of all modes.
+        of_all(8 * n_modes),
+    ]
 }
 
 fn copy((k, (place, stand)): (usize, (&[f32; 2], &honami_mechanics::Stand))) -> Copy {

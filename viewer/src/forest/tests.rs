@@ -170,3 +170,29 @@ fn a_card_has_every_node_where_the_simulation_has_it() {
     assert!(farthest > 0.5, "a storm: {farthest} m");
     assert!(n_of_levels.iter().all(|n| *n > 0), "{n_of_levels:?}");
 }
+
+/// Of small ones an error with the numbers, by what is seen at once: none of the copies is left out in silence.
+#[test]
+fn what_an_adapter_has_no_room_for_is_said() {
+    if testing::gpu().is_none() {
+        return;
+    }
+    let scene = ForestScene { run_in: 0.0, ..testing::forest(120, 4, 600) };
+    let n_bytes = 12 * 600 * scene.body.levels[0].n_nodes as usize;
+    let drawn = |bytes: usize, by, angle: f32| {
+        let gpu = Gpu::small(bytes as u64).unwrap();
+        let mut picture = ForestPicture::new(&gpu, scene.clone(), by)?;
+        let target = Target::new(&gpu, SIZE).unwrap();
+        let orbit = Orbit { angle, ..picture.orbit() };
+        picture.draw(&gpu, &target, &Shot { time: 0.0, camera: orbit.camera() })
+    };
+    let half = n_bytes / 8;
+    drawn(half, By::Processor, 0.7).unwrap();
+    drawn(half, By::Card, 0.05).unwrap();
+    let error = drawn(half, By::Card, 0.7).unwrap_err().to_string();
+    assert!(error.contains("copies that are seen at once") && error.contains("--cpu"), "{error}");
+    for by in [By::Processor, By::Card] {
+        let error = drawn(1024, by, 0.7).unwrap_err().to_string();
+        assert!(error.contains("600 copies") && error.contains("fewer copies"), "{error}");
+    }
+}

@@ -19,11 +19,13 @@ struct Level {
     level: u32,
 }
 
-// Workgroups that pose a level, a copy each; where its displacements begin, and how many copies it has.
+// Workgroups that pose a level, a copy each; where its displacements begin, how many copies it
+// has room for, and how many are seen.
 struct Groups {
     wide: u32,
     high: u32,
     deep: u32,
     first: u32,
     n: u32,
+    n_seen: u32,
 }

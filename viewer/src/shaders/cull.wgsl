@@ -105,16 +105,18 @@ fn list(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) k:
     }
 }
 
-// How many copies of each level there is room for, where their displacements begin: near ones first.
+// How many copies of each level there is room for, where their displacements begin: near ones first. Where some have none,
+// nothing is drawn, and whoever asked for them is told.
 @compute @workgroup_size(1)
 fn share() {
     var row = 0u;
     for (var level = 0u; level < eye.n_levels; level++) {
         let n_nodes = levels[level].level.n_nodes;
-        let n = min(calls[2u * level].n_copies, (eye.n_rows - row) / n_nodes);
+        let n_seen = calls[2u * level].n_copies;
+        let n = min(n_seen, (eye.n_rows - row) / n_nodes);
         calls[2u * level].n_copies = n;
         calls[2u * level + 1u].n_copies = n;
-        groups[level] = Groups(min(n, ROW), (n + ROW - 1u) / ROW, 1u, row, n);
+        groups[level] = Groups(min(n, ROW), (n + ROW - 1u) / ROW, 1u, row, n, n_seen);
         row += n * n_nodes;
     }
 }
