@@ -53,6 +53,33 @@ fn tracks_have_the_colours_of_their_groups() {
     assert!(n_seen > 10, "{n_seen}");
 }
 
+/// Each before anything is drawn, in one line.
+#[test]
+fn what_cannot_be_a_movie_is_said() {
+    let bench = Bench::tracked();
+    let cases = [
+        ("m.gif", "movies are written as .mp4, .y4m or a folder of PNG images, not .gif: m.gif", 2),
+        ("m.png", "m.png is one image: a movie is .mp4, .y4m or a folder of PNG images", 2),
+        ("away/m.y4m", "away is no folder: make it first (mkdir -p), or choose another name: away/m.y4m", 1),
+        (
+            "p.honami/m",
+            "p.honami is no folder: make it first (mkdir -p), or choose another name: p.honami/m",
+            1,
+        ),
+        ("m.y4m --fps 0", "wanted 0.001 to 100000 frames per second, got 0", 2),
+        ("m.y4m --fps 1e9", "wanted 0.001 to 100000 frames per second, got 1e9", 2),
+        ("m.y4m --fps NaN", "wanted 0.001 to 100000 frames per second, got NaN", 2),
+    ];
+    for (line, said, code) in cases {
+        let ran = bench.line(&format!("export p.honami movie {line}"));
+        assert_eq!(ran.code, Some(code), "{line}: {ran:?}");
+        assert!(ran.stderr.contains(said), "{line}: {}", ran.stderr);
+        if code == 1 {
+            assert_eq!(ran.stderr.trim_end(), format!("honami: {said}"), "{line}");
+        }
+    }
+}
+
 #[test]
 fn movies_are_of_the_size_rate_and_kind_that_was_asked_for() {
     let bench = Bench::tracked();

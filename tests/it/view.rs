@@ -92,9 +92,15 @@ fn what_cannot_be_shown_is_said() {
         ("view notes.mtg --offscreen a.png", "notes.mtg", 1),
         ("view away.mtg --offscreen a.png", "away.mtg", 1),
         ("view synth::tree:60,1 --wind breeze --offscreen a.png", "\"breeze\" is no wind and no file", 2),
-        ("view synth::tree:60,1 --adapter Voodoo --offscreen a.png", "no adapter is called \"Voodoo\"", 1),
-        ("view synth::tree:60,1 --offscreen a.gif", "not .gif", 1),
-        ("view synth::tree:60,1 --offscreen nowhere/a.png", "nowhere", 1),
+        ("view synth::tree:60,1 --adapter Voodoo --offscreen a.png", "no adapter is called \"Voodoo\"", 2),
+        ("view synth::tree:60,1 --offscreen a.gif", "honami: movies are written as", 2),
+        (
+            "view synth::tree:60,1 --offscreen a.y4m --fps 1e9",
+            "0.001 to 100000 frames per second, got 1e9",
+            2,
+        ),
+        ("view synth::tree:60,1 --offscreen a.y4m --seconds 1e9", "2.5e10 frames are too many", 2),
+        ("view away.mtg --offscreen nowhere/a.png", "honami: nowhere is no folder: make it first", 1),
     ];
     for (line, said, code) in cases {
         let ran = bench.line(line);

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::Parser;
 
+use honami_media::write::RATES;
+
 use crate::skeleton::Part;
 use crate::target::Size;
 
@@ -30,7 +32,7 @@ pub struct Args {
     #[arg(long, value_name = "S", value_parser = positive)]
     pub seconds: Option<f64>,
     /// Frames per second [default: those of the clip, or 25].
-    #[arg(long, value_name = "F", value_parser = positive)]
+    #[arg(long, value_name = "F", value_parser = rate)]
     pub fps: Option<f64>,
     /// Samples of a pixel: 4 for smooth edges.
     #[arg(long, value_name = "1|4", default_value = "4", value_parser = samples)]
@@ -98,6 +100,11 @@ fn samples(text: &str) -> Result<u32, String> {
 fn positive(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|v: &f64| v.is_finite() && *v > 0.0);
     number.ok_or_else(|| "a number above 0 is wanted".to_owned())
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|fps| RATES.contains(fps));
+    number.ok_or_else(|| format!("{} to {} frames per second are wanted", RATES.start(), RATES.end()))
 }
 
 fn finite(text: &str) -> Result<f32, String> {

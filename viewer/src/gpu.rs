@@ -95,17 +95,11 @@ impl Gpu {
     /// # Errors
     /// [`GpuError::None`], [`GpuError::Name`], [`GpuError::Closed`].
     pub fn open(wanted: Option<&str>) -> Result<Self, GpuError> {
-        let mut found = found();
-        if found.is_empty() {
-            return Err(GpuError::None);
-        }
-        let there: Vec<String> = found.iter().map(|adapter| name(&adapter.get_info())).collect();
-        if let Some(wanted) = wanted {
-            found.retain(|adapter| name(&adapter.get_info()).to_lowercase().contains(&wanted.to_lowercase()));
-        }
-        let Some(adapter) = found.first() else {
-            return Err(GpuError::Name { wanted: wanted.unwrap_or_default().to_owned(), there });
-        };
+        let found = found();
+        let infos: Vec<AdapterInfo> = found.iter().map(wgpu::Adapter::get_info).collect();
+        let best = called(infos.clone(), wanted.unwrap_or_default())?;
+        let adapter = found.iter().zip(&infos).find(|(_, info)| best.first() == Some(info));
+        let (adapter, _) = adapter.ok_or(GpuError::None)?;
         Self::of(adapter, adapter.limits())
     }
 
@@ -210,6 +204,22 @@ impl Gpu {
 #[must_use]
 pub fn adapters() -> Vec<AdapterInfo> {
     found().iter().map(wgpu::Adapter::get_info).collect()
+}
+
+/// Those with `wanted` in their names, capitals or not.
+///
+/// # Errors
+/// [`GpuError::None`] where there are none at all, [`GpuError::Name`] where none is called so.
+pub fn called(mut adapters: Vec<AdapterInfo>, wanted: &str) -> Result<Vec<AdapterInfo>, GpuError> {
+    if adapters.is_empty() {
+        return Err(GpuError::None);
+    }
+    let there: Vec<String> = adapters.iter().map(name).collect();
+    adapters.retain(|info| name(info).to_lowercase().contains(&wanted.to_lowercase()));
+    if adapters.is_empty() {
+        return Err(GpuError::Name { wanted: wanted.to_owned(), there });
+    }
+    Ok(adapters)
 }
 
 /// An adapter's name, with the way that leads to it.

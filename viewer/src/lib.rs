@@ -18,12 +18,14 @@ mod testing;
 use std::io::Write as _;
 
 use anyhow::bail;
+use honami_media::MediaError;
+use honami_media::write::Kind;
 use honami_scene::Scene;
 use serde_json::json;
 
 use args::Args;
 use forest::{By, ForestPicture};
-use gpu::Gpu;
+use gpu::{Gpu, GpuError};
 use offscreen::Picture;
 use skeleton::{Part, SkeletonPicture};
 
@@ -33,13 +35,21 @@ use skeleton::{Part, SkeletonPicture};
 /// What was not to be had or cannot be written, in one line.
 pub fn run(args: &Args) -> anyhow::Result<()> {
     if args.adapters {
-        return list(args.json);
+        return list(args);
     }
     let Some(path) = &args.scene else { return Ok(()) };
     let Some(out) = &args.offscreen else { return app::run(path, args) };
-    let scene = honami_scene::file::read(path)?;
+    Kind::of(out)?.admit(out)?;
     let gpu = Gpu::open(args.adapter.as_deref())?;
+    let scene = honami_scene::file::read(path)?;
     offscreen::run(&gpu, &mut *picture(&gpu, scene, args)?, out, args)
+}
+
+/// Whether whoever typed the command asked for what there is not, rather than the work having failed.
+#[must_use]
+pub fn is_usage(error: &anyhow::Error) -> bool {
+    matches!(error.downcast_ref(), Some(GpuError::Name { .. }))
+        || matches!(error.downcast_ref(), Some(MediaError::Ending { .. }))
 }
 
 /// What draws a scene.
@@ -62,11 +72,14 @@ fn say(line: &str) {
     writeln!(std::io::stderr(), "honami-viewer: {line}").unwrap_or_default();
 }
 
-/// The adapters there are, the one that would be used first.
-fn list(is_json: bool) -> anyhow::Result<()> {
-    let adapters = gpu::adapters();
+/// The adapters there are, the one that would be used first; those with a name, where one is wanted.
+fn list(args: &Args) -> anyhow::Result<()> {
+    let mut adapters = gpu::adapters();
+    if let Some(wanted) = &args.adapter {
+        adapters = gpu::called(adapters, wanted)?;
+    }
     let mut out = std::io::stdout().lock();
-    if is_json {
+    if args.json {
         let row = |info: &wgpu::AdapterInfo| {
             json!({
                 "name": info.name,

@@ -6,6 +6,7 @@ use std::io::Write as _;
 use std::process::ExitCode;
 
 use clap::Parser as _;
+use honami_model::brief;
 use honami_viewer::args::Args;
 
 fn main() -> ExitCode {
@@ -18,8 +19,8 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             // Nobody left to tell is no reason to fail otherwise.
-            writeln!(std::io::stderr(), "honami-viewer: {error:#}").unwrap_or_default();
-            ExitCode::FAILURE
+            writeln!(std::io::stderr(), "honami-viewer: {}", brief::told(error.as_ref())).unwrap_or_default();
+            if honami_viewer::is_usage(&error) { ExitCode::from(2) } else { ExitCode::FAILURE }
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Context as _, ensure};
-use honami_media::write::{self, Format, Movie, PngFolder};
+use honami_media::write::{self, Format, Kind, Movie};
 use honami_model::picture::Range;
 use honami_scene::control::Event;
 use honami_scene::{Camera, Orbit};
@@ -45,14 +45,16 @@ const SECONDS: f64 = 10.0;
 /// # Errors
 /// What was not to be had or cannot be written.
 pub fn run(gpu: &Gpu, picture: &mut dyn Picture, out: &Path, args: &Args) -> anyhow::Result<()> {
-    let reel = Reel::new(picture, args, is_still(out))?;
+    let kind = Kind::of(out)?;
+    kind.admit(out)?;
+    let reel = Reel::new(picture, args, kind == Kind::Still)?;
     let target = Target::new(gpu, args.size())?;
-    if is_still(out) {
+    if kind == Kind::Still {
         picture.draw(gpu, &target, &reel.shot(reel.n_frames - 1))?;
         let size = target.size();
         return Ok(write::still(out, &target.read(gpu)?, size.width, size.height)?);
     }
-    let mut movie = create(out, &target, reel.fps)?;
+    let mut movie = create((out, kind), &target, reel.fps)?;
     for k in 0..reel.n_frames {
         picture.draw(gpu, &target, &reel.shot(k)).with_context(|| format!("frame {k}"))?;
         movie.push_rgb(&target.read(gpu)?)?;
@@ -102,24 +104,11 @@ impl Reel {
     }
 }
 
-fn is_still(out: &Path) -> bool {
-    !is_folder(out) && out.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png"))
-}
-
-/// Whether the name says so.
-fn is_folder(out: &Path) -> bool {
-    out.as_os_str().as_encoded_bytes().ends_with(b"/")
-}
-
-fn create(out: &Path, target: &Target, fps: f64) -> anyhow::Result<Box<dyn Movie>> {
+fn create((out, kind): (&Path, Kind), target: &Target, fps: f64) -> anyhow::Result<Box<dyn Movie>> {
     let size = target.size();
     // Players of compressed movies know limited range best.
-    let is_mp4 = out.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mp4"));
-    let range = if is_mp4 { Range::Limited } else { Range::Full };
+    let range = if kind == Kind::Mp4 { Range::Limited } else { Range::Full };
     let format = Format { width: size.width, height: size.height, fps, colour: true, range };
-    if is_folder(out) {
-        return Ok(Box::new(PngFolder::create(out, &format)?));
-    }
     Ok(write::create(out, &format)?)
 }
 

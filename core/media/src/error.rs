@@ -92,6 +92,22 @@ pub enum MediaError {
         /// What it is and what would do.
         what: String,
     },
+    /// A name with an ending that no movie has.
+    #[error("movies are written as .mp4, .y4m or a folder of PNG images, not .{ending}: {}", path.display())]
+    Ending {
+        /// The name.
+        path: PathBuf,
+        /// What it ends in, in small letters.
+        ending: String,
+    },
+    /// There is no folder for what is to be written.
+    #[error("{} is no folder: make it first (mkdir -p), or choose another name: {}", folder.display(), path.display())]
+    NoFolder {
+        /// What was to be written.
+        path: PathBuf,
+        /// The folder it would be in.
+        folder: PathBuf,
+    },
     /// The decoder gave more or fewer frames than the index promised.
     #[error("decodes to {found} frames where its index promises {promised}; open it again, now every frame is counted first: {}", path.display())]
     FrameCount {

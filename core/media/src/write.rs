@@ -20,6 +20,9 @@ pub use mp4::Mp4;
 pub use png::{PngFolder, still};
 pub use y4m::Y4m;
 
+/// Frames per second of movies that anything plays.
+pub const RATES: std::ops::RangeInclusive<f64> = 1e-3..=1e5;
+
 /// What every frame of a movie is like.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Format {
@@ -66,22 +69,83 @@ pub trait Movie: Send {
     fn finish(self: Box<Self>) -> Result<(), MediaError>;
 }
 
+/// What is written under a name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A folder of PNG images, one a frame,
+    Images,
+    /// a YUV4MPEG2 file,
+    Y4m,
+    /// H.264 by ffmpeg,
+    Mp4,
+    /// or one image, `.png`, which is no movie.
+    Still,
+}
+
+impl Kind {
+    /// As the name tells: by its ending; a folder, where it has none, ends in `/` or is one.
+    ///
+    /// # Errors
+    /// [`MediaError::Ending`].
+    pub fn of(path: &Path) -> Result<Self, MediaError> {
+        if path.as_os_str().as_encoded_bytes().ends_with(b"/") {
+            return Ok(Self::Images);
+        }
+        match ending(path).as_deref() {
+            None => Ok(Self::Images),
+            Some("y4m") => Ok(Self::Y4m),
+            Some("mp4") => Ok(Self::Mp4),
+            _ if path.is_dir() => Ok(Self::Images),
+            Some("png") => Ok(Self::Still),
+            Some(other) => Err(MediaError::Ending { path: path.to_path_buf(), ending: other.to_owned() }),
+        }
+    }
+
+    /// Whether there is a folder for it: to be asked before the work for it. Folders of images are made with those they are in.
+    ///
+    /// # Errors
+    /// [`MediaError::NoFolder`].
+    pub fn admit(self, path: &Path) -> Result<(), MediaError> {
+        let above = || {
+            path.ancestors()
+                .skip(1)
+                .map(|folder| if folder == Path::new("") { Path::new(".") } else { folder })
+        };
+        let folder = match self {
+            Self::Images => above().find(|folder| folder.exists()),
+            _ => above().next(),
+        };
+        match folder {
+            Some(folder) if !folder.is_dir() => {
+                Err(MediaError::NoFolder { path: path.to_path_buf(), folder: folder.to_path_buf() })
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+fn ending(path: &Path) -> Option<String> {
+    path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase())
+}
+
 /// Starts a movie whose kind the name tells: `.y4m`, `.mp4` (needs ffmpeg), else a folder of PNG images.
 ///
 /// # Errors
-/// As the kinds' own `create`; [`MediaError::Unsupported`] for other extensions.
+/// As the kinds' own `create`; [`MediaError::Ending`], [`MediaError::NoFolder`].
 pub fn create(path: &Path, format: &Format) -> Result<Box<dyn Movie>, MediaError> {
-    let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
-    match extension.as_deref() {
-        None => Ok(Box::new(PngFolder::create(path, format)?)),
-        Some("y4m") => Ok(Box::new(Y4m::create(path, format)?)),
-        Some("mp4") => Ok(Box::new(Mp4::create(path, format)?)),
-        Some(_) if path.is_dir() => Ok(Box::new(PngFolder::create(path, format)?)),
-        Some(other) => {
-            let what = format!("movies are written as .mp4, .y4m or a folder of PNG images, not .{other}");
-            Err(MediaError::Unsupported { path: path.to_path_buf(), what })
+    let kind = Kind::of(path)?;
+    kind.admit(path)?;
+    Ok(match kind {
+        Kind::Images => Box::new(PngFolder::create(path, format)?),
+        Kind::Y4m => Box::new(Y4m::create(path, format)?),
+        Kind::Mp4 => Box::new(Mp4::create(path, format)?),
+        Kind::Still => {
+            return Err(MediaError::Ending {
+                path: path.to_path_buf(),
+                ending: ending(path).unwrap_or_default(),
+            });
         }
-    }
+    })
 }
 
 impl Format {

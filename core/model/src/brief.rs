@@ -1,4 +1,4 @@
-//! Numbers in messages: short, whatever they are.
+//! Numbers and errors in messages: short, whatever they are.
 
 use std::fmt;
 
@@ -29,9 +29,39 @@ pub fn counted(n: usize, one: &str) -> String {
     }
 }
 
+/// An error and its causes in one line; a cause that the line tells already is not told twice.
+#[must_use]
+pub fn told(error: &(dyn std::error::Error + 'static)) -> String {
+    let causes = std::iter::successors(Some(error), |error| error.source());
+    causes.map(ToString::to_string).fold(String::new(), |line, cause| match line.as_str() {
+        "" => cause,
+        told if told.contains(&cause) => line,
+        told => format!("{told}: {cause}"),
+    })
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{Brief, counted};
+    use super::{Brief, counted, told};
+
+    #[derive(Debug, thiserror::Error)]
+    #[error("{0}")]
+    struct Fault(&'static str, #[source] Option<Box<Fault>>);
+
+    #[test]
+    fn a_cause_is_told_once() {
+        let over = |text, cause| Fault(text, Some(Box::new(cause)));
+        for (error, wanted) in [
+            (Fault("no paint", None), "no paint"),
+            (
+                over("frame 3", over("no paint", Fault("the shop is closed", None))),
+                "frame 3: no paint: the shop is closed",
+            ),
+            (over("write: no paint: a.png", Fault("no paint", None)), "write: no paint: a.png"),
+        ] {
+            assert_eq!(told(&error), wanted);
+        }
+    }
 
     #[test]
     fn one_is_one_and_others_are_many() {

@@ -166,6 +166,19 @@ pub enum WorkbenchError {
         /// What came, pixels.
         height: f64,
     },
+    /// A clip with a frame so long after the one before that its movie would never end.
+    #[error(
+        "the movie would have {n_frames:.1e} frames, since frame {frame} of the clip is {gap_s:.1e} s after the one before it: choose frames on \
+         one side of it (--frames), or give the clip its true rate (honami new --fps)"
+    )]
+    MovieLength {
+        /// Frames of the movie.
+        n_frames: f64,
+        /// The frame of the clip before which the longest gap is,
+        frame: u32,
+        /// and that, seconds.
+        gap_s: f64,
+    },
     /// A point lies outside the clip.
     #[error(
         "point {id} at ({x}, {y}) in frame {frame} is not in the clip of {width}x{height} and {n_frames} frames"
@@ -741,6 +754,7 @@ impl WorkbenchError {
         matches!(
             self,
             Self::MovieSize { .. }
+                | Self::Media(honami_media::MediaError::Ending { .. })
                 | Self::NoPlant { .. }
                 | Self::Frames { .. }
                 | Self::Groups { .. }

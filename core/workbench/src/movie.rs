@@ -28,6 +28,8 @@ use crate::session::Session;
 pub const TRAIL_S: f64 = 0.5;
 /// A clip of one frame has no rate; a movie has one.
 const USUAL_FPS: f64 = 25.0;
+/// Frames of a movie of a clip whose frames are unevenly spaced, unless the clip itself has more.
+const MOST_FRAMES: u64 = 1_000_000;
 /// Sides of movies, pixels.
 const SIDES: std::ops::RangeInclusive<f64> = 16.0..=8192.0;
 
@@ -153,7 +155,7 @@ pub struct Movie {
 /// Draws over the clip and writes a movie, whole or not at all: `.mp4` by ffmpeg, `.y4m`, or a folder of PNG images.
 ///
 /// # Errors
-/// [`WorkbenchError::Frames`], [`WorkbenchError::MovieSize`], [`WorkbenchError::NoTracks`], [`WorkbenchError::NoSuchTracks`],
+/// [`WorkbenchError::Frames`], [`WorkbenchError::MovieSize`], [`WorkbenchError::MovieLength`], [`WorkbenchError::NoTracks`], [`WorkbenchError::NoSuchTracks`],
 /// [`WorkbenchError::NoGroups`] where groups, labels or a skeleton are asked for, [`WorkbenchError::Stopped`], and what the
 /// clip, the disk, ffmpeg or the structure builder met.
 pub fn write(
@@ -173,7 +175,7 @@ pub fn write(
     }
     let lens = Lens::of([clip.width, clip.height], request.size)?;
     let (rate, fps) = rates(&clip.times, request.fps);
-    let plan = Plan::of(&clip.times, frames.clone(), rate);
+    let plan = Plan::of(&clip.times, frames.clone(), rate)?;
     let mut drawn = drawn(session, request)?;
     let [width, height] = lens.size;
     // Players of compressed movies know limited range best.
@@ -234,14 +236,22 @@ struct Plan {
 
 impl Plan {
     /// One after the other; of a clip whose frames are unevenly spaced the nearest in time.
-    fn of(times: &FrameTimes, of: Range<u32>, rate: f64) -> Self {
+    ///
+    /// # Errors
+    /// [`WorkbenchError::MovieLength`]: one frame with a stray time would be held for years.
+    fn of(times: &FrameTimes, of: Range<u32>, rate: f64) -> Result<Self, WorkbenchError> {
         let all: Vec<u32> = of.clone().collect();
         let when = &times.as_slice()[of.start as usize..of.end as usize];
         if !times.is_variable() {
-            return Self { frames: all, note: None };
+            return Ok(Self { frames: all, note: None });
         }
         let (first, last) = (when[0], when[when.len() - 1]);
-        let n = ((last - first) * rate).round() as u64 + 1;
+        let wanted = ((last - first) * rate).round();
+        let most = MOST_FRAMES.max(u64::from(of.end - of.start)) as f64;
+        if wanted >= most {
+            return Err(too_long(when, of.start, wanted));
+        }
+        let n = wanted as u64 + 1;
         let nearest = |k: u64| {
             let time_s = first + k as f64 / rate;
             let after = when.partition_point(|&t| t < time_s).min(when.len() - 1);
@@ -258,8 +268,15 @@ impl Plan {
             all.len(),
             worst_s(when, first, n, rate) * 1e3
         );
-        Self { frames, note: Some(note) }
+        Ok(Self { frames, note: Some(note) })
     }
+}
+
+/// Whose fault it is that a movie would have so many frames: the frame before which there is the longest gap.
+fn too_long(when: &[f64], first: u32, n_frames: f64) -> WorkbenchError {
+    let gap = |k: &usize| when[k + 1] - when[*k];
+    let longest = (0..when.len() - 1).max_by(|a, b| gap(a).total_cmp(&gap(b))).unwrap_or_default();
+    WorkbenchError::MovieLength { n_frames, frame: first + longest as u32 + 1, gap_s: gap(&longest) }
 }
 
 /// The farthest that a frame of the movie is from the time of the nearest of the clip, seconds.

@@ -7,9 +7,11 @@ pub(super) mod view;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use honami_model::brief::Brief;
 use honami_model::track::{TrackId, TrackSet};
 use honami_workbench::export::BOX_PX;
 use honami_workbench::foreign::Format;
+use honami_workbench::media::write::RATES;
 use honami_workbench::movie::Layer;
 use honami_workbench::origin::Origin;
 
@@ -355,7 +357,7 @@ pub(super) struct Movie {
     #[arg(long, value_name = "F", allow_negative_numbers = true)]
     pub(super) scale: Option<f64>,
     /// Frames a second of the movie: fewer than of the clip is slow motion (default: as filmed).
-    #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = frames_per_second)]
+    #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = movie_rate)]
     pub(super) fps: Option<f64>,
     /// How long trails are, seconds of the clip (default: 0.5).
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = seconds)]
@@ -590,6 +592,13 @@ pub(super) enum Kind {
     Tracker,
     Clusterer,
     Structure,
+}
+
+/// The frame rate of a movie.
+fn movie_rate(text: &str) -> Result<f64, String> {
+    let fps = text.parse().ok().filter(|fps| RATES.contains(fps));
+    let (least, most) = (Brief(*RATES.start()), Brief(*RATES.end()));
+    fps.ok_or_else(|| format!("wanted {least} to {most} frames per second, got {text}"))
 }
 
 /// A frame rate.

@@ -1,12 +1,16 @@
 //! `export PROJECT movie`: the clip with what was measured drawn over it.
 
+use std::path::Path;
+
+use anyhow::ensure;
 use honami_model::brief::counted;
+use honami_workbench::media::write::Kind;
 use honami_workbench::movie::{self, Layer, MovieRequest, MovieSize, TRAIL_S};
 use honami_workbench::session::{Session, SessionOptions};
 use serde_json::json;
 
 use super::args::{Common, Export, Movie, Size};
-use super::{Answer, grow, report, there, told_options, want};
+use super::{Answer, Usage, grow, report, there, told_options, want};
 use crate::app::opening::where_is_the_clip;
 
 /// The longest trail, seconds: what lies longer back hides the picture.
@@ -42,7 +46,7 @@ pub(super) fn movie(args: &Export, common: &Common) -> anyhow::Result<Answer> {
     })?;
     let request = request(args)?;
     there(&args.project)?;
-    anyhow::ensure!(!args.out.exists(), "{} is there already: choose another name", args.out.display());
+    admit(&args.out, false)?;
     let options = SessionOptions { read_only: true, ..told_options(common) };
     let session =
         Session::open(&args.project, &options).map_err(|error| where_is_the_clip(error, &args.project))?;
@@ -85,6 +89,17 @@ pub(super) fn movie(args: &Export, common: &Common) -> anyhow::Result<Answer> {
         "seconds": done.seconds,
     });
     Ok(Answer { json, text, done: true })
+}
+
+/// Whether there can be a movie, or an image, of this name: said before the work for it.
+pub(super) fn admit(out: &Path, can_be_image: bool) -> anyhow::Result<()> {
+    // It may be the clip itself, or a day's work.
+    ensure!(!out.exists(), "{} is there already: choose another name", out.display());
+    let kind = Kind::of(out).map_err(|error| Usage(error.to_string()))?;
+    want(can_be_image || kind != Kind::Still, || {
+        format!("{} is one image: a movie is .mp4, .y4m or a folder of PNG images", out.display())
+    })?;
+    Ok(kind.admit(out)?)
 }
 
 fn request(args: &Export) -> anyhow::Result<MovieRequest> {

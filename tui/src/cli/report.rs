@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
+use honami_model::brief;
 use honami_workbench::progress::{Flow, Level, Patience, Progress, Silence};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
@@ -123,11 +124,7 @@ pub(super) fn complain(error: &anyhow::Error) {
 
 /// The error and its causes; a cause that the line tells already is not told twice.
 pub(super) fn chain(error: &anyhow::Error) -> String {
-    error.chain().map(ToString::to_string).fold(String::new(), |line, cause| match line.as_str() {
-        "" => cause,
-        told if told.contains(&cause) => line,
-        told => format!("{told}: {cause}"),
-    })
+    brief::told(error.as_ref())
 }
 
 /// Columns aligned to their widest cell, two spaces apart; the first row is the head.

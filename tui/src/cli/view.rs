@@ -5,8 +5,9 @@ mod window;
 
 use std::ffi::OsString;
 use std::path::Path;
+use std::process::Command;
 
-use anyhow::bail;
+use anyhow::Context as _;
 use honami_model::brief::counted;
 use honami_workbench::grow::GrowRequest;
 use honami_workbench::plugins::{Host, Kind, PluginInfo, Value, Values};
@@ -17,7 +18,7 @@ use serde_json::json;
 
 use super::args::Common;
 use super::args::view::{View, ViewWhat};
-use super::{Answer, Outcome, Usage, grow, look, report, there, told_options, want};
+use super::{Answer, Outcome, Usage, grow, look, movie, report, there, told_options, want};
 use crate::viewer::{self, Scenes};
 
 /// Options of forests and of plants.
@@ -53,9 +54,13 @@ const HEIGHT: f64 = 720.0;
 
 /// Shows a scene.
 pub(super) fn view(args: &View, common: &Common) -> anyhow::Result<Outcome> {
-    // It may be the clip itself, or a day's work.
-    if let Some(out) = args.offscreen.as_deref().filter(|out| out.exists()) {
-        bail!("{} is there already: choose another name", out.display());
+    if let Some(out) = &args.offscreen {
+        movie::admit(out, true)?;
+    }
+    if let Some(wanted) = &args.shot.adapter
+        && let Ok(viewer) = viewer::program()
+    {
+        is_called(&viewer, wanted)?;
     }
     let is_mp4 = |out: &Path| out.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mp4"));
     if let Some(size) = args.size.filter(|_| args.offscreen.as_deref().is_some_and(is_mp4)) {
@@ -90,6 +95,17 @@ pub(super) fn view(args: &View, common: &Common) -> anyhow::Result<Outcome> {
             }
         }
     }
+}
+
+/// Whether an adapter has this in its name: the viewer knows, and a plant may take minutes before that is asked.
+fn is_called(viewer: &Path, wanted: &str) -> anyhow::Result<()> {
+    let mut command = Command::new(viewer);
+    command.args(["--adapters", "--adapter", wanted]).env("MESA_SHADER_CACHE_DISABLE", "true");
+    let asked = command.output().with_context(|| format!("cannot start {}", viewer.display()))?;
+    let said = String::from_utf8_lossy(&asked.stderr);
+    let why = said.lines().last().unwrap_or_default();
+    want(asked.status.code() != Some(2), || why.trim_start_matches("honami-viewer: ").to_owned())?;
+    Ok(())
 }
 
 /// What grows, and how.

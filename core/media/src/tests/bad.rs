@@ -248,8 +248,11 @@ fn writers_leave_nothing_half_made() {
         drop(movie);
         assert!(place.names("").is_empty(), "{name} left {:?}", place.names(""));
     }
+    let missing = format!("{} is no folder: make it first", place.path("nowhere").display());
     for (name, want) in [
-        ("nowhere/a.y4m", "create: No such file or directory"),
+        ("nowhere/a.y4m", missing.as_str()),
+        ("nowhere/a.mp4", &missing),
+        ("a.png", "movies are written as .mp4, .y4m or a folder of PNG images, not .png: "),
         ("a.webm", "movies are written as .mp4, .y4m or a folder of PNG images, not .webm: "),
     ] {
         let line = create(&place.path(name), &format).err().expect(name).to_string();

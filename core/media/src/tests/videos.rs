@@ -209,3 +209,39 @@ fn movies_come_back() {
         }
     }
 }
+
+/// Players guess by the size of a picture where nothing is said, and ffmpeg, told nothing else, makes the RGB of it that went in.
+#[test]
+fn compressed_movies_say_how_their_colours_are_meant() {
+    let place = Place::new();
+    let pixels = vec![[200, 40, 60]; 1280 * 720];
+    for range in [Range::Limited, Range::Full] {
+        let format = Format { width: 1280, height: 720, fps: 25.0, colour: true, range };
+        let Ok(movie) = Mp4::create(&place.path("out.mp4"), &format) else { return };
+        let mut movie: Box<dyn Movie> = Box::new(movie);
+        movie.push_rgb(&pixels).unwrap();
+        movie.finish().unwrap();
+        let shown = std::process::Command::new("ffprobe")
+            .args([
+                "-v",
+                "error",
+                "-show_entries",
+                "stream=color_space,color_primaries,color_transfer,color_range",
+            ])
+            .args(["-of", "default=noprint_wrappers=1"])
+            .arg(place.path("out.mp4"))
+            .output()
+            .unwrap();
+        let shown = String::from_utf8(shown.stdout).unwrap();
+        let word = if range == Range::Full { "pc" } else { "tv" };
+        for (name, value) in
+            [("range", word), ("space", "smpte170m"), ("primaries", "bt709"), ("transfer", "iec61966-2-1")]
+        {
+            assert!(shown.lines().any(|line| line == format!("color_{name}={value}")), "{name}: {shown}");
+        }
+        ffmpeg(place.dir.path(), "-i out.mp4 -pix_fmt rgb24 -f rawvideo out.rgb");
+        let [r, g, b] = std::fs::read(place.path("out.rgb")).unwrap()[..3].try_into().unwrap();
+        let off = [r, g, b].iter().zip(pixels[0]).map(|(a, b): (&u8, u8)| a.abs_diff(b)).max().unwrap();
+        assert!(off <= 4, "{range:?}: {r} {g} {b}");
+    }
+}

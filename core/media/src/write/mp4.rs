@@ -11,6 +11,11 @@ use super::{Format, Movie, Unfinished};
 use crate::error::MediaError;
 use crate::programs;
 
+/// Even sides; and what the numbers mean, which later versions of ffmpeg take from here: BT.601, as [`convert`](crate::convert)
+/// and [`Planes::rgb`] have it, of the primaries and the curve of screens.
+const FILTERS: &str = "pad=ceil(iw/2)*2:ceil(ih/2)*2,\
+                       setparams=colorspace=smpte170m:color_primaries=bt709:color_trc=iec61966-2-1";
+
 /// A compressed movie. Odd sizes get one more column or row at the right or lower edge: H.264 has even sizes.
 #[derive(Debug)]
 pub struct Mp4 {
@@ -53,8 +58,11 @@ impl Mp4 {
             "-i",
             "pipe:0",
         ]);
-        command.args(["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-c:v", "libx264", "-crf", "17"]);
-        command.args(["-pix_fmt", pixels, "-color_range", range, "-movflags", "+faststart", "-f", "mp4"]);
+        command.args(["-vf", FILTERS, "-c:v", "libx264", "-crf", "17"]);
+        command.args(["-pix_fmt", pixels, "-color_range", range]);
+        // Said, since players guess by the size of the picture; of pixels that came as RGB it is so.
+        command.args(["-colorspace", "smpte170m", "-color_primaries", "bt709", "-color_trc", "iec61966-2-1"]);
+        command.args(["-movflags", "+faststart", "-f", "mp4"]);
         command.arg(programs::file_url(unfinished.temporary.name()));
         command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped());
         let mut child = command.spawn().map_err(|e| unfinished.fail("start ffmpeg for", e))?;

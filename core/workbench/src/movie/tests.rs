@@ -251,14 +251,25 @@ fn motion_has_the_colour_of_where_it_goes_and_a_wheel() {
 #[test]
 fn clips_of_uneven_rate_become_movies_of_even_rate() {
     let even = FrameTimes::constant(10, 25.0).unwrap();
-    let plan = Plan::of(&even, 3..7, 25.0);
+    let plan = Plan::of(&even, 3..7, 25.0).unwrap();
     assert_eq!((plan.frames, plan.note), (vec![3, 4, 5, 6], None));
     // Frames at 0, 1, 2, 2.1, 2.2, 5 and 6 tenths: the usual rate is 10.
     let times = FrameTimes::new([0.0, 1.0, 2.0, 2.1, 2.2, 5.0, 6.0, 7.0].map(|t| t / 10.0).to_vec()).unwrap();
-    let plan = Plan::of(&times, 0..8, times.nominal_fps().unwrap());
+    let plan = Plan::of(&times, 0..8, times.nominal_fps().unwrap()).unwrap();
     assert_eq!(plan.frames, [0, 1, 2, 4, 5, 5, 6, 7]);
     let note = plan.note.unwrap();
     assert!(note.contains("1 of 8 left out, 1 shown again, each within 100 ms"), "{note}");
+    // One stray time.
+    let stray = FrameTimes::new([0.0, 0.04, 0.08, 1e9, 1e9 + 0.04].to_vec()).unwrap();
+    let error = Plan::of(&stray, 0..5, 25.0).err().unwrap();
+    let told = error.to_string();
+    assert!(
+        told.contains("2.5e10 frames, since frame 3 of the clip is 1.0e9 s after the one before it"),
+        "{told}"
+    );
+    // On one side of it there is a movie.
+    assert_eq!(Plan::of(&stray, 0..3, 25.0).unwrap().frames, [0, 1, 2]);
+    assert_eq!(Plan::of(&stray, 3..5, 25.0).unwrap().frames, [3, 4]);
 }
 
 #[test]

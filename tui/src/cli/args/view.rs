@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 
 use super::grow::Place;
 use super::plant::{Plant, Typed, copies};
-use super::{Size, WithPlugin};
+use super::{Size, WithPlugin, movie_rate};
 
 /// Scenes in a window, or into a file.
 #[derive(Args, Debug)]
@@ -102,7 +102,7 @@ pub(in crate::cli) struct Shot {
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = positive)]
     pub(in crate::cli) seconds: Option<f64>,
     /// Frames per second (default: those of the clip; of a forest 25).
-    #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = positive)]
+    #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = movie_rate)]
     pub(in crate::cli) fps: Option<f64>,
     /// Samples of a pixel, 1 or 4 (default: 4, for smooth edges).
     #[arg(long, value_name = "N", value_parser = samples)]

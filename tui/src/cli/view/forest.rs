@@ -4,7 +4,7 @@ use std::io::IsTerminal as _;
 use std::path::Path;
 use std::process::ExitCode;
 
-use honami_model::brief::counted;
+use honami_model::brief::{Brief, counted};
 use honami_workbench::mechanics::{Damping, Integrator};
 use honami_workbench::plant::scene::{Shown, scene};
 use honami_workbench::plant::sway::Motion;
@@ -14,7 +14,7 @@ use serde_json::json;
 
 use super::{window, words};
 use crate::cli::args::Common;
-use crate::cli::args::view::View;
+use crate::cli::args::view::{Shot, View};
 use crate::cli::{Answer, Outcome, Usage, ends, report, simulate, want};
 use crate::viewer::{self, Scenes};
 
@@ -22,6 +22,8 @@ use crate::viewer::{self, Scenes};
 pub(super) const SIZE: [u32; 2] = [1280, 720];
 /// Seconds of a movie, where nobody says.
 const SECONDS: f64 = 10.0;
+/// Frames of a movie at most.
+const MOST_FRAMES: f64 = 1e6;
 /// From where a forest can be seen, degrees above the horizon.
 const ELEVATIONS: std::ops::RangeInclusive<f64> = 0.0..=90.0;
 /// Options of skeletons.
@@ -46,6 +48,10 @@ pub(super) fn view(args: &View, common: &Common) -> anyhow::Result<Outcome> {
             format!("a forest is seen from 0 to 90 degrees above the horizon, not from {elevation:?}")
         })?;
     }
+    let n_frames = n_frames(&args.shot);
+    want(n_frames <= MOST_FRAMES, || {
+        format!("{} frames are too many: say fewer --seconds or a lower --fps", Brief(n_frames))
+    })?;
     let has_display = ["DISPLAY", "WAYLAND_DISPLAY"]
         .into_iter()
         .any(|name| std::env::var_os(name).is_some_and(|value| !value.is_empty()));
@@ -69,6 +75,12 @@ pub(super) fn view(args: &View, common: &Common) -> anyhow::Result<Outcome> {
     ends::leave();
     let end = crate::app::run_forest(scene)?;
     Ok(Outcome::Exit(end.map_or(ExitCode::SUCCESS, |end| ExitCode::from(end.status()))))
+}
+
+/// Frames of a movie.
+fn n_frames(shot: &Shot) -> f64 {
+    let of_time = || shot.seconds.unwrap_or(SECONDS) * shot.fps.unwrap_or(Motion::default().fps);
+    shot.frames.map_or_else(|| of_time().round().max(1.0), f64::from)
 }
 
 /// The scene, what is in it, and what is to be said of the plant.
@@ -125,10 +137,7 @@ fn offscreen(
     let path = scenes.write(&Scene::Forest(Box::new(scene)))?;
     let mut words = words(args, &path, [width, height]);
     words.extend(["--offscreen".into(), out.into()]);
-    let shot = &args.shot;
-    let seconds = shot.seconds.unwrap_or(SECONDS) * shot.fps.unwrap_or(Motion::default().fps);
-    let n_frames = shot.frames.unwrap_or(seconds.round().clamp(1.0, f64::from(u32::MAX)) as u32);
-    viewer::have(&words, n_frames, &report::Bar::with(common))?;
+    viewer::have(&words, n_frames(&args.shot) as u32, &report::Bar::with(common))?;
     let mut text = format!("{}: {told}", out.display());
     notes.iter().for_each(|note| text += &format!("\nnote: {note}"));
     let json = json!({ "out": out, "size": [width, height], "forest": told, "notes": notes });
