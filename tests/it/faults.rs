@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::Mutex;
 
-use honami_tests::{Bench, ran, root};
+use honami_tests::{Bench, ran, root, what_is_built};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::process::{Pid, PidfdFlags, Signal, kill_process, pidfd_open};
 
@@ -178,8 +178,9 @@ fn make(bench: &Bench, made: Made) -> &'static str {
 
 /// The zoo's library; cargo says where it lies.
 fn zoo() -> PathBuf {
-    let build = ["build", "--quiet", "--package", "honami-host", "--example", "zoo", "--message-format=json"];
-    let output = Command::new(env!("CARGO")).args(build).current_dir(root()).output().unwrap();
+    let mut build = Command::new(env!("CARGO"));
+    build.args(["build", "--quiet", "--example", "zoo", "--message-format=json"]);
+    let output = build.args(what_is_built().split_whitespace()).current_dir(root()).output().unwrap();
     let text = String::from_utf8(output.stdout).unwrap();
     let parsed = text.lines().filter_map(|line| serde_json::from_str::<serde_json::Value>(line).ok());
     let mut files = parsed.filter(|what| what["target"]["name"] == "zoo");

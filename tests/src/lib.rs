@@ -29,6 +29,7 @@ pub fn program() -> &'static Path {
 fn build() -> Option<PathBuf> {
     let output = Command::new(env!("CARGO"))
         .args(["build", "--message-format=json", "--quiet"])
+        .args(what_is_built().split_whitespace())
         .current_dir(root())
         .stderr(Stdio::inherit())
         .output()
@@ -40,6 +41,13 @@ fn build() -> Option<PathBuf> {
         message["executable"].as_str().filter(|_| is_it).map(PathBuf::from)
     };
     messages.lines().filter(|_| output.status.success()).find_map(executable)
+}
+
+/// The packages that are built, in cargo's words: `HONAMI_BUILD`, where all are tested together, else those that
+/// everybody builds. Others than were built before would have what they share built once more, with other features.
+#[must_use]
+pub fn what_is_built() -> String {
+    std::env::var("HONAMI_BUILD").unwrap_or_default()
 }
 
 /// The root of the workspace.

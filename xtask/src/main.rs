@@ -88,45 +88,63 @@ fn viewer() -> anyhow::Result<()> {
 fn test(args: &[&str]) -> anyhow::Result<()> {
     system::need_compiler()?;
     system::want_ffmpeg()?;
-    // What is asked for by name is looked for in the packages that build everywhere.
-    let opencv = if args.is_empty() { opencv::Kit::want() } else { None };
-    if args.is_empty() && opencv.is_none() {
+    if !args.is_empty() {
+        // The end-to-end tests run the real programs with the real plugins: build them first.
+        cargo(&["build"]).run()?;
+        return cargo(&["test"]).args(args.iter().copied()).run();
+    }
+    let opencv = opencv::Kit::want();
+    if opencv.is_none() {
         system::may_skip("OpenCV's trackers")?;
     }
-    let peers = if args.is_empty() { peers::want() } else { None };
-    if args.is_empty() && peers.is_none() {
+    let peers = peers::want();
+    if peers.is_none() {
         system::may_skip("what OpenSees, readers of rigs and glTF's validator say")?;
     }
-    // The end-to-end tests run the real programs with the real plugins: build them first.
-    cargo(&["build"]).run()?;
-    if args.is_empty() {
-        system::want_drawing()?;
-        cargo(&["build"]).args(VIEWER).run()?;
-    }
-    if let Some(opencv) = &opencv {
-        opencv.cargo(&["build"]).run()?;
-    }
-    let tests = cargo(&["test"]).args(args.iter().copied());
-    peers.unwrap_or_default().into_iter().fold(tests, |tests, (name, value)| tests.env(name, value)).run()?;
-    if args.is_empty() {
-        cargo(&["test"]).args(VIEWER).run()?;
-    }
-    opencv.map_or(Ok(()), |opencv| opencv.cargo(&["test"]).run())
+    system::want_drawing()?;
+    let all = All::with(opencv);
+    all.cargo(&["build"]).run()?;
+    // What tests build is chosen as this is: other choices would build what they share once more, with other features.
+    let tests = all.cargo(&["test"]).env("HONAMI_BUILD", all.words().join(" "));
+    peers.unwrap_or_default().into_iter().fold(tests, |tests, (name, value)| tests.env(name, value)).run()
 }
 
 /// Everything that a reviewer should not have to say.
 fn lint() -> anyhow::Result<()> {
     cargo(&["fmt", "--all", "--check"]).run()?;
-    let clippy = ["clippy", "--all-targets", "--", "-D", "warnings"];
-    let doc = ["doc", "--no-deps", "--document-private-items"];
-    cargo(&clippy).run()?;
-    cargo(&["clippy"]).args(VIEWER).args(clippy[1..].iter().copied()).run()?;
-    cargo(&doc).env("RUSTDOCFLAGS", "-D warnings").run()?;
-    cargo(&doc).args(VIEWER).env("RUSTDOCFLAGS", "-D warnings").run()?;
-    let Some(opencv) = opencv::Kit::find() else {
+    let opencv = opencv::Kit::find();
+    if opencv.is_none() {
         eprintln!("skipped: OpenCV's trackers, because OpenCV is not there (`cargo xtask opencv` gets it)");
-        return system::may_skip("OpenCV's trackers");
-    };
-    opencv.cargo(&clippy).run()?;
-    opencv.cargo(&doc).env("RUSTDOCFLAGS", "-D warnings").run()
+        system::may_skip("OpenCV's trackers")?;
+    }
+    let all = All::with(opencv);
+    all.cargo(&["clippy", "--all-targets", "--", "-D", "warnings"]).run()?;
+    all.cargo(&["doc", "--no-deps", "--document-private-items"]).env("RUSTDOCFLAGS", "-D warnings").run()
+}
+
+/// Every package, with OpenCV's trackers where OpenCV is.
+struct All {
+    opencv: Option<opencv::Kit>,
+}
+
+impl All {
+    fn with(opencv: Option<opencv::Kit>) -> Self {
+        Self { opencv }
+    }
+
+    /// How cargo is told so.
+    fn words(&self) -> &'static [&'static str] {
+        if self.opencv.is_some() {
+            &["--workspace", "--features", "honami-tracker-opencv/opencv"]
+        } else {
+            &["--workspace", "--exclude", "honami-tracker-opencv"]
+        }
+    }
+
+    /// Cargo on all of them.
+    fn cargo(&self, args: &[&str]) -> shell::Step {
+        let (before, after) = args.split_at(args.iter().position(|arg| *arg == "--").unwrap_or(args.len()));
+        let step = cargo(before).args(self.words()).args(after);
+        self.opencv.iter().flat_map(opencv::Kit::env).fold(step, |step, (name, value)| step.env(name, value))
+    }
 }

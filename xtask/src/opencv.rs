@@ -50,11 +50,9 @@ impl Kit {
         kit
     }
 
-    /// Cargo on the plugin alone.
-    pub(crate) fn cargo(&self, args: &[&str]) -> Step {
-        let (before, after) = args.split_at(args.iter().position(|arg| *arg == "--").unwrap_or(args.len()));
-        let step = cargo(before).args(PLUGIN).args(after);
-        self.env.iter().fold(step, |step, (name, value)| step.env(name, value))
+    /// What cargo has to know to build with it.
+    pub(crate) fn env(&self) -> &[(&'static str, String)] {
+        &self.env
     }
 
     /// Headers in this folder, whose libraries are installed.
@@ -83,7 +81,8 @@ impl Kit {
 pub(crate) fn build() -> anyhow::Result<()> {
     system::need_compiler()?;
     let kit = Kit::want().context("OpenCV is not there")?;
-    kit.cargo(&["build", "--release"]).run()
+    let build = cargo(&["build", "--release"]).args(PLUGIN);
+    kit.env.iter().fold(build, |build, (name, value)| build.env(name, value)).run()
 }
 
 fn sysroot() -> anyhow::Result<PathBuf> {

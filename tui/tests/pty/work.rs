@@ -16,9 +16,14 @@ pub(super) fn plugins() -> &'static Path {
     static BUILT: OnceLock<PathBuf> = OnceLock::new();
     BUILT.get_or_init(|| {
         let profile = if cfg!(debug_assertions) { "dev" } else { "release" };
+        // Where all is tested together, what is built has to be chosen as it was, or much is built once more.
+        let what = std::env::var("HONAMI_BUILD");
+        let what = what
+            .as_deref()
+            .unwrap_or("-p honami-plughost -p honami-tracker-anchored -p honami-clusterer-bod");
         let output = Command::new(env!("CARGO"))
             .args(["build", "--quiet", "--message-format=json", "--profile", profile])
-            .args(["-p", "honami-plughost", "-p", "honami-tracker-anchored", "-p", "honami-clusterer-bod"])
+            .args(what.split_whitespace())
             .current_dir(env!("CARGO_MANIFEST_DIR"))
             .stderr(Stdio::inherit())
             .output()

@@ -39,15 +39,8 @@ pub(crate) fn zoo() -> &'static Path {
     static PATH: OnceLock<PathBuf> = OnceLock::new();
     PATH.get_or_init(|| {
         let output = Command::new(env!("CARGO"))
-            .args([
-                "build",
-                "--quiet",
-                "--package",
-                "honami-host",
-                "--example",
-                "zoo",
-                "--message-format=json",
-            ])
+            .args(["build", "--quiet", "--example", "zoo", "--message-format=json"])
+            .args(what("-p honami-host"))
             .current_dir(env!("CARGO_MANIFEST_DIR"))
             .output()
             .unwrap();
@@ -59,13 +52,20 @@ pub(crate) fn zoo() -> &'static Path {
     })
 }
 
+/// Where to look for what is built: everywhere, where all is tested together (`HONAMI_BUILD`), or much would be built
+/// once more, with other features.
+fn what(package: &str) -> Vec<String> {
+    let what = std::env::var("HONAMI_BUILD").unwrap_or_else(|_| package.to_owned());
+    what.split_whitespace().map(str::to_owned).collect()
+}
+
 /// A host whose plugins have processes of their own, in a program that is built when it is first needed.
 pub(crate) fn isolating() -> Host {
     static BUILT: OnceLock<()> = OnceLock::new();
     BUILT.get_or_init(|| {
         let mut cargo = Command::new(env!("CARGO"));
-        let built = cargo.args(["build", "--quiet", "--package", "honami-plughost"]).status().unwrap();
-        assert!(built.success());
+        cargo.args(["build", "--quiet", "--bin", "honami-plughost"]).args(what("-p honami-plughost"));
+        assert!(cargo.status().unwrap().success());
     });
     host().hosting(Hosting::Isolated)
 }
