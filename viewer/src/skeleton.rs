@@ -8,7 +8,7 @@ mod tests;
 
 use std::collections::BTreeSet;
 
-use honami_media::{Media, OpenOptions, Rect};
+use honami_media::{Media, MediaError, OpenOptions, Rect};
 use honami_scene::control::Chosen;
 use honami_scene::{Orbit, SkeletonScene};
 
@@ -155,7 +155,7 @@ impl SkeletonPicture {
     }
 
     /// Puts a frame of the clip on the card, as large as the picture needs it.
-    fn film(&mut self, gpu: &Gpu, target: &Target, frame: u32) -> anyhow::Result<()> {
+    fn film(&mut self, gpu: &Gpu, target: &Target, frame: u32) -> Result<(), MediaError> {
         let (Some(media), Some((_, pipelines))) = (&self.media, &mut self.pipelines) else { return Ok(()) };
         let clip = &self.scene.clip;
         let share = (f64::from(target.size().height) / f64::from(clip.height)).min(1.0);
@@ -192,9 +192,12 @@ impl Picture for SkeletonPicture {
         }
         let row = self.row_at(shot.time);
         let lens = self.lens(shot, target);
-        let is_filmed = self.media.is_some() && self.parts.contains(&Part::Clip) && lens.depth < 1.0;
-        if is_filmed {
-            self.film(gpu, target, self.scene.first_frame + row as u32)?;
+        let mut is_filmed = self.media.is_some() && self.parts.contains(&Part::Clip) && lens.depth < 1.0;
+        if is_filmed && let Err(error) = self.film(gpu, target, self.scene.first_frame + row as u32) {
+            // The skeleton is worth seeing without it.
+            let why = format!("the clip is not shown from here on: {error}");
+            crate::say(&why);
+            (self.media, self.without_clip, is_filmed) = (None, Some(why), false);
         }
         let drawn = Drawn::of(self, row, &lens, target, is_filmed);
         if let Some((_, pipelines)) = &self.pipelines {

@@ -133,9 +133,16 @@ pub fn command(line: &str) -> Result<Command, Garbled> {
         true => read(line),
         false => {
             let (word, said) = line.trim().split_once(' ').unwrap_or((line.trim(), "null"));
-            let said = serde_json::from_str(said).unwrap_or_else(|_words| said.trim().into());
-            let command = serde_json::Map::from_iter([(word.to_owned(), said)]);
-            serde_json::from_value(command.into()).map_err(|why| garbled(line, &why))
+            let read = |said: serde_json::Value| {
+                let command = serde_json::Map::from_iter([(word.to_owned(), said)]);
+                serde_json::from_value(command.into()).map_err(|why| garbled(line, &why))
+            };
+            // What looks like a number or the like may be meant as words: `say 12`.
+            let words = || read(said.trim().into());
+            match serde_json::from_str(said) {
+                Ok(said) => read(said).or_else(|why| words().map_err(|_also| why)),
+                Err(_words) => words(),
+            }
         }
     }
 }

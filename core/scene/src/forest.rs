@@ -60,10 +60,23 @@ impl ForestScene {
         let is_order = {
             let mut rows: Vec<u32> = body.order.clone();
             rows.sort_unstable();
-            rows.into_iter().eq(0..n_nodes as u32)
+            // What bears a node comes before it, the root first.
+            rows.into_iter().eq(0..n_nodes as u32) && body.order.first() == Some(&0)
         };
         if self.places.is_empty() || self.places.len() != self.stands.len() {
             return Some(format!("{} places and {} copies", self.places.len(), self.stands.len()));
+        }
+        let is_number = self.places.as_flattened().iter().all(|v| v.is_finite())
+            && self
+                .stands
+                .iter()
+                .all(|stand| [stand.turn, stand.scale, stand.mass].into_iter().all(f32::is_finite));
+        if !is_number {
+            return Some("copies stand at what is no number".to_owned());
+        }
+        let (step, run_in) = (self.pace.step, self.run_in);
+        if !(1e-6..=1.0).contains(&step) || !(0.0..=3600.0).contains(&run_in) {
+            return Some(format!("{run_in} s of wind before it is seen, in steps of {step} s"));
         }
         if !is_order || body.levels.is_empty() {
             return Some(format!(

@@ -169,19 +169,21 @@ impl SkeletonScene {
     /// Copies go along, and others stay as they are shaped.
     ///
     /// # Errors
-    /// [`StructureError`] where joints and places are no skeleton.
+    /// [`StructureError`] where joints and places are no skeleton, which stays as it was.
     pub fn reshape(&mut self, shapes: &[(u32, Shape)]) -> Result<(), StructureError> {
-        for bone in self.joints.iter_mut().filter_map(|joint| joint.bone.as_mut()) {
+        let mut joints = self.joints.clone();
+        for bone in joints.iter_mut().filter_map(|joint| joint.bone.as_mut()) {
             if let Some((_, shape)) = shapes.iter().find(|(node, _)| *node == bone.node) {
                 (bone.plane_rad, bone.lean_rad, bone.gain) = (shape.plane_rad, shape.lean_rad, shape.gain);
             }
         }
-        let grown = self.grown.get_or_insert_with(|| Grown {
+        let fresh = self.grown.is_none().then(|| Grown {
             places: self.places.clone(),
             leaves: self.leaves.iter().map(|leaf| leaf.places.clone()).collect(),
         });
-        let skeleton = skeleton(&self.joints, grown, &self.times, &self.leaves)?;
-        let by = self.joints.iter().map(|joint| Shaped {
+        let Some(grown) = self.grown.as_ref().or(fresh.as_ref()) else { return Ok(()) };
+        let skeleton = skeleton(&joints, grown, &self.times, &self.leaves)?;
+        let by = joints.iter().map(|joint| Shaped {
             shape: joint.bone.map_or_else(Shape::default, |bone| bone.shape()),
             copy_of: joint.copy_of,
         });
@@ -194,12 +196,17 @@ impl SkeletonScene {
             carried.places = joints.zip(&leaf.offsets).map(|(at, by)| single(add(*at, *by))).collect();
         }
         self.places = places.into_iter().map(single).collect();
+        self.joints = joints;
+        self.grown = self.grown.take().or(fresh);
         Ok(())
     }
 
     /// What of it cannot be drawn.
     pub(crate) fn odd(&self) -> Option<String> {
         let (n_joints, n_frames) = (self.joints.len(), self.times.len());
+        if n_joints == 1 {
+            return Some("a root alone has no bone".to_owned());
+        }
         if n_joints == 0 || n_frames == 0 || self.places.len() != n_joints * n_frames {
             return Some(format!("{} places of {n_joints} joints in {n_frames} frames", self.places.len()));
         }

@@ -173,14 +173,18 @@ impl Workbench {
         let before = shape;
         let is_open = self.kept.is_open;
         ui.add_enabled_ui(is_open, |ui| {
+            // Sliders round what they show: what nobody moves stays as it is.
             let (mut plane, mut lean) = (shape.plane_rad.to_degrees(), shape.lean_rad.to_degrees());
+            let mut gain = shape.gain;
             if ui.add(degrees(&mut plane).text("plane")).changed() {
                 shape.plane_rad = plane.to_radians();
             }
             if ui.add(degrees(&mut lean).text("lean")).changed() {
                 shape.lean_rad = lean.to_radians();
             }
-            ui.add(Slider::new(&mut shape.gain, 0.0..=MOST_GAIN).text("gain").fixed_decimals(2));
+            if ui.add(Slider::new(&mut gain, 0.0..=MOST_GAIN).text("gain").fixed_decimals(2)).changed() {
+                shape.gain = gain;
+            }
             ui.horizontal(|ui| {
                 if ui.add_enabled(self.shaping.is_some(), Button::new("keep (Enter)")).clicked() {
                     events.extend(self.keep());

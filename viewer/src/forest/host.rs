@@ -50,14 +50,16 @@ impl Host {
             (x - camera.eye[0]).hypot(y - camera.eye[1])
         };
         seen.sort_by(|a, b| away(a).total_cmp(&away(b)));
-        self.drawn = skin::skin(scene, &seen, eye, &airs, (self.n_threads, &mut self.vertices));
-        let bytes: &[u8] = bytemuck::cast_slice(&self.vertices);
-        let (wanted, most) = (bytes.len() as u64, gpu.device.limits().max_buffer_size);
+        let n_vertices = skin::n_vertices(scene, &seen);
+        let wanted = n_vertices * size_of::<Vertex>() as u64;
+        // What begins at a vertex is told by how many there are before it, in 31 bits.
+        let most = gpu.device.limits().max_buffer_size.min(i32::MAX as u64 * size_of::<Vertex>() as u64);
         if wanted > most {
             let (adapter, what, n_copies) = (gpu.name(), "vertices", seen.len());
             let fault = GpuError::Copies { adapter, what, n_copies, wanted, most, has_processor: false };
             return Err(fault.into());
         }
+        self.drawn = skin::skin(scene, &seen, eye, &airs, (self.n_threads, &mut self.vertices));
         if self.buffer.as_ref().is_none_or(|buffer| buffer.size() < wanted) {
             // A half more than is wanted now: what moves is not made anew for every leaf that comes into view.
             self.buffer = Some(gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -68,7 +70,7 @@ impl Host {
             }));
         }
         if let Some(buffer) = &self.buffer {
-            gpu.queue.write_buffer(buffer, 0, bytes);
+            gpu.queue.write_buffer(buffer, 0, bytemuck::cast_slice(&self.vertices));
         }
         Ok(())
     }

@@ -61,7 +61,17 @@ struct Copy {
     air: f32,
 }
 
-/// The vertices of copies, one after the other, by so many threads; `airs`: how fast the air is at every copy.
+/// How many vertices there are of copies.
+pub(super) fn n_vertices(scene: &ForestScene, seen: &[Seen<'_>]) -> u64 {
+    seen.iter().map(|seen| of_level(&scene.body.levels[seen.level]) as u64).sum()
+}
+
+/// Vertices of a copy.
+fn of_level(level: &Level) -> usize {
+    level.n_vertices() as usize + 4 * level.leaves.len()
+}
+
+/// The vertices of copies, no more than 2³², one after the other, by so many threads; `airs`: how fast the air is at every copy.
 pub(super) fn skin(
     scene: &ForestScene,
     seen: &[Seen<'_>],
@@ -81,8 +91,7 @@ pub(super) fn skin(
     let mut rest = vertices.as_mut_slice();
     let pieces = seen.iter().zip(&drawn).map(|(seen, drawn)| {
         let level = &scene.body.levels[drawn.level];
-        let n = level.n_vertices() as usize + 4 * level.leaves.len();
-        let (own, others) = std::mem::take(&mut rest).split_at_mut(n);
+        let (own, others) = std::mem::take(&mut rest).split_at_mut(of_level(level));
         rest = others;
         let (at, stand) = (scene.places[seen.copy], &scene.stands[seen.copy]);
         (level, seen.motion, Copy::new(seen.copy, at, stand, airs[seen.copy]), own)

@@ -26,6 +26,7 @@ fn commands_are_read_as_they_are_written_and_as_people_type_them() {
         (Command::Select(Some(Chosen::Bone(3))), r#"{"select":{"bone":3}}"#, r#"select {"bone": 3}"#),
         (Command::Select(None), r#"{"select":null}"#, "select"),
         (Command::Say("a line".into()), r#"{"say":"a line"}"#, "say a line"),
+        (Command::Say("12".into()), r#"{"say":"12"}"#, "say 12"),
         (Command::Capture("/tmp/a.png".into()), r#"{"capture":"/tmp/a.png"}"#, "capture /tmp/a.png"),
         (Command::Quit, r#""quit""#, "quit"),
     ] {

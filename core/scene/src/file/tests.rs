@@ -1,8 +1,10 @@
 //! Scene files whole, cut short, changed, and of others.
 
-use super::{HEAD_BYTES, SceneFileError, read, write};
+use super::{HEAD_BYTES, MAGIC, SceneFileError, read, write};
 use crate::skeleton::{Film, Joint};
-use crate::{Scene, SkeletonScene};
+use crate::testing::forest;
+use crate::{ForestScene, Scene, SkeletonScene};
+use sha2::{Digest as _, Sha256};
 use std::fs;
 
 fn scene() -> Scene {
@@ -75,8 +77,12 @@ fn a_scene_whose_parts_do_not_go_together_is_told() {
     let path = folder.path().join("a.scene");
     let Scene::Skeleton(whole) = scene() else { unreachable!() };
     type Spoil = fn(&mut SkeletonScene);
-    let cases: [(&str, Spoil); 4] = [
+    let cases: [(&str, Spoil); 5] = [
         ("1 places of 2 joints in 1 frames", |scene| scene.places.truncate(1)),
+        ("a root alone", |scene| {
+            scene.joints.truncate(1);
+            scene.places.truncate(1);
+        }),
         ("it names", |scene| scene.joints[1].parent = Some(1)),
         ("it names", |scene| scene.joints[1].group = Some(0)),
         ("0 places of 2 joints in 0 frames", |scene| (scene.times, scene.places) = Default::default()),
@@ -88,4 +94,36 @@ fn a_scene_whose_parts_do_not_go_together_is_told() {
         let error = read(&path).unwrap_err().to_string();
         assert!(error.contains(wanted), "{error}");
     }
+}
+
+#[test]
+fn a_forest_whose_parts_do_not_go_together_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.scene");
+    type Spoil = fn(&mut ForestScene);
+    let cases: [(&str, Spoil); 5] = [
+        ("1 places and 2 copies", |scene| scene.places.truncate(1)),
+        ("no number", |scene| scene.stands[1].scale = f32::NAN),
+        ("in steps of 0 s", |scene| scene.pace.step = 0.0),
+        ("NaN s of wind", |scene| scene.run_in = f64::NAN),
+        ("an order of 41 of 41 nodes", |scene| scene.body.order.swap(0, 1)),
+    ];
+    for (wanted, spoil) in cases {
+        let mut scene = forest(2, "calm");
+        spoil(&mut scene);
+        write(&path, &Scene::Forest(Box::new(scene))).unwrap();
+        let error = read(&path).unwrap_err().to_string();
+        assert!(error.contains(wanted), "{error}");
+    }
+}
+
+/// The viewer is built apart: one of yesterday must not take the scenes of today for its own. Whoever changes what a scene
+/// consists of gives [`MAGIC`] another number, and these the numbers that come.
+#[test]
+fn scenes_of_another_shape_are_of_another_version() {
+    let bytes = postcard::to_allocvec(&scene()).unwrap();
+    let print: String = Sha256::digest(&bytes)[..4].iter().map(|byte| format!("{byte:02x}")).collect();
+    // What a forest weighs depends on rounding, how long it is written does not.
+    let n_forest = postcard::to_allocvec(&Scene::Forest(Box::new(forest(2, "calm")))).unwrap().len();
+    assert_eq!((&MAGIC, print.as_str(), n_forest), (b"HONAMI01", "7c2c9dc0", 36_475));
 }

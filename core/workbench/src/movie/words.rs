@@ -49,15 +49,22 @@ pub(super) fn labels(of: &Drawn, lens: &Lens) -> Vec<Label> {
             wanted.push(Label { at, text: name.clone(), rgb: palette::group(Some(group)) });
         }
     }
+    one_under_the_other(wanted, height)
+}
+
+/// Labels of a height, those that touch one higher up moved down until they do not.
+fn one_under_the_other(mut wanted: Vec<Label>, height: f64) -> Vec<Label> {
     wanted.sort_by(|a, b| a.at[1].total_cmp(&b.at[1]));
+    let touches = |a: &Label, b: &Label| {
+        let [wide, other] = [a, b].map(|label| text_width(&label.text, height));
+        let is_beside = a.at[0] >= b.at[0] + other || b.at[0] >= a.at[0] + wide;
+        // The sum that a label is moved by: a difference of the two would not be exactly its height.
+        !is_beside && a.at[1] < b.at[1] + height && b.at[1] < a.at[1] + height
+    };
     let mut placed: Vec<Label> = Vec::new();
     for mut label in wanted {
-        let touches = |a: &Label, b: &Label| {
-            let [wide, other] = [a, b].map(|label| text_width(&label.text, height));
-            a.at[0] < b.at[0] + other && b.at[0] < a.at[0] + wide && (a.at[1] - b.at[1]).abs() < height
-        };
-        while let Some(under) = placed.iter().find(|placed| touches(placed, &label)) {
-            label.at[1] = under.at[1] + height;
+        while let Some(above) = placed.iter().find(|placed| touches(placed, &label)) {
+            label.at[1] = above.at[1] + height;
         }
         placed.push(label);
     }
@@ -146,6 +153,18 @@ pub(super) fn wheel(canvas: &mut Canvas, unit: f64, mapping: &Mapping, rim_px_s:
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// In steps that no power of two divides: sums of them are rounded.
+    #[test]
+    fn labels_stand_under_one_another_wherever_they_are() {
+        for k in 0..2000 {
+            let (height, top) = (LOWEST + 0.0137 * f64::from(k), 0.731 * f64::from(k));
+            let at = |down: f64| Label { at: [10.0, top + down], text: "a leaf".to_owned(), rgb: WHITE };
+            let placed = one_under_the_other(vec![at(0.3 * height), at(0.0), at(0.31 * height)], height);
+            let tops: Vec<f64> = placed.iter().map(|label| label.at[1]).collect();
+            assert_eq!(tops, [top, top + height, top + height + height], "{height}");
+        }
+    }
 
     #[test]
     fn speeds_are_told_in_the_simplest_way() {
