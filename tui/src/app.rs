@@ -57,6 +57,8 @@ pub mod tracks;
 pub mod update;
 pub mod versus;
 pub mod view;
+mod viewing;
+pub mod window;
 
 pub use door::{Gives, Offer, Offers, forest as run_forest, run};
 pub use opening::Plan;

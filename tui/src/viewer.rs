@@ -1,31 +1,32 @@
 //! The viewer, a program of its own beside this one: found, had draw scenes, told what to show, and heard.
 
+mod scenes;
 #[cfg(test)]
 mod tests;
 
 use std::ffi::OsString;
-use std::io::{BufRead as _, BufReader, Write as _};
+use std::io::{BufRead as _, BufReader, Read, Write as _};
 use std::os::unix::process::ExitStatusExt as _;
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
+use std::thread::JoinHandle;
 
 use anyhow::{Context as _, ensure};
-use honami_model::unfinished::Unfinished;
 use honami_workbench::WorkbenchError;
 use honami_workbench::doctor::Finding;
-use honami_workbench::media;
+use honami_workbench::plugins::plain;
 use honami_workbench::progress::{Flow, Progress};
-use honami_workbench::scene::control::{self, Event, Garbled};
-use honami_workbench::scene::{Scene, file};
-use tempfile::TempDir;
+use honami_workbench::scene::control::{self, Event, Garbled, PROTOCOL};
+
+pub(crate) use self::scenes::{Scenes, skeleton, usual_size};
 
 /// What it is called.
 const NAME: &str = "honami-viewer";
 
 /// What a viewer has said, or that it has ended.
-#[derive(Debug)]
-pub(crate) enum Heard {
+#[derive(Clone, Debug)]
+pub enum Heard {
     /// Something.
     Said(Event),
     /// Nothing that is known.
@@ -120,7 +121,13 @@ pub(crate) fn have(args: &[OsString], n_frames: u32, progress: &dyn Progress) ->
     ending(status).map_or(Ok(()), |how| Err(anyhow::anyhow!(how)))
 }
 
-/// Starts the viewer's window; what it says comes to `heard`, on a thread of its own, its end last.
+/// Why a viewer that says what it speaks is not to be talked to, where it is another version.
+pub(crate) fn stranger(protocol: u32) -> Option<&'static str> {
+    (protocol != PROTOCOL).then_some("the viewer is of another version of honami: build both anew")
+}
+
+/// Starts the viewer's window; what it says comes to `heard`, on a thread of its own, its end last. Where `errors` are piped,
+/// the last of them are in the line about its end.
 ///
 /// # Errors
 /// Where it is not there, or does not start.
@@ -134,9 +141,13 @@ pub(crate) fn start(
     let spawned = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(errors).spawn();
     let mut child = spawned.with_context(|| starting(&program))?;
     let (tell, hear) = child.stdin.take().zip(child.stdout.take()).with_context(|| starting(&program))?;
+    let words = child.stderr.take().map(|errors| {
+        std::thread::Builder::new().name("the viewer's errors".to_owned()).spawn(move || last_words(errors))
+    });
+    let words = words.transpose().with_context(|| starting(&program))?;
     std::thread::Builder::new()
         .name("viewer".to_owned())
-        .spawn(move || listen(hear, child, heard))
+        .spawn(move || listen(hear, child, words, heard))
         .with_context(|| starting(&program))?;
     let (teller, told) = sync_channel(WAITING);
     std::thread::Builder::new()
@@ -146,14 +157,37 @@ pub(crate) fn start(
     Ok(Teller(teller))
 }
 
-fn listen(hear: ChildStdout, mut child: Child, mut heard: impl FnMut(Heard)) {
+fn listen(
+    hear: ChildStdout,
+    mut child: Child,
+    words: Option<JoinHandle<String>>,
+    mut heard: impl FnMut(Heard),
+) {
     for line in BufReader::new(hear).lines().map_while(Result::ok) {
         heard(control::event(&line).map_or_else(Heard::Garbled, Heard::Said));
     }
-    heard(Heard::Ended(match child.wait() {
-        Ok(status) => ending(status),
+    let status = child.wait();
+    let words = words.and_then(|words| words.join().ok()).unwrap_or_default();
+    heard(Heard::Ended(match status {
+        Ok(status) => ending(status).map(|how| with_words(status, how, &words)),
         Err(error) => Some(format!("the viewer: {error}")),
     }));
+}
+
+/// The last line that says something; after a panic a hint follows what it said.
+fn last_words(errors: impl Read) -> String {
+    let lines = BufReader::new(errors).split(b'\n').map_while(Result::ok);
+    let lines = lines.map(|line| plain(&String::from_utf8_lossy(&line)).trim().to_owned());
+    lines.filter(|line| !line.is_empty() && !line.starts_with("note: ")).last().unwrap_or_default()
+}
+
+/// How it has ended, in its own words where it has said why.
+fn with_words(status: ExitStatus, how: String, words: &str) -> String {
+    match (status.code(), words.strip_prefix(&format!("{NAME}: ")).unwrap_or(words)) {
+        (_, "") => how,
+        (Some(1), words) => format!("the viewer: {words}"),
+        (_, words) => format!("{how}; it last said: {words}"),
+    }
 }
 
 /// What this machine has of it: which adapter it would draw with.
@@ -215,48 +249,4 @@ fn ending(status: ExitStatus) -> Option<String> {
         (None, Some(signal)) => format!("the viewer crashed, by signal {signal}"),
         (None, None) => "the viewer crashed".to_owned(),
     })
-}
-
-/// The files through which a viewer is shown scenes: in a folder with the caches, which goes with this.
-#[derive(Debug)]
-pub(crate) struct Scenes {
-    folder: TempDir,
-    /// Whoever is ended by a signal removes it.
-    _unfinished: Unfinished,
-    /// How many were written.
-    n: u32,
-}
-
-impl Scenes {
-    /// None yet.
-    ///
-    /// # Errors
-    /// Where there is no room for them.
-    pub(crate) fn new() -> anyhow::Result<Self> {
-        let caches = media::cache_folder().unwrap_or_else(std::env::temp_dir);
-        let failed = || format!("cannot write a scene into {}", caches.display());
-        std::fs::create_dir_all(&caches).with_context(failed)?;
-        let begun = Unfinished::begin(|| {
-            tempfile::Builder::new().prefix("scene-").tempdir_in(&caches).map(|folder| {
-                let name = folder.path().to_owned();
-                (folder, name)
-            })
-        });
-        let (folder, unfinished) = begun.with_context(failed)?;
-        Ok(Self { folder, _unfinished: unfinished, n: 0 })
-    }
-
-    /// Writes one, and removes the one before the last: the last may be being read.
-    ///
-    /// # Errors
-    /// What the disk met.
-    pub(crate) fn write(&mut self, scene: &Scene) -> anyhow::Result<PathBuf> {
-        let path = self.folder.path().join(format!("{}.scene", self.n));
-        file::write(&path, scene)?;
-        if let Some(older) = self.n.checked_sub(2) {
-            std::fs::remove_file(path.with_file_name(format!("{older}.scene"))).unwrap_or_default();
-        }
-        self.n += 1;
-        Ok(path)
-    }
 }

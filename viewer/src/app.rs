@@ -185,6 +185,15 @@ impl App {
         }
     }
 
+    /// So many seconds have gone; whoever steers is told which frame has come.
+    fn tick(&mut self, seconds: f64) {
+        let before = self.player.row();
+        self.player.tick(seconds);
+        if self.player.row() != before {
+            self.pipe.tell(&Event::Passing(self.first() + self.player.row() as u32));
+        }
+    }
+
     fn front(&mut self) {
         self.canvas.orbit = self.workbench.picture.orbit();
     }
@@ -282,7 +291,7 @@ impl eframe::App for App {
         let context = ui.ctx().clone();
         self.obey(&context);
         self.keys(ui);
-        self.player.tick(f64::from(ui.input(|input| input.stable_dt)));
+        self.tick(f64::from(ui.input(|input| input.stable_dt)));
         egui::Panel::bottom("time").show(ui, |ui| self.transport(ui));
         let events =
             egui::Panel::right("beside").exact_size(PANEL).show(ui, |ui| self.workbench.panel(ui)).inner;

@@ -79,6 +79,8 @@ pub enum Event {
     },
     /// Somebody has gone to this frame.
     Frame(u32),
+    /// It plays, and shows this frame now.
+    Passing(u32),
     /// Somebody has begun or stopped to play.
     Playing(bool),
     /// Somebody has chosen something, or nothing.

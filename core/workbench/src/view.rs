@@ -14,7 +14,7 @@ use honami_scene::{SkeletonScene, palette};
 use honami_store::Project;
 use honami_structure::ellipse::Ellipse;
 
-pub use self::edit::{edit, is_edit};
+pub use self::edit::{edit, is_edit, transaction};
 use crate::error::WorkbenchError;
 use crate::grow::{Bones, GrowRequest, grow};
 use crate::progress::Progress;

@@ -210,6 +210,7 @@ table! {
     ReleaseGroups "release-groups" ["G r"] [Review ""] "forget the groups made by hand: they are those of the cut again"
     Wind "wind" ["i"] [Forest "other"] "type another wind, as honami simulate takes it"
     Skeleton "skeleton" ["v k" "G g"] [Review "skeleton"] "grow the skeleton of the groups and show it over the picture, or not"
+    Window "window" ["v w"] [Review ""] "open the viewer's window on the skeleton, in step with the terminal; or close it"
     PlaceRoot "place-root" ["G p"] [Review ""] "place the root of the skeleton by hand: where the plant leaves the ground"
     ReleaseSkeleton "release-skeleton" ["G R"] [Review ""] "forget what was done to the skeleton by hand: it is as it grows again"
     ShapeBone "shape-bone" ["G b"] [Review ""] "shape the chosen bone of the skeleton by hand: its plane, how it leans, how far it swings"

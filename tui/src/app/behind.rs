@@ -41,6 +41,13 @@ impl<T: Send + 'static> Behind<T> {
         Ok(result)
     }
 
+    /// Waits for what is being worked out, which nobody wants any more.
+    pub(super) fn end(&mut self) {
+        self.next = None;
+        // A panic was reported where it happened.
+        self.running.take().into_iter().for_each(|(running, _)| drop(running.join()));
+    }
+
     fn go_on(&mut self) -> std::io::Result<()> {
         if self.running.is_none()
             && let Some(work) = self.next.take()

@@ -7,6 +7,7 @@ mod file;
 use std::collections::VecDeque;
 
 use honami_model::correct::Stroke;
+use honami_workbench::scene::control::Event;
 use serde::{Deserialize, Serialize};
 
 use super::seat::Seat;
@@ -92,6 +93,8 @@ pub enum What {
     Text(String),
     /// The mouse did something.
     Mouse(Touch),
+    /// Something was chosen in the viewer's window, or asked for there.
+    Window(Event),
     /// Something was said.
     Notice(String),
     /// It was said that something failed.

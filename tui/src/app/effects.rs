@@ -1,6 +1,7 @@
 //! The only door to the world: what the state wants done is done here, and what comes of it becomes facts.
 
 mod plugins;
+mod window;
 
 use std::collections::BTreeMap;
 use std::io::Write as _;
@@ -38,6 +39,7 @@ use super::skeleton::Hand;
 use super::state::{Job, Notice, State};
 use super::tracks::TrackRow;
 use super::update::{Effect, Fact, Hint, Judge};
+use super::viewing::Viewing;
 use crate::term::signals::Waker;
 
 /// The world: the project, the clip, the plugins, and the job that runs.
@@ -66,6 +68,8 @@ pub(super) struct World {
     rebuilding: Option<Rebuilding>,
     /// Works corrections out; `None` where there is no thread for it.
     offering: Option<Offering>,
+    /// The viewer's window, where it is open.
+    viewing: Option<Viewing>,
 }
 
 /// Facts, or the line that says why there are none.
@@ -94,6 +98,7 @@ impl World {
             studied: None,
             rebuilding,
             offering,
+            viewing: None,
         }
     }
 
@@ -233,6 +238,14 @@ impl World {
                 Ok(Vec::new())
             }
             Effect::SaveLog(text) => self.save_log(&text),
+            Effect::OpenWindow => Ok(self.open_window()),
+            Effect::ShowWindow => Ok(self.show_window()),
+            Effect::Tell(command) => Ok(self.tell_window(&command)),
+            Effect::Edit(asked, hint) => return self.edit(&asked, hint),
+            Effect::CloseWindow => {
+                self.viewing.take().into_iter().for_each(Viewing::close);
+                Ok(Vec::new())
+            }
             // The loop's own.
             Effect::Follow(_)
             | Effect::Teach
@@ -495,6 +508,8 @@ impl World {
         let answers = self.offering.as_mut().map(Offering::news).unwrap_or_default();
         news.extend(answers.into_iter().map(Fact::Offered));
         news.extend(self.job_news());
+        let heard = self.viewing.as_mut().map(Viewing::news).unwrap_or_default();
+        news.extend(heard.into_iter().map(Fact::Window));
         news.extend(self.rebuilt().into_iter().flatten());
         news
     }

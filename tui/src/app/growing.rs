@@ -8,6 +8,7 @@ use honami_workbench::WorkbenchError;
 use honami_workbench::grow::{GrowRequest, grow};
 use honami_workbench::plugins::{Host, Kind, PluginInfo};
 use honami_workbench::progress::{Flow, Progress};
+use honami_workbench::scene::SkeletonScene;
 use honami_workbench::session::Session;
 use honami_workbench::store::{Access, Project};
 
@@ -16,6 +17,7 @@ use super::skeleton::{Bones, Skeletal};
 use super::state::State;
 use super::update::Fact;
 use crate::term::signals::Waker;
+use crate::viewer;
 
 /// The structure builder.
 const BUILDER: &str = "diener";
@@ -32,17 +34,28 @@ pub(super) struct Growing {
 /// All that it takes, on any thread.
 pub(super) struct Grower {
     project: PathBuf,
+    is_writable: bool,
     host: Host,
     plugin: PluginInfo,
 }
 
 /// Tells a growth to stop.
 #[derive(Default)]
-struct Stop(AtomicBool);
+pub(super) struct Stop(AtomicBool);
+
+impl Stop {
+    pub(super) fn tell(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    pub(super) fn is_told(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}
 
 impl Progress for Stop {
     fn report(&self, _done: u64, _total: u64, _what: &str) -> Flow {
-        if self.0.load(Ordering::Relaxed) { Flow::Stop } else { Flow::Continue }
+        if self.is_told() { Flow::Stop } else { Flow::Continue }
     }
 }
 
@@ -55,7 +68,7 @@ impl Growing {
     pub(super) fn look(&mut self, state: &mut State, session: &Session) -> std::io::Result<Option<Fact>> {
         let request = Skeletal::request(state);
         if request.is_some() || state.skeleton.awaited.is_none() {
-            self.stop.0.store(true, Ordering::Relaxed);
+            self.stop.tell();
         }
         if let Some(revision) = request {
             let grower = match Grower::of(session) {
@@ -73,7 +86,7 @@ impl Growing {
 impl Drop for Growing {
     fn drop(&mut self) {
         // Nobody waits for it any more.
-        self.stop.0.store(true, Ordering::Relaxed);
+        self.stop.tell();
     }
 }
 
@@ -81,7 +94,18 @@ impl Grower {
     pub(super) fn of(session: &Session) -> Result<Self, WorkbenchError> {
         let plugin = session.registry.find(Kind::Structure, BUILDER)?.clone();
         let project = session.project.path().to_owned();
-        Ok(Self { project, host: session.options.host.clone(), plugin })
+        let is_writable = session.project.access() == Access::Write;
+        Ok(Self { project, is_writable, host: session.options.host.clone(), plugin })
+    }
+
+    /// The skeleton of the shown groups for the viewer, and what is to be said of it.
+    pub(super) fn scene(
+        &self,
+        progress: &dyn Progress,
+    ) -> Result<(SkeletonScene, Vec<String>), WorkbenchError> {
+        let project = Project::open(&self.project, Access::Read)?;
+        let by = (&self.host, &self.plugin);
+        viewer::skeleton(&project, by, &GrowRequest::default(), self.is_writable, progress)
     }
 
     /// Grows the skeleton of the shown groups.

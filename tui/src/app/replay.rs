@@ -19,7 +19,7 @@ use super::update::{Effect, Fact, Msg, again, stand_by, update};
 use super::versus::{Versus, VersusRequest};
 use crate::term::signals;
 
-/// Actions that are not done again: those that concern the terminal and files alone, and the ways through the queue,
+/// Actions that are not done again: those that concern the terminal, the viewer's window and files alone, and the ways through the queue,
 /// which is filled while people work. The lines that follow say where those led.
 const NOT_AGAIN: &[Action] = &[
     Action::Glyphs,
@@ -31,6 +31,7 @@ const NOT_AGAIN: &[Action] = &[
     Action::SaveLog,
     Action::Stills,
     Action::Suspend,
+    Action::Window,
     Action::WorstFrame,
 ];
 

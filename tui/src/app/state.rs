@@ -31,6 +31,7 @@ use super::sketching::Sketching;
 use super::tracks::TrackRow;
 use super::versus::Versus;
 use super::view::theme::Theme;
+use super::window::Window;
 use crate::term::capabilities::Pixels;
 use crate::term::colour::Depth;
 use crate::term::glyph::Glyphs;
@@ -101,6 +102,8 @@ pub struct State {
     pub versus: Option<Box<Versus>>,
     /// The skeleton of the shown groups, over the picture.
     pub skeleton: Skeletal,
+    /// The viewer's window beside the terminal.
+    pub window: Window,
     /// Whether all tracks are marked in the picture, not only the selected one.
     pub marks_all: bool,
     /// What the plots show.
@@ -346,6 +349,7 @@ impl State {
             dense: None,
             versus: None,
             skeleton: Skeletal::default(),
+            window: Window::default(),
             marks_all: true,
             plotted: Plotted::default(),
             panel_is_wide: false,

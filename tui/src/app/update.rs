@@ -21,6 +21,7 @@ mod sketch;
 mod time;
 mod tracks;
 mod versus;
+mod window;
 
 use std::ops::Range;
 use std::time::Duration;
@@ -35,6 +36,7 @@ use honami_workbench::offer::Wish;
 use honami_workbench::progress::Patience;
 use honami_workbench::regroup;
 use honami_workbench::retrack;
+use honami_workbench::scene::control;
 use honami_workbench::shape;
 use honami_workbench::track::TrackRequest;
 
@@ -149,6 +151,16 @@ pub enum Effect {
     Redraw,
     /// Stop the program until it is continued.
     Suspend,
+    /// Open the viewer's window on the skeleton of the shown groups.
+    OpenWindow,
+    /// Show it what has become of that skeleton.
+    ShowWindow,
+    /// Tell it.
+    Tell(control::Command),
+    /// Change the project as was asked for there, and say what may be done next.
+    Edit(control::Event, Hint),
+    /// Close it.
+    CloseWindow,
     /// Leave.
     Leave,
 }
@@ -156,6 +168,7 @@ pub enum Effect {
 /// The next state, and what is to be done.
 pub fn update(state: &mut State, msg: Msg) -> Vec<Effect> {
     let is_key = matches!(msg, Msg::Key(_));
+    let is_led = matches!(msg, Msg::Fact(Fact::Window(_)));
     let mut effects = match msg {
         Msg::Key(key) => {
             pressed(state);
@@ -182,6 +195,7 @@ pub fn update(state: &mut State, msg: Msg) -> Vec<Effect> {
             time::on_clock(state, now);
             Vec::new()
         }
+        Msg::Fact(Fact::Window(heard)) => window::on_heard(state, heard),
         Msg::Fact(fact) => {
             facts::on_fact(state, fact);
             Vec::new()
@@ -191,6 +205,7 @@ pub fn update(state: &mut State, msg: Msg) -> Vec<Effect> {
         effects.extend(offers::release(state));
     }
     effects.extend(offers::asks(state));
+    effects.extend(window::keep_step(state, is_led));
     lesson::follow(state);
     effects
 }
@@ -363,3 +378,5 @@ mod tests;
 mod tracks_tests;
 #[cfg(test)]
 mod versus_tests;
+#[cfg(test)]
+mod window_tests;

@@ -13,13 +13,12 @@ use honami_workbench::grow::GrowRequest;
 use honami_workbench::plugins::{Host, Kind, PluginInfo, Value, Values};
 use honami_workbench::scene::{Scene, SkeletonScene};
 use honami_workbench::store::{Access, Project};
-use honami_workbench::view;
 use serde_json::json;
 
 use super::args::Common;
 use super::args::view::{View, ViewWhat};
 use super::{Answer, Outcome, Usage, grow, look, movie, report, there, told_options, want};
-use crate::viewer::{self, Scenes};
+use crate::viewer::{self, Scenes, usual_size};
 
 /// Options of forests and of plants.
 const OF_FORESTS: [&str; 25] = [
@@ -49,8 +48,6 @@ const OF_FORESTS: [&str; 25] = [
     "drag",
     "air_density",
 ];
-/// A picture is so high unless it was said how large, pixels.
-const HEIGHT: f64 = 720.0;
 
 /// Shows a scene.
 pub(super) fn view(args: &View, common: &Common) -> anyhow::Result<Outcome> {
@@ -145,21 +142,9 @@ impl Grower {
 
     /// The skeleton as it is now, and what is to be said of it.
     fn grow(&self, project: &Project, common: &Common) -> anyhow::Result<(SkeletonScene, Vec<String>)> {
-        let clip = project.media_path();
-        let is_there = clip.exists();
-        let clip = is_there.then_some(clip);
         let bar = report::Bar::with(common);
-        let shown = view::skeleton(project, &self.host, &self.plugin, &self.request, clip, &bar)?;
-        let mut notes = shown.notes;
-        if !is_there {
-            notes.push(
-                "the clip is not where it was, and is not shown: `honami relink` says where it is".to_owned(),
-            );
-        }
-        // Where what is shown is not what the project has, what would be done to it is not what is seen.
-        let is_its_own = !self.request.as_grown && self.request.groups.is_none();
-        let is_open = project.access() == Access::Write && is_its_own;
-        Ok((SkeletonScene { is_open, ..shown.scene }, notes))
+        let is_writable = project.access() == Access::Write;
+        Ok(viewer::skeleton(project, (&self.host, &self.plugin), &self.request, is_writable, &bar)?)
     }
 }
 
@@ -190,12 +175,6 @@ fn told(scene: &SkeletonScene) -> String {
     let (first, n_frames) = (scene.first_frame as usize, scene.times.len());
     let frames = format!("frames {first}-{}", (first + n_frames).saturating_sub(1));
     format!("{} of {}, {frames}", counted(n_bones, "bone"), counted(scene.groups.len(), "group"))
-}
-
-/// So many pixels high, and as wide as the clip has it; even, as movies want it.
-fn usual_size(scene: &SkeletonScene) -> [u32; 2] {
-    let aspect = f64::from(scene.clip.width) / f64::from(scene.clip.height.max(1));
-    [(HEIGHT * aspect / 2.0).round().clamp(1.0, 8192.0) as u32 * 2, HEIGHT as u32]
 }
 
 /// What the viewer is called with.

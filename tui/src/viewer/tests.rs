@@ -1,5 +1,7 @@
 //! Where the viewer is looked for, and how its end is told.
 
+use honami_workbench::scene::Scene;
+
 use super::*;
 
 #[test]
@@ -23,6 +25,24 @@ fn ends_are_told_in_words() {
         (11, Some("the viewer crashed, by signal 11")),
     ] {
         assert_eq!(ending(ExitStatus::from_raw(raw)).as_deref(), told);
+    }
+}
+
+/// What was printed by one that has ended so, and what is said of it.
+#[test]
+fn last_words_are_in_the_line_about_an_end() {
+    let panicked =
+        "thread 'main' panicked at src/app.rs:3:5:\nno room\nnote: run with `RUST_BACKTRACE=1`\n\n";
+    for (raw, printed, told) in [
+        (1 << 8, "libEGL: no\nhonami-viewer: there is no display\n", "the viewer: there is no display"),
+        (1 << 8, "", "the viewer failed, with status 1"),
+        (101 << 8, panicked, "the viewer failed, with status 101; it last said: no room"),
+        (9, "", "the viewer crashed, by signal 9"),
+        (6, "\x1b[31mlost\x1b[0m\n", "the viewer crashed, by signal 6; it last said: lost"),
+    ] {
+        let status = ExitStatus::from_raw(raw);
+        let words = last_words(printed.as_bytes());
+        assert_eq!(with_words(status, ending(status).unwrap(), &words), told, "{printed:?}");
     }
 }
 

@@ -42,6 +42,7 @@ fn events_are_read_as_they_are_written() {
     for (event, written) in [
         (Event::Ready { protocol: 1, adapter: "it".into() }, r#"{"ready":{"protocol":1,"adapter":"it"}}"#),
         (Event::Frame(3), r#"{"frame":3}"#),
+        (Event::Passing(3), r#"{"passing":3}"#),
         (Event::Playing(true), r#"{"playing":true}"#),
         (Event::Selected(None), r#"{"selected":null}"#),
         (shape, r#"{"shape":{"node":9,"plane_deg":-30.5,"lean_deg":0.0,"gain":1.25}}"#),

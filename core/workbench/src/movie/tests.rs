@@ -3,42 +3,11 @@
 use std::sync::Arc;
 
 use honami_media::OpenOptions;
-use honami_model::edit::Transaction;
-use honami_model::hierarchy::{Dendrogram, Merge};
 use honami_model::track::{Quality, Sample, Source, Span, Status};
 use honami_scene::palette::{self, KEY};
-use honami_store::Clustering;
-use tempfile::TempDir;
 
 use super::*;
-use crate::import::{self, ImportRequest};
 use crate::tried;
-
-/// Two tracks that stand still, at (10, 10) and at (50, 30), each its own group.
-fn project() -> (TempDir, Session) {
-    let (folder, mut session) = tried::project(6);
-    let row = |track: u32, frame: u32, x: u32, y: u32| format!("{track},{frame},{x},{y}\n");
-    let rows: String = (0..6).flat_map(|frame| [row(0, frame, 10, 10), row(1, frame, 50, 30)]).collect();
-    let file = folder.path().join("t.csv");
-    std::fs::write(&file, format!("track,frame,x,y\n{rows}")).unwrap();
-    let request = ImportRequest {
-        file,
-        format: None,
-        origin: None,
-        size: None,
-        camera: None,
-        pixel_size: None,
-        keys: false,
-    };
-    import::tracks(&mut session.project, &request, &()).unwrap();
-    let tracks = vec![TrackId(0), TrackId(1)];
-    let dendrogram = Dendrogram::new(2, vec![Merge { a: 0, b: 1, height: 1.0, size: 2 }]).unwrap();
-    let provenance = tried::provenance("test");
-    let made = Clustering { provenance, tracks, dendrogram, cut: 2, outlier_frames: vec![], notes: vec![] };
-    let id = session.project.save_clustering(&made).unwrap();
-    session.project.commit(Transaction::show_clustering(id, 2)).unwrap();
-    (folder, session)
-}
 
 fn request(show: &[Layer]) -> MovieRequest {
     MovieRequest {
@@ -63,7 +32,7 @@ fn apart(a: [u8; 3], b: [u8; 3]) -> i32 {
 
 #[test]
 fn marks_that_are_read_back_have_the_colours_of_their_groups() {
-    let (folder, session) = project();
+    let (folder, session) = tried::grouped();
     for name in ["m.y4m", "images", "m.mp4"] {
         let out = folder.path().join(name);
         let movie = match write(&session, &out, &request(&[Layer::Tracks]), &()) {
@@ -94,7 +63,7 @@ fn marks_that_are_read_back_have_the_colours_of_their_groups() {
 #[test]
 fn any_number_of_threads_writes_the_same_bytes() {
     let of = |n_threads: usize| {
-        let (folder, session) = project();
+        let (folder, session) = tried::grouped();
         let out = folder.path().join("m.y4m");
         let show = Layer::ALL.into_iter().filter(|layer| *layer != Layer::Skeleton).collect::<Vec<_>>();
         let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads).build().unwrap();
@@ -113,7 +82,7 @@ fn what_cannot_be_made_is_told_and_leaves_nothing_behind() {
             Flow::Stop
         }
     }
-    let (folder, session) = project();
+    let (folder, session) = tried::grouped();
     let names = || {
         let name = |entry: std::io::Result<std::fs::DirEntry>| entry.unwrap().file_name();
         let mut names: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(name).collect();

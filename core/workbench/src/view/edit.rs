@@ -11,12 +11,27 @@ use crate::shape::{bones, prepare};
 /// Does what the viewer asks for; returns what was done, `None` where that changes nothing.
 ///
 /// # Errors
-/// As [`prepare`], [`WorkbenchError::NoGroups`] and [`WorkbenchError::Groups`] of cuts, [`WorkbenchError::NoBone`] of a bone
-/// that these groups do not have, and what the project met: nobody writes to one that is read only.
+/// As [`transaction`], and what the project met: nobody writes to one that is read only.
 pub fn edit(project: &mut Project, event: &Event) -> Result<Option<String>, WorkbenchError> {
+    match event {
+        Event::Undo => Ok(project.undo()?.map(|entry| format!("undone: {}", entry.label))),
+        Event::Redo => Ok(project.redo()?.map(|entry| format!("done again: {}", entry.label))),
+        event => {
+            let Some(transaction) = transaction(project, event)? else { return Ok(None) };
+            let label = transaction.label.clone();
+            project.commit(transaction)?;
+            Ok(Some(label))
+        }
+    }
+}
+
+/// The edit that the viewer asks for; `None` where that changes nothing, or goes through the edits that there are.
+///
+/// # Errors
+/// As [`prepare`], [`WorkbenchError::NoGroups`] and [`WorkbenchError::Groups`] of cuts, [`WorkbenchError::NoBone`] of a bone
+/// that these groups do not have.
+pub fn transaction(project: &Project, event: &Event) -> Result<Option<Transaction>, WorkbenchError> {
     let transaction = match event {
-        Event::Undo => return Ok(project.undo()?.map(|entry| format!("undone: {}", entry.label))),
-        Event::Redo => return Ok(project.redo()?.map(|entry| format!("done again: {}", entry.label))),
         Event::Root(root) => prepare(project, &Step::Root(*root)),
         Event::Shape { node, plane_deg, lean_deg, gain } => {
             let listed = bones(project)?;
@@ -28,21 +43,21 @@ pub fn edit(project: &mut Project, event: &Event) -> Result<Option<String>, Work
             prepare(project, &Step::Bone(bone.bone.clone(), Shape { plane_rad, lean_rad, gain: *gain }))
         }
         Event::Cut(k) => cut(project, *k),
-        Event::Ready { .. }
+        Event::Undo
+        | Event::Redo
+        | Event::Ready { .. }
         | Event::Frame(_)
+        | Event::Passing(_)
         | Event::Playing(_)
         | Event::Selected(_)
         | Event::Captured(_)
         | Event::Closed
         | Event::Failed(_) => return Ok(None),
     };
-    let transaction = match transaction {
-        Err(WorkbenchError::Shape(Refused::Same(_))) => return Ok(None),
-        other => other?,
-    };
-    let label = transaction.label.clone();
-    project.commit(transaction)?;
-    Ok(Some(label))
+    match transaction {
+        Err(WorkbenchError::Shape(Refused::Same(_))) => Ok(None),
+        other => other.map(Some),
+    }
 }
 
 /// Whether an event asks for an edit.
@@ -59,3 +74,6 @@ fn cut(project: &Project, k: u32) -> Result<Transaction, WorkbenchError> {
         false => Err(WorkbenchError::Groups { groups: k, n_tracks }),
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use super::{
     Action, Effect, Mode, State, choose, complain, edit, groups, history, look, motion, mouse, moving,
-    open_menu, pick, queue, ranges, recovery, say, shaping, skeleton, sketch, time, tracks, versus,
+    open_menu, pick, queue, ranges, recovery, say, shaping, skeleton, sketch, time, tracks, versus, window,
 };
 use honami_model::judgement::Verdict;
 use honami_model::track::{Status, TrackSet};
@@ -120,6 +120,7 @@ fn look_about(state: &mut State, action: Action) -> Vec<Effect> {
         Action::VersusRuns => return vec![Effect::Entrants(None)],
         Action::PanelVersus => show_panel(state, Panel::Versus),
         Action::Skeleton => skeleton::toggle(state),
+        Action::Window => return window::toggle(state),
         Action::OrbitLeft => shaping::orbit(state, -count(state)),
         Action::OrbitRight => shaping::orbit(state, count(state)),
         Action::Front => shaping::front(state),

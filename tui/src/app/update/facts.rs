@@ -23,6 +23,7 @@ use crate::app::recovery::Recovery;
 use crate::app::skeleton::{Bones, Hand};
 use crate::app::state::{Display, Job, Link, Notice};
 use crate::app::tracks::TrackRow;
+use crate::viewer::Heard;
 use honami_workbench::plots::Plots;
 use honami_workbench::versus::{Compared, Entrant};
 
@@ -87,6 +88,8 @@ pub enum Fact {
     Compared([RunId; 2], Result<Arc<Compared>, String>),
     /// What became of growing the skeleton of this revision.
     Grown(u64, Result<Arc<Bones>, String>),
+    /// This was heard of the viewer's window.
+    Window(Heard),
     /// So many frames can be shown without waiting.
     Ready(u32),
     /// The undo tree has these entries more, and the document stands there.
@@ -147,6 +150,8 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
         Fact::Entrants(first, entrants) => versus::on_entrants(state, first, entrants),
         Fact::Compared(runs, compared) => versus::on_compared(state, runs, compared),
         Fact::Grown(revision, grown) => skeleton::on_grown(state, revision, grown),
+        // They ask for effects.
+        Fact::Window(_) => {}
         Fact::Ready(n) => state.n_ready = n,
         Fact::History(new, head) => {
             let (from, has_grown) = (state.history.head, !new.is_empty());
@@ -200,6 +205,7 @@ fn on_tracks(state: &mut State, rows: Vec<TrackRow>) {
     let is_same = |(old, new): (&TrackRow, &TrackRow)| old.id == new.id && Arc::ptr_eq(&old.span, &new.span);
     if state.tracks.len() != rows.len() || !state.tracks.iter().zip(&rows).all(is_same) {
         state.skeleton.outdate();
+        state.window.outdate();
     }
     state.tracks = rows;
     state.plotted.revision += 1;

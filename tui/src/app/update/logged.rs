@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use honami_model::track::TrackId;
 use honami_workbench::offer::Model;
+use honami_workbench::scene::control::Event;
 
 use super::{Action, Context, Effect, Mode, Msg, State, actions, offers, on_text, time, update};
 use crate::app::action::TABLE;
@@ -57,6 +58,11 @@ pub(super) fn mouse(state: &mut State, mouse: Mouse) {
         let at = Lens::shown(state).point_of(mouse.column, mouse.row);
         push(state, What::Mouse(Touch { kind: mouse.kind, cell: (mouse.column, mouse.row), at }));
     }
+}
+
+/// Something was chosen in the viewer's window, or asked for there.
+pub(super) fn window(state: &mut State, event: &Event) {
+    push(state, What::Window(event.clone()));
 }
 
 /// The terminal has another size.
@@ -158,6 +164,10 @@ pub fn again(state: &mut State, line: &Line) -> Result<Vec<Effect>, String> {
             Ok(Vec::new())
         }
         What::Mouse(touch) => point(state, touch),
+        What::Window(event) => {
+            window(state, event);
+            Ok(super::window::act(state, event.clone()))
+        }
         _ => Ok(Vec::new()),
     }
 }

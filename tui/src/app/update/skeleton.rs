@@ -38,6 +38,7 @@ pub(super) fn stop(state: &mut State) -> bool {
 
 /// The groups are others now; of another clustering, they have other bones.
 pub(super) fn on_groups(state: &mut State, is_regrouped: bool) {
+    state.window.outdate();
     let skeleton = &mut state.skeleton;
     skeleton.outdate();
     skeleton.is_past = skeleton.bones.is_some();
@@ -82,6 +83,7 @@ pub(super) fn on_grown(state: &mut State, revision: u64, grown: Result<Arc<Bones
 /// This was done by hand now.
 pub(super) fn on_hand(state: &mut State, hand: Hand) {
     if state.skeleton.hand != hand {
+        state.window.outdate();
         state.skeleton.take(hand);
         pose(state);
     }

@@ -107,6 +107,13 @@ pub(super) fn go(state: &mut State, frame: u32) {
     keep_in_view(state);
 }
 
+/// Another clock than the terminal's has come to a frame.
+pub(super) fn pass(state: &mut State, frame: u32) {
+    halt(state);
+    state.frame = frame.min(state.last_frame());
+    keep_in_view(state);
+}
+
 pub(super) fn step(state: &mut State, frames: i64) {
     go(state, stepped(state, frames));
 }

@@ -13,11 +13,11 @@ use honami_workbench::store::{Access, Project, StoreError};
 use honami_workbench::view;
 
 use super::forest::SIZE;
-use super::{Grower, usual_size, words};
+use super::{Grower, words};
 use crate::cli::args::Common;
 use crate::cli::args::view::View;
 use crate::cli::report;
-use crate::viewer::{self, Heard, Scenes, Teller};
+use crate::viewer::{self, Heard, Scenes, Teller, usual_size};
 
 /// Lines of the viewer that wait to be heard.
 const WAITING: usize = 256;
@@ -78,8 +78,10 @@ fn listen(
             out.write_all(control::line(&event).as_bytes()).and_then(|()| out.flush())?;
         }
         match &event {
-            Event::Ready { protocol, .. } if *protocol != PROTOCOL => {
-                bail!("the viewer is of another version of honami: build both anew")
+            Event::Ready { protocol, .. } => {
+                if let Some(why) = viewer::stranger(*protocol) {
+                    bail!(why);
+                }
             }
             Event::Failed(why) => report::say(&format!("the viewer: {why}")),
             _ => {}

@@ -1,5 +1,6 @@
 //! The log of the session: what was done and what was said to it, the last line in sight.
 
+use honami_workbench::scene::control;
 use ratatui::text::{Line, Span};
 
 use super::{List, Pick, style};
@@ -37,6 +38,7 @@ impl List for Log<'_> {
             }),
             What::Screen(columns, rows) => done(format!("screen {columns}x{rows}")),
             What::Ended(plugin) => done(format!("{plugin} ended")),
+            What::Window(event) => done(format!("window {}", control::line(event).trim_end())),
             What::Notice(text) => Span::styled(format!("  {text}"), style::DIM),
             What::Error(text) => Span::styled(format!("  {text}"), style::ERROR),
         };
