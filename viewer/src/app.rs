@@ -110,7 +110,7 @@ impl App {
         args: &Args,
         fault: Fault,
     ) -> anyhow::Result<Self> {
-        let mut canvas = Canvas::new(creation, args)?;
+        let mut canvas = Canvas::new(creation, args, false)?;
         let pipe = Pipe::new(&creation.egui_ctx, args.control)?;
         canvas.begin(picture.orbit(), args);
         pipe.tell(&Event::Ready { protocol: PROTOCOL, adapter: canvas.gpu.name() });

@@ -61,7 +61,7 @@ fn picture(gpu: &Gpu, scene: Scene, args: &Args) -> anyhow::Result<Box<dyn Pictu
         }
         Scene::Skeleton(scene) => {
             let picture = SkeletonPicture::new(*scene, Part::these(&args.parts));
-            picture.without_clip.iter().for_each(|why| say(why));
+            picture.without_clip.iter().chain(&picture.why_empty()).for_each(|why| say(why));
             Ok(Box::new(picture))
         }
     }

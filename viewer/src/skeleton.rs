@@ -100,6 +100,29 @@ impl SkeletonPicture {
         Self { scene, parts, chosen: None, without_clip, media, on_card: None, pipelines: None }
     }
 
+    /// What to say where the parts that are on have nothing to draw.
+    #[must_use]
+    pub fn why_empty(&self) -> Option<String> {
+        let scene = &self.scene;
+        let has_axes =
+            || scene.groups.iter().any(|group| group.half_axes.as_flattened().iter().any(|v| *v != 0.0));
+        let has = |part: &Part| match part {
+            Part::Bones | Part::Trails => scene.joints.len() > 1,
+            Part::Ellipsoids => has_axes(),
+            Part::Leaves => !scene.leaves.is_empty(),
+            Part::Clip => self.media.is_some(),
+            // Of the other parts.
+            Part::Copies => false,
+        };
+        let names: Vec<&str> = self.parts.iter().map(|part| part.name()).collect();
+        let shown = if names.is_empty() {
+            "no part is on".to_owned()
+        } else {
+            format!("it has no {}", names.join(", no "))
+        };
+        (!self.parts.iter().any(has)).then(|| format!("nothing is seen of the skeleton: {shown}"))
+    }
+
     /// Another skeleton of the same clip takes its place.
     pub fn take(&mut self, scene: SkeletonScene) {
         if scene.clip != self.scene.clip {

@@ -4,6 +4,8 @@ use serde::{Deserialize, Serialize};
 
 /// Of how far the target is from 0, so near an eye may come.
 const NEAREST: f32 = 1e-4;
+/// So high above the ground an eye stays, of how far it is from what it looks at.
+const ABOVE: f32 = 0.01;
 /// Nearer to straight up or down than so many radians no camera looks: it would have no upright.
 const POLE: f32 = 0.01;
 
@@ -44,6 +46,14 @@ impl Orbit {
         let way = [sin * level, -cos * level, up];
         let eye = std::array::from_fn(|axis| self.target[axis] + self.distance * way[axis]);
         Camera { eye, target: self.target, angle: self.angle }
+    }
+
+    /// Stays above the ground, where the upright is 0: what it looks at is not below it, and it looks up from no deeper than
+    /// just above it.
+    pub fn stay_above(&mut self) {
+        self.target[2] = self.target[2].max(0.0);
+        let lowest = ABOVE - self.target[2] / self.distance;
+        self.elevation = self.elevation.max(lowest.clamp(-1.0, 1.0).asin());
     }
 
     /// So many times as far away: to a million of the lengths of the scene, and not so near that places about the target are

@@ -20,6 +20,8 @@ pub(super) struct Canvas {
     pub(super) gpu: Gpu,
     /// From where it is seen.
     pub(super) orbit: Orbit,
+    /// Whether what is shown stands on ground, below which nobody looks.
+    has_ground: bool,
     screen: RenderState,
     target: Option<(Target, egui::TextureId)>,
     /// Of a pixel.
@@ -31,11 +33,15 @@ impl Canvas {
     ///
     /// # Errors
     /// [`GpuError::None`].
-    pub(super) fn new(creation: &eframe::CreationContext<'_>, args: &Args) -> Result<Self, GpuError> {
+    pub(super) fn new(
+        creation: &eframe::CreationContext<'_>,
+        args: &Args,
+        has_ground: bool,
+    ) -> Result<Self, GpuError> {
         let screen = creation.wgpu_render_state.clone().ok_or(GpuError::None)?;
         let gpu = Gpu::adopt(screen.device.clone(), screen.queue.clone(), screen.adapter.get_info());
         let orbit = Orbit { target: [0.0; 3], distance: 1.0, azimuth: 0.0, elevation: 0.0, angle: 0.5 };
-        Ok(Self { gpu, orbit, screen, target: None, samples: args.samples })
+        Ok(Self { gpu, orbit, has_ground, screen, target: None, samples: args.samples })
     }
 
     /// It is seen from here, as the command line has it.
@@ -44,6 +50,13 @@ impl Canvas {
         self.orbit.azimuth = args.azimuth.map_or(orbit.azimuth, f32::to_radians);
         self.orbit.elevation = args.elevation.map_or(orbit.elevation, f32::to_radians);
         self.orbit.zoom(args.distance as f32);
+        self.settle();
+    }
+
+    fn settle(&mut self) {
+        if self.has_ground {
+            self.orbit.stay_above();
+        }
     }
 
     /// It is seen from where somebody says.
@@ -56,6 +69,7 @@ impl Canvas {
             self.orbit.distance = distance;
             self.orbit.zoom(1.0);
         }
+        self.settle();
     }
 
     /// Room for a picture, as large as there is; where it is, and what a mouse does there.
@@ -115,6 +129,7 @@ impl Canvas {
         if response.hovered() && wheel.abs() > 0.0 {
             self.orbit.zoom((-wheel / DOUBLE_POINTS).exp2());
         }
+        self.settle();
     }
 
     /// What is looked at goes with the mouse.

@@ -63,7 +63,7 @@ impl ForestWindow {
         args: &Args,
         fault: Fault,
     ) -> anyhow::Result<Self> {
-        let mut canvas = Canvas::new(creation, args)?;
+        let mut canvas = Canvas::new(creation, args, true)?;
         let pipe = Pipe::new(&creation.egui_ctx, args.control)?;
         canvas.begin(scene.orbit, args);
         let (begun, told, step) = (scene.orbit, told(&scene), scene.pace.step);

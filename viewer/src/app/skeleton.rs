@@ -71,7 +71,7 @@ impl Workbench {
     pub(super) fn panel(&mut self, ui: &mut Ui) -> Vec<Event> {
         let mut events = Vec::new();
         ui.heading(&self.kept.name);
-        if let Some(why) = &self.picture.without_clip {
+        for why in self.picture.without_clip.iter().chain(&self.picture.why_empty()) {
             ui.label(why);
         }
         ui.separator();

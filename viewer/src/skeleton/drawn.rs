@@ -119,6 +119,7 @@ impl Drawn {
         let now = Now { picture, at, radii: &radii, a_pixel, bold: height as f32 / 720.0 };
         if picture.parts.contains(&Part::Bones) {
             now.bones(&mut drawn);
+            now.root(&mut drawn);
         }
         if picture.parts.contains(&Part::Ellipsoids) {
             now.ellipsoids(&mut drawn);
@@ -129,7 +130,6 @@ impl Drawn {
         if picture.parts.contains(&Part::Leaves) {
             now.leaves(row, &mut drawn);
         }
-        now.root(&mut drawn);
         drawn
     }
 }

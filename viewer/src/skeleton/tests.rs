@@ -131,13 +131,29 @@ fn the_clip_is_where_it_was_filmed_to_the_pixel() {
         let orbit = picture.orbit();
         let taken = take(&gpu, &mut picture, 1, 1, orbit, time);
         let mut worst = 0;
-        // The root's mark stands before it.
-        for (x, y) in (0..WIDTH).flat_map(|x| (0..HEIGHT - 18).map(move |y| (x, y))) {
+        // All of it: the root's mark is of the bones, which are off.
+        for (x, y) in (0..WIDTH).flat_map(|x| (0..HEIGHT).map(move |y| (x, y))) {
             let wanted = filmed(frame, x, y).map(|v| (f32::from(v) * 0.86).round() as u8);
             worst = worst.max(apart(taken.at(x, y), wanted));
         }
         assert!(worst <= 3, "frame {frame}: {worst}");
     }
+}
+
+#[test]
+fn an_empty_picture_says_so() {
+    let mut scene = scene();
+    scene.groups.iter_mut().for_each(|group| group.half_axes = Default::default());
+    let mut picture = SkeletonPicture::new(scene, BTreeSet::from([Part::Ellipsoids, Part::Copies]));
+    let line = "nothing is seen of the skeleton: it has no ellipsoids, no copies";
+    assert_eq!(picture.why_empty().as_deref(), Some(line));
+    picture.parts.clear();
+    assert_eq!(picture.why_empty().as_deref(), Some("nothing is seen of the skeleton: no part is on"));
+    picture.parts.insert(Part::Bones);
+    assert_eq!(picture.why_empty(), None);
+    picture.parts = BTreeSet::from([Part::Ellipsoids]);
+    picture.scene.groups[0].half_axes[0][1] = 2.0;
+    assert_eq!(picture.why_empty(), None);
 }
 
 #[test]

@@ -17,6 +17,27 @@ fn an_orbit_goes_round_counterclockwise_from_the_front() {
     assert!(near(&at(0.0, FRAC_PI_2)[2..], &[5.0 - 0.0001]));
 }
 
+/// Each: where it would be, and from how high it is then seen.
+#[test]
+fn an_eye_stays_above_the_ground() {
+    for (height, distance, elevation, wanted) in [
+        (3.0, 10.0, 0.2, 3.0 + 10.0 * 0.2_f32.sin()),
+        // Up into a crown from the ground, and as far down as that.
+        (3.0, 10.0, -0.2, 3.0 - 10.0 * 0.2_f32.sin()),
+        (3.0, 10.0, -1.5, 0.1),
+        (3.0, 2.0, -1.5, 3.0 - 2.0 * 1.5_f32.sin()),
+        (0.0, 10.0, -0.3, 0.1),
+        (-4.0, 10.0, -0.3, 0.1),
+        (-4.0, 10.0, 0.3, 10.0 * 0.3_f32.sin()),
+    ] {
+        let target = [1.0, 2.0, height];
+        let mut orbit = Orbit { target, distance, azimuth: 0.7, elevation, angle: 1.0 };
+        orbit.stay_above();
+        let eye = orbit.camera().eye;
+        assert!((eye[2] - wanted).abs() < 1e-4, "{height} {distance} {elevation}: {eye:?}");
+    }
+}
+
 #[test]
 fn what_is_right_of_and_above_the_target_is_seen_so() {
     // A quarter turn between the edges: at distance 2 half of the picture is 2 long.
