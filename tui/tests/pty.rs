@@ -24,8 +24,12 @@ mod session;
 mod sizes;
 #[path = "pty/start.rs"]
 mod start;
+#[path = "pty/window.rs"]
+mod window;
 #[path = "pty/work.rs"]
 mod work;
+#[path = "pty/x11.rs"]
+mod x11;
 
 /// A condition that has not come true by then never will.
 const PATIENCE: Duration = Duration::from_secs(60);

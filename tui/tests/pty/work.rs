@@ -10,6 +10,10 @@ use serde_json::Value;
 
 use super::Terminal;
 
+/// What is built where it has not been chosen.
+const NEEDED: &str =
+    "-p honami-plughost -p honami-tracker-anchored -p honami-clusterer-bod -p honami-structure-diener";
+
 /// Folder of the shipped plugins and of the program that plugins run in, as cargo builds them: the tests of this package
 /// do not. They are built once, before any test uses them, for what is built anew is not there for a moment.
 pub(super) fn plugins() -> &'static Path {
@@ -18,9 +22,7 @@ pub(super) fn plugins() -> &'static Path {
         let profile = if cfg!(debug_assertions) { "dev" } else { "release" };
         // Where all is tested together, what is built has to be chosen as it was, or much is built once more.
         let what = std::env::var("HONAMI_BUILD");
-        let what = what
-            .as_deref()
-            .unwrap_or("-p honami-plughost -p honami-tracker-anchored -p honami-clusterer-bod");
+        let what = what.as_deref().unwrap_or(NEEDED);
         let output = Command::new(env!("CARGO"))
             .args(["build", "--quiet", "--message-format=json", "--profile", profile])
             .args(what.split_whitespace())
