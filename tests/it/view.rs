@@ -57,6 +57,38 @@ fn a_forest_is_drawn_into_a_file_and_the_same_again() {
     assert_eq!(left, 0);
 }
 
+#[test]
+fn a_skeleton_is_drawn_over_its_clip_and_in_space() {
+    let bench = Bench::tracked();
+    if !can_draw(&bench) {
+        return;
+    }
+    bench.json("cluster p.honami --groups 3");
+    let drawn = |name: &str, words: &str| {
+        let said = bench.json(&format!("view p.honami skeleton --size 320x240 {words} --offscreen {name}"));
+        assert!(said["skeleton"].as_str().unwrap().contains("of 3 groups, frames 0-39"), "{said}");
+        assert_eq!(size(&bench.path(name)), [320, 240], "{name}");
+        fs::read(bench.path(name)).unwrap()
+    };
+    let first = drawn("first.png", "");
+    assert!(first == drawn("again.png", ""), "the same again");
+    // Bones that are off, the clip that goes on, and what is seen from elsewhere.
+    for (name, words) in [
+        ("clip.png", "--parts clip"),
+        ("later.png", "--frames 30"),
+        ("aside.png", "--azimuth 40 --elevation 15"),
+    ] {
+        assert!(first != drawn(name, words), "{name}");
+    }
+    let nothing = bench.line("view p.honami skeleton --parts copies --offscreen nothing.png");
+    assert_eq!(nothing.code, Some(0), "{nothing:?}");
+    assert!(
+        nothing.stderr.contains("nothing is seen of the skeleton: it has no copies"),
+        "{}",
+        nothing.stderr
+    );
+}
+
 /// Each: what is typed, what is said, and how it exits.
 #[test]
 fn what_cannot_be_shown_is_said() {
