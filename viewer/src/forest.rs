@@ -20,6 +20,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use anyhow::ensure;
+use honami_mechanics::wind::Wind;
 use honami_mechanics::{Damping, Following, Vector};
 use honami_scene::{ForestScene, Orbit};
 
@@ -35,7 +36,7 @@ use stage::Stage;
 /// By so much nearer levels begin where only a driver draws.
 const LESS: u32 = 2;
 /// Memory that air may take which flows by itself.
-const MOST_BYTES: usize = 256 << 20;
+pub(crate) const MOST_BYTES: usize = 256 << 20;
 
 /// Where modes and nodes are worked out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,11 +59,10 @@ impl By {
 /// A forest that is drawn.
 pub struct ForestPicture {
     scene: Arc<ForestScene>,
-    by: By,
     mover: Mover,
     stage: Stage,
     paint: Option<Paint>,
-    /// Steps after the run-in.
+    /// Steps since it was at rest.
     n_steps: u64,
 }
 
@@ -78,6 +78,14 @@ impl Mover {
             By::Card => Self::Card(Box::new(Card::new(gpu, scene, stage)?)),
         })
     }
+
+    /// The wind at the crown of a copy now, metres per second.
+    fn blowing(&mut self, copy: usize) -> Vector {
+        match self {
+            Self::Host(host) => host.live().blowing(copy),
+            Self::Card(card) => card.blowing(copy),
+        }
+    }
 }
 
 impl ForestPicture {
@@ -90,17 +98,24 @@ impl ForestPicture {
         let stage = Stage::new(gpu, &scene, by)?;
         let mover = Mover::new(gpu, &scene, by, &stage)?;
         gpu.check()?;
-        Ok(Self { scene, by, mover, stage, paint: None, n_steps: 0 })
+        let mut made = Self { scene, mover, stage, paint: None, n_steps: 0 };
+        made.n_steps = made.steps_until(0.0);
+        Ok(made)
     }
 
-    /// From now on this wind blows, as it is typed.
-    ///
-    /// # Errors
-    /// A wind that there is not; the one before then goes on.
-    pub fn blow(&mut self, words: &str) -> anyhow::Result<()> {
+    /// From now on this wind blows: it begins now.
+    pub fn begin(&mut self, wind: Box<dyn Wind>) {
         match &mut self.mover {
-            Mover::Host(host) => Ok(host.live().blow(words)?),
-            Mover::Card(card) => Ok(card.blow(&self.scene, words)?),
+            Mover::Host(host) => host.live().begin(wind),
+            Mover::Card(card) => card.begin(wind),
+        }
+    }
+
+    /// From now on the same wind blows with other values: its time goes on.
+    pub fn turn(&mut self, wind: Box<dyn Wind>) {
+        match &mut self.mover {
+            Mover::Host(host) => host.live().turn(wind),
+            Mover::Card(card) => card.turn(wind),
         }
     }
 
@@ -115,17 +130,39 @@ impl ForestPicture {
         }
     }
 
-    /// Steps until so many seconds after the run-in; back to what was before by its run-in.
+    /// The scene as it was given.
+    #[must_use]
+    pub fn scene(&self) -> &Arc<ForestScene> {
+        &self.scene
+    }
+
+    /// Seconds since the end of its run-in; below 0 before.
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        (self.n_steps as f64 - self.run_in()) * self.scene.pace.step
+    }
+
+    /// Whether it is as near to a time, seconds after the run-in, as its steps come.
+    #[must_use]
+    pub fn is_at(&self, time: f64) -> bool {
+        self.n_steps == self.steps_until(time)
+    }
+
+    /// Steps towards a time, seconds after the run-in, so many at most; back by way of rest and the run-in, in the wind and
+    /// with the damping that hold now.
     ///
     /// # Errors
     /// A wind that is no number somewhere.
-    fn go_on(&mut self, gpu: &Gpu, time: f64) -> anyhow::Result<()> {
-        let wanted = (time / self.scene.pace.step).round().max(0.0) as u64;
+    pub fn go_towards(&mut self, gpu: &Gpu, time: f64, most: u64) -> anyhow::Result<()> {
+        let wanted = self.steps_until(time);
         if wanted < self.n_steps {
             self.n_steps = 0;
-            self.mover = Mover::new(gpu, &self.scene, self.by, &self.stage)?;
+            match &mut self.mover {
+                Mover::Host(host) => host.live().restart(),
+                Mover::Card(card) => card.restart(gpu, &self.scene),
+            }
         }
-        while self.n_steps < wanted {
+        for _ in 0..most.min(wanted - self.n_steps) {
             match &mut self.mover {
                 Mover::Host(host) => host.live().step()?,
                 Mover::Card(card) => card.step(gpu)?,
@@ -133,6 +170,19 @@ impl ForestPicture {
             self.n_steps += 1;
         }
         Ok(())
+    }
+
+    fn go_on(&mut self, gpu: &Gpu, time: f64) -> anyhow::Result<()> {
+        self.go_towards(gpu, time, u64::MAX)
+    }
+
+    /// Steps of the run-in.
+    fn run_in(&self) -> f64 {
+        (self.scene.run_in / self.scene.pace.step).round()
+    }
+
+    fn steps_until(&self, time: f64) -> u64 {
+        (self.run_in() + (time / self.scene.pace.step).round()) as u64
     }
 
     /// What the stage is told of what a camera sees in a picture: nodes and copies.
@@ -197,10 +247,7 @@ impl ForestPicture {
     }
 
     fn feel(&mut self) {
-        let blowing = |copy| match &mut self.mover {
-            Mover::Host(host) => host.live().blowing(copy),
-            Mover::Card(card) => card.blowing(copy),
-        };
+        let blowing = |copy| self.mover.blowing(copy);
         std::hint::black_box((0..self.scene.places.len()).map(blowing).sum::<Vector>());
     }
 }

@@ -7,7 +7,7 @@ use std::process::{Child, ChildStdout, Command, Stdio};
 
 use honami_scene::control::Event;
 use honami_scene::skeleton::{Bone, Film, Group, Joint};
-use honami_scene::{Scene, SkeletonScene};
+use honami_scene::{ForestScene, Scene, SkeletonScene};
 
 #[expect(unreachable_pub, reason = "it is that of the library's tests")]
 #[path = "../src/testing/forest.rs"]
@@ -158,6 +158,17 @@ fn a_forest_sways_in_its_window_and_its_wind_is_turned() {
     let window = image::open(&picture).unwrap().into_rgb8();
     let n_green = window.pixels().filter(|at| at.0[1] > at.0[0] && at.0[0] > at.0[2]).count();
     assert!(n_green > 20_000, "the ground is seen: {n_green} green pixels");
+    writeln!(tell, "frame 4000000000").unwrap();
+    heard(&mut lines, |event| matches!(event, Event::Failed(why) if why.contains("is too far")));
+    // Of a forest that cannot be shown nothing is taken: neither its name nor its wind.
+    let (none, after) = (folder.path().join("none.scene"), folder.path().join("after.png"));
+    let odd = ForestScene { name: "none".to_owned(), wind: "breeze".to_owned(), ..forest::forest(60, 6, 9) };
+    honami_scene::file::write(&none, &Scene::Forest(Box::new(odd))).unwrap();
+    writeln!(tell, "{{\"scene\":{{\"protocol\":1,\"path\":{:?}}}}}", none.to_str().unwrap()).unwrap();
+    heard(&mut lines, |event| matches!(event, Event::Failed(why) if why.contains("\"breeze\" is no wind")));
+    writeln!(tell, "{{\"capture\":{:?}}}", after.to_str().unwrap()).unwrap();
+    heard(&mut lines, |event| *event == Event::Captured(after.clone()));
+    assert!(image::open(&after).unwrap().into_rgb8() == window, "all is as it was");
     drop(tell);
     heard(&mut lines, |event| *event == Event::Closed);
     assert!(child.wait().unwrap().success());

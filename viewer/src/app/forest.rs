@@ -1,17 +1,20 @@
 //! The window of a forest: the wind, damping and mass are turned while it sways, and winds are put into it by clicks.
 
 mod knobs;
-mod pace;
+mod making;
+mod stopwatch;
 
 use std::path::Path;
+use std::sync::Arc;
 
-use anyhow::{bail, ensure};
+use anyhow::{Context as _, bail, ensure};
 use eframe::egui::{self, Context, Key, Pos2, Rect, Ui};
 use honami_scene::control::{Command, Event, PROTOCOL};
 use honami_scene::{Camera, ForestScene, Orbit, Scene};
 
 use self::knobs::{Knobs, Turned};
-use self::pace::Pace;
+use self::making::{Asked, Making};
+use self::stopwatch::Stopwatch;
 use super::canvas::Canvas;
 use super::pipe::Pipe;
 use super::{Fault, PANEL, fail};
@@ -21,6 +24,10 @@ use crate::offscreen::{Picture as _, Shot};
 
 /// A forest that cannot keep pace goes on more slowly: by so many seconds a picture at most.
 const MOST_S: f64 = 0.1;
+/// Where it is to jump far, so many steps a picture at most: the window lives on meanwhile.
+const MOST_STEPS: u64 = 32;
+/// And no farther than so many steps.
+const LAST_FRAME: u32 = 1_000_000;
 
 /// A forest in a window.
 pub(super) struct ForestWindow {
@@ -29,12 +36,16 @@ pub(super) struct ForestWindow {
     canvas: Canvas,
     picture: ForestPicture,
     knobs: Knobs,
-    pace: Pace,
+    /// Winds that do not blow yet.
+    making: Making,
+    /// What was told by the pipe and waits for what was told before it.
+    waiting: Option<Command>,
+    stopwatch: Stopwatch,
     is_cpu: bool,
     /// From where it was seen at first.
     begun: Orbit,
     is_playing: bool,
-    /// Seconds since it was first shown.
+    /// Seconds since it was first shown, to which it is to come.
     time: f64,
     /// Seconds of a step.
     step: f64,
@@ -69,16 +80,19 @@ impl ForestWindow {
         let (begun, told, step) = (scene.orbit, told(&scene), scene.pace.step);
         let knobs = Knobs::new(&scene);
         let picture = picture(&canvas, scene, args.cpu)?;
+        let making = making(&picture, &creation.egui_ctx);
         pipe.tell(&Event::Ready { protocol: PROTOCOL, adapter: canvas.gpu.name() });
-        let (pace, is_playing, time, line) = (Pace::default(), true, 0.0, String::new());
-        let is_cpu = args.cpu;
+        let (stopwatch, waiting, line) = (Stopwatch::default(), None, String::new());
+        let (is_cpu, is_playing, time) = (args.cpu, true, 0.0);
         Ok(Self {
             pipe,
             fault,
             canvas,
             picture,
             knobs,
-            pace,
+            making,
+            waiting,
+            stopwatch,
             is_cpu,
             begun,
             is_playing,
@@ -89,16 +103,38 @@ impl ForestWindow {
         })
     }
 
+    /// Whether it is still on its way to where it was told to be.
+    fn is_behind(&self) -> bool {
+        !self.picture.is_at(self.time)
+    }
+
+    /// Whether a command is to wait until a wind is worked out, and a moment come to, that were told before it.
+    fn waits(&self, command: &Command) -> bool {
+        match command {
+            Command::Quit => false,
+            Command::Frame(_) => self.making.is_busy(),
+            _ => self.making.is_busy() || self.is_behind(),
+        }
+    }
+
     /// Does what was told by the pipe.
     fn obey(&mut self, context: &Context) {
         let bare = |what: &str| Event::Failed(format!("a forest has no {what}"));
-        while let Some(command) = self.pipe.next() {
+        while let Some(command) = self.waiting.take().or_else(|| self.pipe.next()) {
+            if self.waits(&command) {
+                self.waiting = Some(command);
+                return;
+            }
             match command {
                 Command::Play => self.is_playing = true,
                 Command::Pause => self.is_playing = false,
+                Command::Frame(frame) if frame > LAST_FRAME => {
+                    let why = format!("frame {frame} is too far: {LAST_FRAME} is the last that is gone to");
+                    self.pipe.tell(&Event::Failed(why));
+                }
                 Command::Frame(frame) => self.time = f64::from(frame) * self.step,
                 Command::Scene { protocol, path } => {
-                    if let Err(why) = self.take(protocol, &path) {
+                    if let Err(why) = self.take(context, protocol, &path) {
                         self.pipe.tell(&Event::Failed(format!("{why:#}")));
                     }
                 }
@@ -106,7 +142,7 @@ impl ForestWindow {
                 Command::Select(_) => self.pipe.tell(&bare("bones or tracks to choose")),
                 Command::Wind(words) => {
                     self.knobs.type_wind(&words);
-                    self.turn(Turned { wind: true, ..Turned::default() });
+                    self.turn(Turned { typed: true, ..Turned::default() });
                 }
                 Command::Camera(seat) => self.canvas.sit(seat),
                 Command::Say(line) => self.line = line,
@@ -116,31 +152,75 @@ impl ForestWindow {
         }
     }
 
-    /// Another forest takes its place.
-    fn take(&mut self, protocol: u32, path: &Path) -> anyhow::Result<()> {
+    /// Another forest takes its place; where it cannot, all stays as it was.
+    fn take(&mut self, context: &Context, protocol: u32, path: &Path) -> anyhow::Result<()> {
         ensure!(protocol == PROTOCOL, "protocol {protocol} came, and {PROTOCOL} was wanted");
         let Scene::Forest(scene) = honami_scene::file::read(path)? else {
             bail!("{} is a skeleton, and a forest is shown", path.display())
         };
-        (self.told, self.step, self.begun) = (told(&scene), scene.pace.step, scene.orbit);
-        self.knobs = Knobs::new(&scene);
-        self.picture = picture(&self.canvas, *scene, self.is_cpu)?;
-        self.time = 0.0;
+        let picture = picture(&self.canvas, *scene, self.is_cpu)?;
+        let scene = picture.scene();
+        (self.told, self.step, self.begun) = (told(scene), scene.pace.step, scene.orbit);
+        (self.knobs, self.making) = (Knobs::new(scene), making(&picture, context));
+        (self.picture, self.time) = (picture, 0.0);
         Ok(())
     }
 
-    /// What was turned holds from now on; what cannot be is said, and what was before goes on.
+    /// What was turned holds as soon as it is worked out; what cannot be is said, and what was before goes on.
     fn turn(&mut self, turned: Turned) {
-        let blown = turned.wind.then(|| self.picture.blow(&self.knobs.words()));
-        let damped = turned.damping.then(|| self.picture.damp(&self.canvas.gpu, self.knobs.damping));
-        let mut said = String::new();
-        for why in blown.into_iter().chain(damped).filter_map(Result::err) {
-            said = format!("{why:#}");
-            self.pipe.tell(&Event::Failed(said.clone()));
+        if turned == Turned::default() {
+            return;
         }
-        if turned.wind || turned.damping {
-            self.line = said;
+        self.line.clear();
+        if (turned.typed || turned.wind)
+            && let Err(why) = self.ask(turned.typed)
+        {
+            self.knobs.refuse();
+            self.refused(&why);
         }
+        if turned.damping {
+            match self.picture.damp(&self.canvas.gpu, self.knobs.damping) {
+                Ok(()) => self.knobs.hold_damping(),
+                Err(why) => {
+                    self.knobs.refuse_damping();
+                    self.refused(&why);
+                }
+            }
+        }
+    }
+
+    fn ask(&mut self, begins: bool) -> anyhow::Result<()> {
+        let winds = self.knobs.winds.clone();
+        let typed = winds.read()?;
+        self.making.ask(Asked { winds, typed, begins }).context("no thread for a wind")
+    }
+
+    /// Winds that have been worked out blow from now on.
+    fn blow(&mut self) -> anyhow::Result<()> {
+        while let Some(made) = self.making.news().context("no thread for a wind")? {
+            match made.wind {
+                Ok(wind) => {
+                    if made.begins {
+                        self.picture.begin(wind);
+                    } else {
+                        self.picture.turn(wind);
+                    }
+                    self.knobs.hold(made.winds);
+                }
+                Err(why) => {
+                    if !self.making.is_busy() {
+                        self.knobs.refuse();
+                    }
+                    self.refused(&why);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn refused(&mut self, why: &anyhow::Error) {
+        self.line = format!("{why:#}");
+        self.pipe.tell(&Event::Failed(self.line.clone()));
     }
 
     fn keys(&mut self, ui: &Ui) {
@@ -160,7 +240,7 @@ impl ForestWindow {
             self.canvas.orbit = self.begun;
         }
         if pressed(Key::Escape) {
-            self.knobs.planting = None;
+            self.knobs.putting = None;
         }
     }
 
@@ -174,9 +254,14 @@ impl ForestWindow {
             if ui.button(if self.is_playing { "pause" } else { "play" }).clicked() {
                 self.play(!self.is_playing);
             }
-            ui.label(format!("{:.1} s", self.time));
+            ui.label(format!("{:.1} s", self.picture.time()));
             if ui.button("as at first (f)").clicked() {
                 self.canvas.orbit = self.begun;
+            }
+            if self.making.is_busy() {
+                ui.label("the wind is being worked out");
+            } else if self.is_behind() {
+                ui.label(format!("goes on to {:.1} s", self.time));
             }
             ui.label(&self.line);
         });
@@ -185,7 +270,7 @@ impl ForestWindow {
     fn panel(&mut self, ui: &mut Ui) -> Turned {
         ui.label(&self.told);
         ui.label(format!("drawn by {}", self.canvas.gpu.name()));
-        self.pace.show(ui);
+        self.stopwatch.show(ui);
         ui.separator();
         self.knobs.show(ui)
     }
@@ -200,8 +285,13 @@ impl ForestWindow {
         {
             self.turn(Turned { wind: true, ..Turned::default() });
         }
-        let shot = Shot { time: self.time, camera };
         let Some(target) = self.canvas.target() else { return Ok(()) };
+        // What is told to be seen is seen in the wind that was told before it.
+        if self.is_playing || !self.making.is_busy() {
+            self.picture.go_towards(&self.canvas.gpu, self.time, MOST_STEPS)?;
+        }
+        let time = if self.is_behind() { self.picture.time() } else { self.time };
+        let shot = Shot { time, camera };
         self.picture.draw(&self.canvas.gpu, target, &shot)?;
         self.canvas.show(ui, area);
         Ok(self.canvas.gpu.check()?)
@@ -211,6 +301,12 @@ impl ForestWindow {
 fn picture(canvas: &Canvas, scene: ForestScene, is_cpu: bool) -> anyhow::Result<ForestPicture> {
     let by = if is_cpu { By::Processor } else { By::best(&canvas.gpu, &scene) };
     ForestPicture::new(&canvas.gpu, scene, by)
+}
+
+/// Winds over what is shown; a window is drawn anew when one is there.
+fn making(picture: &ForestPicture, context: &Context) -> Making {
+    let context = context.clone();
+    Making::new(Arc::clone(picture.scene()), Arc::new(move || context.request_repaint()))
 }
 
 /// The place on the ground that is seen at a point of a picture; `None` in the sky.
@@ -226,11 +322,13 @@ fn on_ground(camera: &Camera, area: Rect, at: Pos2) -> Option<[f32; 2]> {
 impl eframe::App for ForestWindow {
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         let context = ui.ctx().clone();
+        if let Err(why) = self.blow() {
+            fail(&self.fault, &context, why);
+        }
         self.obey(&context);
         self.keys(ui);
-        let seconds = f64::from(ui.input(|input| input.unstable_dt));
-        if self.is_playing {
-            self.pace.took(seconds);
+        let seconds = self.stopwatch.tick(self.is_playing, f64::from(ui.input(|input| input.unstable_dt)));
+        if !self.is_behind() {
             self.time += seconds.min(MOST_S);
         }
         egui::Panel::bottom("time").show(ui, |ui| self.transport(ui));
@@ -240,7 +338,8 @@ impl eframe::App for ForestWindow {
         if let Err(why) = drawn {
             fail(&self.fault, &context, why);
         }
-        if self.is_playing {
+        let is_stuck = self.making.is_busy() && !self.is_playing;
+        if !is_stuck && (self.is_playing || self.is_behind() || self.waiting.is_some()) {
             context.request_repaint();
         }
     }

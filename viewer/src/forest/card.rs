@@ -3,9 +3,8 @@
 use bytemuck::{Pod, Zeroable};
 use honami_mechanics::wind::Wind;
 use honami_mechanics::{Damping, Felt, Following, Forest, ForestError, Pace, Vector};
-use honami_scene::forest::live;
+use honami_scene::forest::live::{self, Begun};
 use honami_scene::grove::Grove;
-use honami_scene::weather::WeatherError;
 use honami_scene::{Camera, ForestScene};
 use rayon::prelude::*;
 use wgpu::BufferUsages as Uses;
@@ -47,7 +46,7 @@ struct Eye {
 /// What shaders go on by.
 pub(super) struct Card {
     grove: Grove,
-    wind: Box<dyn Wind>,
+    wind: Begun,
     /// Where all numbers come from; it stays at rest itself.
     forest: Forest,
     n_steps: u64,
@@ -55,6 +54,8 @@ pub(super) struct Card {
     /// At the crowns of all copies in the last step, metres per second.
     winds: Vec<Vector>,
     feels: wgpu::Buffer,
+    /// Amplitudes and speeds of all copies.
+    state: wgpu::Buffer,
     steps: wgpu::Buffer,
     eye: wgpu::Buffer,
     groups: wgpu::Buffer,
@@ -136,11 +137,12 @@ impl Card {
         let pose = poses(gpu, &plant, stage, &all);
         Ok(Self {
             grove: scene.grove(),
-            wind: live::wind(scene, &scene.wind, MOST_BYTES)?,
+            wind: Begun::new(live::wind(scene, &scene.wind, MOST_BYTES)?, scene.run_in),
             n_steps: 0,
             felt: vec![Felt::default(); n_copies],
             winds: vec![Vector::zeros(); n_copies],
             feels,
+            state,
             steps,
             eye,
             groups,
@@ -154,10 +156,14 @@ impl Card {
         })
     }
 
-    /// From now on this wind blows.
-    pub(super) fn blow(&mut self, scene: &ForestScene, words: &str) -> Result<(), WeatherError> {
-        self.wind = live::wind(scene, words, MOST_BYTES)?;
-        Ok(())
+    /// From now on this wind blows: it begins now.
+    pub(super) fn begin(&mut self, wind: Box<dyn Wind>) {
+        self.wind = Begun::new(wind, self.time());
+    }
+
+    /// From now on the same wind blows with other values: its time goes on.
+    pub(super) fn turn(&mut self, wind: Box<dyn Wind>) {
+        self.wind.turn(wind);
     }
 
     /// From now on it is damped so, and so heavy.
@@ -175,6 +181,16 @@ impl Card {
 
     fn time(&self) -> f64 {
         self.n_steps as f64 * self.forest.pace().step
+    }
+
+    /// At rest again, before its run-in; the wind that blows now begins where that ends.
+    pub(super) fn restart(&mut self, gpu: &Gpu, scene: &ForestScene) {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        encoder.clear_buffer(&self.state, 0, None);
+        gpu.queue.submit([encoder.finish()]);
+        self.n_steps = 0;
+        self.winds.fill(Vector::zeros());
+        self.wind.restart(scene.run_in);
     }
 
     /// A step of all modes, in the wind at every copy.

@@ -7,7 +7,7 @@ use crate::offscreen::{Picture as _, Shot};
 use crate::target::{Size, Target};
 use crate::testing;
 use honami_mechanics::{Details, Following, Forest, Pose, Threads};
-use honami_scene::forest::live;
+use honami_scene::forest::live::{self, Begun};
 use honami_scene::{ForestScene, Orbit};
 
 const SIZE: Size = Size { width: 320, height: 180, samples: 4 };
@@ -70,6 +70,57 @@ fn the_same_moment_is_the_same_picture() {
     assert!(testing::is_alike(&host, &card));
 }
 
+/// A squall that comes from 60 m away by 10 m/s: with what is shown, when it is typed, and as it is turned; by both the same.
+#[test]
+fn winds_begin_at_the_same_time_whoever_moves_the_forest() {
+    let Some(gpu) = testing::gpu() else { return };
+    let scene = ForestScene { wind: "squall".to_owned(), ..testing::forest(60, 4, 2) };
+    let squall = |words: &str| live::wind(&scene, words, 0).unwrap();
+    let here = |speed: f64, seconds: f64| speed * (-((60.0 - 10.0 * seconds) / 30.0).powi(2)).exp();
+    for by in [By::Processor, By::Card] {
+        let mut picture = ForestPicture::new(&gpu, scene.clone(), by).unwrap();
+        let felt = |picture: &mut ForestPicture, time| {
+            picture.go_on(&gpu, time).unwrap();
+            picture.mover.blowing(0).norm()
+        };
+        for (time, seconds) in [(0.0, 0.0), (6.0, 6.0), (9.0, 9.0)] {
+            let felt = felt(&mut picture, time);
+            assert!((felt - here(15.0, seconds)).abs() < 1e-6, "{by:?} {time} s: {felt}");
+        }
+        picture.begin(squall("squall"));
+        for (time, seconds) in [(9.0, 0.0), (14.0, 5.0)] {
+            let felt = felt(&mut picture, time);
+            assert!((felt - here(15.0, seconds)).abs() < 1e-6, "{by:?} {time} s: {felt}");
+        }
+        picture.turn(squall("squall:speed=30"));
+        let felt = felt(&mut picture, 15.0);
+        assert!((felt - here(30.0, 6.0)).abs() < 1e-6, "{by:?}: {felt}");
+    }
+}
+
+/// Far away it comes step by step, and back in the wind that blows by then.
+#[test]
+fn jumps_take_so_many_steps_at_a_time() {
+    let Some(gpu) = testing::gpu() else { return };
+    let scene = ForestScene { wind: "still".to_owned(), ..testing::forest(60, 4, 2) };
+    let step = scene.pace.step;
+    for by in [By::Processor, By::Card] {
+        let mut picture = ForestPicture::new(&gpu, scene.clone(), by).unwrap();
+        picture.go_towards(&gpu, 1e9, 32).unwrap();
+        assert!(!picture.is_at(1e9) && (picture.time() - 32.0 * step).abs() < 1e-9, "{by:?}");
+        picture.begin(live::wind(&scene, "steady:speed=7", 0).unwrap());
+        picture.go_towards(&gpu, 0.2, 32).unwrap();
+        assert!((picture.time() + scene.run_in - 32.0 * step).abs() < 1e-9, "{by:?}: {}", picture.time());
+        let mut n = 1;
+        while !picture.is_at(0.2) {
+            picture.go_towards(&gpu, 0.2, 32).unwrap();
+            n += 1;
+        }
+        assert_eq!(n, 4, "{by:?}: 110 steps");
+        assert!((picture.mover.blowing(0).norm() - 7.0).abs() < 1e-9, "{by:?}");
+    }
+}
+
 /// Each node but the root in one chain, behind the one that bears it, or at its head behind one of a lower rank.
 #[test]
 fn chains_hold_every_node_behind_what_bears_it() {
@@ -112,7 +163,7 @@ fn a_card_has_every_node_where_the_simulation_has_it() {
     let scene = testing::forest(300, 8, 40);
     let grove = scene.grove();
     let threads = Threads::new(1).unwrap();
-    let wind = live::wind(&scene, &scene.wind, 0).unwrap();
+    let wind = Begun::new(live::wind(&scene, &scene.wind, 0).unwrap(), scene.run_in);
     let mut forest = Forest::new(&scene.stirring, &scene.body.order, &scene.stands, &scene.pace).unwrap();
     let mut picture = ForestPicture::new(&gpu, scene.clone(), By::Card).unwrap();
     let target = Target::new(&gpu, Size { width: 1280, height: 720, samples: 1 }).unwrap();

@@ -10,14 +10,14 @@ use honami_mechanics::{
 use super::ForestScene;
 use crate::camera::Camera;
 use crate::grove::Grove;
-use crate::weather::{WeatherError, read};
+use crate::weather::{Typed, WeatherError, read};
 
 /// The height of a picture, pixels, that levels of detail are made for: of one half as high they begin half as far away.
 const HEIGHT_PX: f64 = 720.0;
 /// Nothing is seen beyond so many metres, nor a plant beyond so many of its heights.
 const FARTHEST: f64 = 5000.0;
 
-/// Air that flows by itself is worked out for so many seconds; from then on it blows as it did at their end.
+/// Air that flows by itself is worked out for so many seconds of its own; from then on it blows as it did at their end.
 const SECONDS: f64 = 120.0;
 
 /// Why a forest does not go on.
@@ -38,12 +38,46 @@ pub enum LiveError {
     Threads(#[from] ThreadsError),
 }
 
+/// A wind by the time since it began: before that it blows as it would have, so that what travels comes from where it begins.
+pub struct Begun {
+    wind: Box<dyn Wind>,
+    since: f64,
+}
+
+impl Begun {
+    /// One that begins at a time, seconds.
+    #[must_use]
+    pub fn new(wind: Box<dyn Wind>, since: f64) -> Self {
+        Self { wind, since }
+    }
+
+    /// The same wind with other values: its time goes on.
+    pub fn turn(&mut self, wind: Box<dyn Wind>) {
+        self.wind = wind;
+    }
+
+    /// It begins at another time, seconds.
+    pub fn restart(&mut self, since: f64) {
+        self.since = since;
+    }
+}
+
+impl Wind for Begun {
+    fn sample(&self, place: &Vector, time: f64) -> Vector {
+        self.wind.sample(place, time - self.since)
+    }
+
+    fn repeats(&self, seconds: f64) -> bool {
+        self.wind.repeats(seconds)
+    }
+}
+
 /// A forest that goes on.
 pub struct Live {
     scene: Arc<ForestScene>,
     grove: Grove,
     forest: Forest,
-    wind: Box<dyn Wind>,
+    wind: Begun,
     threads: Threads,
     most_bytes: usize,
     details: Vec<Detail>,
@@ -62,7 +96,7 @@ pub struct Seen<'a> {
 }
 
 impl Live {
-    /// A forest that has felt its wind for as long as the scene says; it takes so many threads, and air that flows so many
+    /// A forest that has felt its wind for as long as the scene says, until this began; it takes so many threads, and air that flows so many
     /// bytes.
     ///
     /// # Errors
@@ -70,7 +104,7 @@ impl Live {
     pub fn new(scene: Arc<ForestScene>, n_threads: usize, most_bytes: usize) -> Result<Self, LiveError> {
         let threads = Threads::new(n_threads)?;
         let forest = Forest::new(&scene.stirring, &scene.body.order, &scene.stands, &scene.pace)?;
-        let wind = wind(&scene, &scene.wind, most_bytes)?;
+        let wind = Begun::new(wind(&scene, &scene.wind, most_bytes)?, scene.run_in);
         let (grove, details) = (scene.grove(), vec![Detail::default(); scene.places.len()]);
         let steps = (scene.run_in / scene.pace.step).round() as u32;
         let motion = Vec::new();
@@ -99,13 +133,23 @@ impl Live {
         self.forest.time() - self.scene.run_in
     }
 
-    /// From now on this wind blows.
+    /// From now on this wind blows, as it is typed: it begins now.
     ///
     /// # Errors
     /// [`LiveError::Weather`]; the one before then goes on.
     pub fn blow(&mut self, words: &str) -> Result<(), LiveError> {
-        self.wind = wind(&self.scene, words, self.most_bytes)?;
+        self.begin(wind(&self.scene, words, self.most_bytes)?);
         Ok(())
+    }
+
+    /// From now on this wind blows: it begins now.
+    pub fn begin(&mut self, wind: Box<dyn Wind>) {
+        self.wind = Begun::new(wind, self.forest.time());
+    }
+
+    /// From now on the same wind blows with other values: its time goes on.
+    pub fn turn(&mut self, wind: Box<dyn Wind>) {
+        self.wind.turn(wind);
     }
 
     /// From now on it is damped so, and so heavy.
@@ -121,6 +165,12 @@ impl Live {
     #[must_use]
     pub fn blowing(&self, copy: usize) -> Vector {
         self.grove.blowing(&self.wind, copy, self.forest.time())
+    }
+
+    /// At rest again, before its run-in; the wind that blows now begins where that ends.
+    pub fn restart(&mut self) {
+        self.forest.reset();
+        self.wind.restart(self.scene.run_in);
     }
 
     /// A step on.
@@ -183,7 +233,15 @@ pub fn view(camera: &Camera, aspect: f64) -> View {
 /// # Errors
 /// [`WeatherError`].
 pub fn wind(scene: &ForestScene, words: &str, most_bytes: usize) -> Result<Box<dyn Wind>, WeatherError> {
-    read(words)?.over(&scene.ground(SECONDS, most_bytes))
+    over(scene, &read(words)?, most_bytes)
+}
+
+/// The same of words that have been read: what takes long.
+///
+/// # Errors
+/// [`WeatherError`].
+pub fn over(scene: &ForestScene, typed: &Typed, most_bytes: usize) -> Result<Box<dyn Wind>, WeatherError> {
+    typed.over(&scene.ground(SECONDS, most_bytes))
 }
 
 #[cfg(test)]

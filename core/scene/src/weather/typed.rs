@@ -153,6 +153,13 @@ fn recorded(path: &Path) -> Result<Series, WeatherError> {
 }
 
 impl Typed {
+    /// These, and then others: what carries the winds after it carries none of these.
+    #[must_use]
+    pub fn and(mut self, others: Self) -> Self {
+        self.0.extend(others.0);
+        self
+    }
+
     /// Recordings among them.
     pub fn files(&self) -> impl Iterator<Item = &Path> {
         self.0.iter().filter_map(|part| match part {
