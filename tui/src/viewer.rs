@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::thread::JoinHandle;
+use std::time::Duration;
 
 use anyhow::{Context as _, ensure};
 use honami_workbench::WorkbenchError;
@@ -35,6 +36,8 @@ pub enum Heard {
     Ended(Option<String>),
 }
 
+/// Whoever lists what draws has so long.
+const PATIENCE: Duration = Duration::from_secs(20);
 /// Lines for a viewer that wait to be written.
 const WAITING: usize = 1024;
 
@@ -216,9 +219,29 @@ pub(crate) fn finding() -> Finding {
 fn adapter(program: &Path) -> Result<String, String> {
     // Whoever only asks wants no cache of compiled shaders at home.
     let mut command = command(program, &["--adapters".into(), "--json".into()]);
-    let output = command.env("MESA_SHADER_CACHE_DISABLE", "true").stdin(Stdio::null()).output();
-    let output = output.map_err(|error| format!("{}: {error}", starting(program)))?;
-    let told: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap_or_default();
+    command.env("MESA_SHADER_CACHE_DISABLE", "true").stdin(Stdio::null());
+    let spawned = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
+    let mut child = spawned.map_err(|error| format!("{}: {error}", starting(program)))?;
+    let end = |child: &mut Child| child.wait().map_err(|error| error.to_string());
+    let (told, ended) = sync_channel(1);
+    let (out, errors) = (child.stdout.take(), child.stderr.take());
+    let listen = move || {
+        let words = errors.map(last_words).unwrap_or_default();
+        let said = out.and_then(|out| serde_json::from_reader(out).ok()).unwrap_or_default();
+        told.send((said, words)).unwrap_or_default();
+    };
+    std::thread::Builder::new()
+        .name("adapters".to_owned())
+        .spawn(listen)
+        .map_err(|error| error.to_string())?;
+    let Ok::<(serde_json::Value, _), _>((told, words)) = ended.recv_timeout(PATIENCE) else {
+        child.kill().and_then(|()| child.wait().map(drop)).unwrap_or_default();
+        return Err(format!("the viewer says nothing for {} s: a driver hangs", PATIENCE.as_secs()));
+    };
+    let status = end(&mut child)?;
+    if let Some(how) = ending(status).filter(|_| told.is_null()) {
+        return Err(with_words(status, how, &words));
+    }
     let first = told["adapters"].get(0).ok_or("there is nothing to draw with: no card and no driver")?;
     let word = |name: &str| first[name].as_str().unwrap_or_default().to_owned();
     let kind = if first["software"] == true { ", without a graphics card" } else { "" };

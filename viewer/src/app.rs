@@ -11,7 +11,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use anyhow::{anyhow, bail, ensure};
 use eframe::egui::{self, Context, Key, Modifiers, Ui};
-use eframe::egui_wgpu::WgpuSetup;
+use eframe::egui_wgpu::{NativeAdapterSelectorMethod, WgpuSetup};
 use eframe::wgpu;
 use honami_scene::control::{Chosen, Command, Event, PROTOCOL};
 use honami_scene::{Orbit, Scene};
@@ -22,7 +22,7 @@ use self::pipe::Pipe;
 use self::player::Player;
 use self::skeleton::Workbench;
 use crate::args::Args;
-use crate::gpu::GpuError;
+use crate::gpu;
 use crate::offscreen::{Picture as _, Shot};
 use crate::skeleton::{Part, SkeletonPicture};
 
@@ -47,7 +47,7 @@ pub fn run(path: &Path, args: &Args) -> anyhow::Result<()> {
     );
     let fault = Fault::default();
     let (kept, args) = (Arc::clone(&fault), args.clone());
-    let size = args.size;
+    let (size, adapter) = (args.size, args.adapter.clone());
     let make = move |creation: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, _> {
         Ok(match scene {
             Scene::Skeleton(scene) => {
@@ -57,13 +57,13 @@ pub fn run(path: &Path, args: &Args) -> anyhow::Result<()> {
             Scene::Forest(scene) => Box::new(ForestWindow::new(creation, *scene, &args, kept)?),
         })
     };
-    let shown = eframe::run_native("honami", options(size), Box::new(make));
+    let shown = eframe::run_native("honami", options(size, adapter), Box::new(make));
     if let Some(fault) = fault.lock().unwrap_or_else(PoisonError::into_inner).take() {
         return Err(fault);
     }
     shown.map_err(|why| match why {
         eframe::Error::AppCreation(why) => anyhow!("{why}"),
-        eframe::Error::Wgpu(why) => anyhow!("{}: {why}", GpuError::None),
+        eframe::Error::Wgpu(why) => anyhow!("nothing draws the window: {why}"),
         why => anyhow!("the window does not open: {why}"),
     })
 }
@@ -74,7 +74,8 @@ fn fail(fault: &Fault, context: &Context, why: anyhow::Error) {
     context.send_viewport_cmd(egui::ViewportCommand::Close);
 }
 
-fn options([width, height]: [u32; 2]) -> eframe::NativeOptions {
+/// With the adapter that has this in its name, where that is wanted.
+fn options([width, height]: [u32; 2], adapter: Option<String>) -> eframe::NativeOptions {
     let mut options = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_title("honami")
@@ -83,6 +84,9 @@ fn options([width, height]: [u32; 2]) -> eframe::NativeOptions {
         ..Default::default()
     };
     if let WgpuSetup::CreateNew(setup) = &mut options.wgpu_options.wgpu_setup {
+        setup.native_adapter_selector = adapter.map(|wanted| -> NativeAdapterSelectorMethod {
+            Arc::new(move |there, surface| gpu::pick(there, surface, &wanted).map_err(|why| why.to_string()))
+        });
         setup.device_descriptor = Arc::new(|adapter| wgpu::DeviceDescriptor {
             label: Some("honami"),
             required_limits: adapter.limits(),
@@ -120,7 +124,15 @@ impl App {
 
     /// Does what was told by the pipe.
     fn obey(&mut self, context: &Context) {
-        while let Some(command) = self.pipe.next() {
+        let mut told: Vec<Command> = std::iter::from_fn(|| self.pipe.next()).collect();
+        let last = told.iter().rposition(|command| matches!(command, Command::Scene { .. }));
+        let mut at = 0;
+        // Of several scenes the last is the one to see, and the others may be gone.
+        told.retain(|command| {
+            at += 1;
+            !matches!(command, Command::Scene { .. }) || Some(at - 1) == last
+        });
+        for command in told {
             match command {
                 Command::Play => self.player.is_playing = true,
                 Command::Pause => self.player.is_playing = false,
@@ -218,11 +230,13 @@ impl App {
         if pressed(Key::F) {
             self.front();
         }
-        if pressed(Key::U) {
-            self.pipe.tell(&Event::Undo);
-        }
-        if ui.input_mut(|input| input.consume_key(Modifiers::CTRL, Key::R)) {
-            self.pipe.tell(&Event::Redo);
+        if self.workbench.is_open() {
+            if pressed(Key::U) {
+                self.pipe.tell(&Event::Undo);
+            }
+            if ui.input_mut(|input| input.consume_key(Modifiers::CTRL, Key::R)) {
+                self.pipe.tell(&Event::Redo);
+            }
         }
         if pressed(Key::Enter)
             && let Some(event) = self.workbench.keep()

@@ -222,6 +222,22 @@ pub fn called(mut adapters: Vec<AdapterInfo>, wanted: &str) -> Result<Vec<Adapte
     Ok(adapters)
 }
 
+/// The best adapter with `wanted` in its name that can show pictures on a surface.
+///
+/// # Errors
+/// As [`called`].
+pub fn pick(
+    there: &[wgpu::Adapter],
+    surface: Option<&wgpu::Surface<'_>>,
+    wanted: &str,
+) -> Result<wgpu::Adapter, GpuError> {
+    let fits = |adapter: &&wgpu::Adapter| surface.is_none_or(|surface| adapter.is_surface_supported(surface));
+    let there: Vec<&wgpu::Adapter> = there.iter().filter(fits).collect();
+    let best = called(there.iter().map(|adapter| adapter.get_info()).collect(), wanted)?;
+    let is_best = |adapter: &&&wgpu::Adapter| best.first() == Some(&adapter.get_info());
+    there.iter().find(is_best).map(|adapter| (*adapter).clone()).ok_or(GpuError::None)
+}
+
 /// An adapter's name, with the way that leads to it.
 #[must_use]
 pub fn name(info: &AdapterInfo) -> String {

@@ -250,6 +250,9 @@ fn open(scene: &SkeletonScene) -> Result<Option<Media>, String> {
     let media =
         honami_media::open(path, &options).map_err(|error| format!("the clip is not shown: {error}"))?;
     let (clip, film) = (media.clip(), &scene.clip);
+    if film.sha256.as_ref().is_some_and(|sha256| *sha256 != media.sha256()) {
+        return Err(format!("the clip is not shown: another lies at {}", path.display()));
+    }
     match (clip.width, clip.height) == (film.width, film.height) && clip.n_frames() >= film.n_frames {
         true => Ok(Some(media)),
         false => Err(format!(

@@ -3,11 +3,15 @@
 
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::path::Path;
-use std::process::{Child, ChildStdout, Command, Stdio};
+use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::mpsc::{Receiver, sync_channel};
+use std::time::Duration;
 
 use honami_scene::control::Event;
 use honami_scene::skeleton::{Bone, Film, Group, Joint};
 use honami_scene::{ForestScene, Scene, SkeletonScene};
+use image::RgbImage;
+use tempfile::TempDir;
 
 #[expect(unreachable_pub, reason = "it is that of the library's tests")]
 #[path = "../src/testing/forest.rs"]
@@ -40,7 +44,6 @@ fn scene() -> Scene {
         first_frame: 5,
         times: (0..20).map(|frame| f64::from(frame) / 25.0).collect(),
         groups: vec![Group { colour: [255, 80, 80], ..Group::default() }],
-        is_open: true,
         ..SkeletonScene::default()
     }))
 }
@@ -73,105 +76,148 @@ fn display() -> Option<(Ended, String)> {
     Some((Ended(server), format!(":{}", number.trim())))
 }
 
-/// The next event that is like this.
-fn heard(lines: &mut BufReader<ChildStdout>, is_it: impl Fn(&Event) -> bool) -> Event {
-    loop {
-        let mut line = String::new();
-        assert!(lines.read_line(&mut line).unwrap() > 0, "the viewer has ended");
-        let event = honami_scene::control::event(&line).unwrap();
-        if is_it(&event) {
-            return event;
+/// A viewer that says nothing for so long has hung.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// A window on a display of its own.
+struct Window {
+    folder: TempDir,
+    child: Ended,
+    tell: Option<ChildStdin>,
+    events: Receiver<Event>,
+    _display: Ended,
+}
+
+impl Window {
+    /// One that shows a scene, `a.scene` in its folder.
+    fn open(scene: &Scene) -> Option<Self> {
+        let (display, name) = display()?;
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.scene");
+        honami_scene::file::write(&path, scene).unwrap();
+        let mut child = Command::new(VIEWER)
+            .arg(&path)
+            .args(["--control", "--size", "640x480"])
+            .env("DISPLAY", name)
+            .env_remove("WAYLAND_DISPLAY")
+            .env("XDG_RUNTIME_DIR", folder.path())
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let (tell, lines) = (child.stdin.take(), BufReader::new(child.stdout.take().unwrap()));
+        let (said, events) = sync_channel(64);
+        let listen = move || {
+            for line in lines.lines() {
+                said.send(honami_scene::control::event(&line.unwrap()).unwrap()).unwrap_or_default();
+            }
+        };
+        std::thread::Builder::new().spawn(listen).unwrap();
+        let window = Self { folder, child: Ended(child), tell, events, _display: display };
+        window.hear(|event| matches!(event, Event::Ready { protocol: 1, adapter } if !adapter.is_empty()));
+        Some(window)
+    }
+
+    fn tell(&mut self, lines: &str) {
+        writeln!(self.tell.as_mut().unwrap(), "{lines}").unwrap();
+    }
+
+    /// Waits for an event that is like this.
+    #[track_caller]
+    fn hear(&self, is_it: impl Fn(&Event) -> bool) -> Event {
+        loop {
+            let event = self.events.recv_timeout(PATIENCE).expect("the viewer says more");
+            if is_it(&event) {
+                return event;
+            }
         }
     }
+
+    /// Waits to hear of a failure in these words.
+    #[track_caller]
+    fn hear_failure(&self, words: &str) {
+        self.hear(|event| matches!(event, Event::Failed(why) if why.contains(words)));
+    }
+
+    /// Has another scene shown.
+    fn show(&mut self, path: &Path) {
+        self.tell(&format!("{{\"scene\":{{\"protocol\":1,\"path\":{:?}}}}}", path.to_str().unwrap()));
+    }
+
+    /// What it shows.
+    fn captured(&mut self, name: &str) -> RgbImage {
+        let path = self.folder.path().join(name);
+        self.tell(&format!("{{\"capture\":{:?}}}", path.to_str().unwrap()));
+        self.hear(|event| *event == Event::Captured(path.clone()));
+        image::open(&path).unwrap().into_rgb8()
+    }
+
+    /// The end of the pipe is its end.
+    fn end(mut self) {
+        drop(self.tell.take());
+        self.hear(|event| *event == Event::Closed);
+        assert!(self.child.0.wait().unwrap().success());
+    }
+}
+
+/// Of the pixels in the colour of the branch: how many, and their mean column.
+fn branch(window: &RgbImage) -> (usize, f64) {
+    let is_red = |at: &[u8; 3]| at[0] > 150 && at[1] < 110 && at[2] < 110;
+    let red = window.enumerate_pixels().filter(|(_, _, at)| is_red(&at.0));
+    let (n, sum) = red.fold((0, 0.0), |(n, sum), (x, _, _)| (n + 1, sum + f64::from(x)));
+    (n, sum / n as f64)
 }
 
 #[test]
 fn a_window_is_opened_driven_captured_and_ended() {
-    let Some((_server, display)) = display() else { return };
-    let folder = tempfile::tempdir().unwrap();
-    let (path, picture) = (folder.path().join("a.scene"), folder.path().join("window.png"));
-    honami_scene::file::write(&path, &scene()).unwrap();
-    let mut child = Command::new(VIEWER)
-        .arg(&path)
-        .args(["--control", "--size", "640x480"])
-        .env("DISPLAY", display)
-        .env_remove("WAYLAND_DISPLAY")
-        .env("XDG_RUNTIME_DIR", folder.path())
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let mut tell = child.stdin.take().unwrap();
-    let mut lines = BufReader::new(child.stdout.take().unwrap());
-    heard(&mut lines, |event| matches!(event, Event::Ready { protocol: 1, adapter } if !adapter.is_empty()));
-    writeln!(tell, "garbled\nframe 12\nselect {{\"bone\":2}}\nwind storm").unwrap();
-    let Event::Failed(why) = heard(&mut lines, |event| matches!(event, Event::Failed(_))) else {
-        unreachable!()
-    };
-    assert!(why.contains("garbled"), "{why}");
-    heard(&mut lines, |event| matches!(event, Event::Failed(why) if why.contains("wind")));
-    writeln!(tell, "{{\"capture\":{:?}}}", picture.to_str().unwrap()).unwrap();
-    heard(&mut lines, |event| *event == Event::Captured(picture.clone()));
-    let window = image::open(&picture).unwrap().into_rgb8();
-    assert!(window.width() >= 640 && window.height() >= 480);
-    let n_red = window.pixels().filter(|at| at.0[0] > 150 && at.0[1] < 110 && at.0[2] < 110).count();
+    let Some(mut window) = Window::open(&scene()) else { return };
+    window.tell("garbled\nframe 6\nselect {\"bone\":2}\nwind storm");
+    window.hear_failure("garbled");
+    window.hear_failure("wind");
+    let early = window.captured("early.png");
+    assert!(early.width() >= 640 && early.height() >= 480);
+    window.tell("frame 20");
+    let late = window.captured("late.png");
+    let ((n_red, left), (_, right)) = (branch(&early), branch(&late));
     assert!(n_red > 200, "the branch is seen: {n_red} pixels of its colour");
+    assert!(right > left + 15.0, "and has swayed by then: {left:.1} to {right:.1}");
+    window.tell("select");
+    let n_changed = window.captured("none.png").pixels().zip(late.pixels()).filter(|(a, b)| a != b).count();
+    assert!(n_changed > 50, "what is chosen looks otherwise: {n_changed} pixels");
     // A scene that is cut short is told, and what was shown stays.
-    let short = folder.path().join("short.scene");
-    let whole = std::fs::read(&path).unwrap();
-    std::fs::write(&short, &whole[..whole.len() - 5]).unwrap();
-    let scene =
-        |path: &Path| format!("{{\"scene\":{{\"protocol\":1,\"path\":{:?}}}}}", path.to_str().unwrap());
-    writeln!(tell, "{}\n{}\ncut 3", scene(&short), scene(&path)).unwrap();
-    heard(&mut lines, |event| matches!(event, Event::Failed(why) if why.contains("cut short")));
-    heard(&mut lines, |event| *event == Event::Cut(3));
-    // The end of the pipe is its end.
-    drop(tell);
-    heard(&mut lines, |event| *event == Event::Closed);
-    assert!(child.wait().unwrap().success());
+    let (whole, short) = (window.folder.path().join("a.scene"), window.folder.path().join("short.scene"));
+    let bytes = std::fs::read(&whole).unwrap();
+    std::fs::write(&short, &bytes[..bytes.len() - 5]).unwrap();
+    window.show(&short);
+    window.hear_failure("cut short");
+    window.show(&whole);
+    window.tell("cut 3");
+    window.hear(|event| *event == Event::Cut(3));
+    window.end();
 }
 
 #[test]
 fn a_forest_sways_in_its_window_and_its_wind_is_turned() {
-    let Some((_server, display)) = display() else { return };
-    let folder = tempfile::tempdir().unwrap();
-    let (path, picture) = (folder.path().join("a.scene"), folder.path().join("window.png"));
-    honami_scene::file::write(&path, &Scene::Forest(Box::new(forest::forest(60, 6, 4)))).unwrap();
-    let mut child = Command::new(VIEWER)
-        .arg(&path)
-        .args(["--control", "--size", "640x480"])
-        .env("DISPLAY", display)
-        .env_remove("WAYLAND_DISPLAY")
-        .env("XDG_RUNTIME_DIR", folder.path())
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let mut tell = child.stdin.take().unwrap();
-    let mut lines = BufReader::new(child.stdout.take().unwrap());
-    heard(&mut lines, |event| matches!(event, Event::Ready { protocol: 1, .. }));
-    writeln!(tell, "wind storm+vortex:x=2,y=1\nwind breeze\ncut 3\npause\nframe 25").unwrap();
-    heard(&mut lines, |event| matches!(event, Event::Failed(why) if why.contains("\"breeze\" is no wind")));
-    heard(&mut lines, |event| matches!(event, Event::Failed(why) if why.contains("a forest has no groups")));
-    writeln!(tell, "{{\"capture\":{:?}}}", picture.to_str().unwrap()).unwrap();
-    heard(&mut lines, |event| *event == Event::Captured(picture.clone()));
-    let window = image::open(&picture).unwrap().into_rgb8();
-    let n_green = window.pixels().filter(|at| at.0[1] > at.0[0] && at.0[0] > at.0[2]).count();
+    let forest = |n_copies| forest::forest(60, 6, n_copies);
+    let Some(mut window) = Window::open(&Scene::Forest(Box::new(forest(4)))) else { return };
+    window.tell("wind storm+vortex:x=2,y=1\nwind breeze\ncut 3\npause\nframe 25");
+    window.hear_failure("\"breeze\" is no wind");
+    window.hear_failure("a forest has no groups");
+    let early = window.captured("early.png");
+    let n_green = early.pixels().filter(|at| at.0[1] > at.0[0] && at.0[0] > at.0[2]).count();
     assert!(n_green > 20_000, "the ground is seen: {n_green} green pixels");
-    writeln!(tell, "frame 4000000000").unwrap();
-    heard(&mut lines, |event| matches!(event, Event::Failed(why) if why.contains("is too far")));
+    window.tell("frame 4000000000");
+    window.hear_failure("is too far");
     // Of a forest that cannot be shown nothing is taken: neither its name nor its wind.
-    let (none, after) = (folder.path().join("none.scene"), folder.path().join("after.png"));
-    let odd = ForestScene { name: "none".to_owned(), wind: "breeze".to_owned(), ..forest::forest(60, 6, 9) };
+    let none = window.folder.path().join("none.scene");
+    let odd = ForestScene { name: "none".to_owned(), wind: "breeze".to_owned(), ..forest(9) };
     honami_scene::file::write(&none, &Scene::Forest(Box::new(odd))).unwrap();
-    writeln!(tell, "{{\"scene\":{{\"protocol\":1,\"path\":{:?}}}}}", none.to_str().unwrap()).unwrap();
-    heard(&mut lines, |event| matches!(event, Event::Failed(why) if why.contains("\"breeze\" is no wind")));
-    writeln!(tell, "{{\"capture\":{:?}}}", after.to_str().unwrap()).unwrap();
-    heard(&mut lines, |event| *event == Event::Captured(after.clone()));
-    assert!(image::open(&after).unwrap().into_rgb8() == window, "all is as it was");
-    drop(tell);
-    heard(&mut lines, |event| *event == Event::Closed);
-    assert!(child.wait().unwrap().success());
+    window.show(&none);
+    window.hear_failure("\"breeze\" is no wind");
+    assert!(window.captured("after.png") == early, "all is as it was");
+    window.tell("frame 45");
+    assert!(window.captured("late.png") != early, "and it sways");
+    window.end();
 }
 
 #[test]

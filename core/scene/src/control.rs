@@ -33,7 +33,7 @@ pub enum Command {
     Camera(Seat),
     /// What is chosen; `null`: nothing.
     Select(Option<Chosen>),
-    /// A line for whoever looks.
+    /// A line for whoever looks; what is being shaped or placed is let be.
     Say(String),
     /// What the window shows is written as an image, `.png`.
     Capture(PathBuf),

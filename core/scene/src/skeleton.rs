@@ -41,8 +41,8 @@ pub struct SkeletonScene {
     pub most_groups: u32,
     /// Whether the root was placed by hand.
     pub is_placed: bool,
-    /// Whether hand work is taken: nobody else writes to the project.
-    pub is_open: bool,
+    /// Why what hands would do here is not taken; `None` where it is.
+    pub shut: Option<String>,
 }
 
 /// Places as they grew.
@@ -59,6 +59,8 @@ pub struct Grown {
 pub struct Film {
     /// Where it is; `None` where it is not to be had.
     pub path: Option<PathBuf>,
+    /// Of its content, where that is known.
+    pub sha256: Option<String>,
     /// Frames per second, where they were told.
     pub fps: Option<f64>,
     /// Pixels.

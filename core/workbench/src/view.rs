@@ -50,6 +50,7 @@ pub fn skeleton(
     let record = project.clip();
     let film = Film {
         path: clip,
+        sha256: Some(record.sha256.clone()),
         fps: record.fps_override,
         width: record.clip.width,
         height: record.clip.height,
@@ -111,7 +112,6 @@ fn scene(skeleton: &Skeleton, bones: &Bones, first_frame: u32) -> SkeletonScene 
         times: times.iter().map(|time| time - begin).collect(),
         joints,
         leaves,
-        is_open: true,
         ..SkeletonScene::default()
     }
 }

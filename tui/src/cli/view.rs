@@ -49,6 +49,17 @@ const OF_FORESTS: [&str; 25] = [
     "air_density",
 ];
 
+/// Options of what is drawn into files: a window goes on by itself.
+const OF_FILES: [&str; 3] = ["turn", "frames", "seconds"];
+
+/// Refuses what was typed of these, which nothing would heed; `what` says of whom they are, and what is shown.
+fn none_of(args: &View, options: &[&str], what: &str) -> Result<(), Usage> {
+    let typed = args.typed.0.iter().find(|id| options.contains(&id.as_str()));
+    want(typed.is_none(), || {
+        format!("--{} is {what}: leave it out", typed.map_or_else(String::new, |id| id.replace('_', "-")))
+    })
+}
+
 /// Shows a scene.
 pub(super) fn view(args: &View, common: &Common) -> anyhow::Result<Outcome> {
     if let Some(out) = &args.offscreen {
@@ -84,6 +95,10 @@ pub(super) fn view(args: &View, common: &Common) -> anyhow::Result<Outcome> {
             want(!args.terminal, || {
                 format!("a skeleton is shown in the terminal by v k in `honami {}`", source.display())
             })?;
+            if args.offscreen.is_none() {
+                none_of(args, &OF_FILES, "of files (--offscreen), and a window is shown")?;
+                none_of(args, &["fps"], "of files (--offscreen), and a window has the clip's own")?;
+            }
             viewer::program()?;
             there(source)?;
             match &args.offscreen {

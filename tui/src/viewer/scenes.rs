@@ -17,6 +17,9 @@ use tempfile::TempDir;
 /// A picture is so high unless it was said how large, pixels.
 const HEIGHT: f64 = 720.0;
 
+/// So many scenes are there at once.
+pub(super) const KEPT: u32 = 4;
+
 /// The skeleton of a project as it is now, and what is to be said of it; `is_writable` where what is done to it can be kept.
 ///
 /// # Errors
@@ -28,19 +31,33 @@ pub(crate) fn skeleton(
     is_writable: bool,
     progress: &dyn Progress,
 ) -> Result<(SkeletonScene, Vec<String>), WorkbenchError> {
-    let clip = project.media_path();
-    let is_there = clip.exists();
-    let clip = is_there.then_some(clip);
+    let clip = Some(project.media_path()).filter(|path| path.exists());
+    // The viewer says so where another lies there.
+    let clip = clip.or_else(|| {
+        project
+            .find_media(|path| {
+                media::open(path, &media::OpenOptions::default()).ok().map(|clip| clip.sha256())
+            })
+            .ok()
+    });
+    let is_missing = clip.is_none();
     let shown = view::skeleton(project, host, plugin, request, clip, progress)?;
     let mut notes = shown.notes;
-    if !is_there {
+    if is_missing {
         notes.push(
             "the clip is not where it was, and is not shown: `honami relink` says where it is".to_owned(),
         );
     }
     // Where what is shown is not what the project has, what would be done to it is not what is seen.
-    let is_its_own = !request.as_grown && request.groups.is_none();
-    Ok((SkeletonScene { is_open: is_writable && is_its_own, ..shown.scene }, notes))
+    let shut = match request {
+        _ if !is_writable => Some("the project is open elsewhere, or not to be written"),
+        request if request.as_grown => Some("hand work is left out (--as-grown)"),
+        request if request.groups.is_some() => {
+            Some("these are not the groups that the project has (--groups)")
+        }
+        _ => None,
+    };
+    Ok((SkeletonScene { shut: shut.map(str::to_owned), ..shown.scene }, notes))
 }
 
 /// So many pixels high, and as wide as the clip has it; even, as movies want it.
@@ -78,14 +95,14 @@ impl Scenes {
         Ok(Self { folder, _unfinished: unfinished, n: 0 })
     }
 
-    /// Writes one, and removes the one before the last: the last may be being read.
+    /// Writes one. The last few stay: who is slow to read skips all but the last that it was told of.
     ///
     /// # Errors
     /// What the disk met.
     pub(crate) fn write(&mut self, scene: &Scene) -> anyhow::Result<PathBuf> {
         let path = self.folder.path().join(format!("{}.scene", self.n));
         file::write(&path, scene)?;
-        if let Some(older) = self.n.checked_sub(2) {
+        if let Some(older) = self.n.checked_sub(KEPT) {
             std::fs::remove_file(path.with_file_name(format!("{older}.scene"))).unwrap_or_default();
         }
         self.n += 1;

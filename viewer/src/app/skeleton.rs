@@ -67,6 +67,11 @@ impl Workbench {
         })
     }
 
+    /// Whether what hands do here is taken.
+    pub(super) fn is_open(&self) -> bool {
+        self.kept.shut.is_none()
+    }
+
     /// The panel beside the picture; returns what is to be told.
     pub(super) fn panel(&mut self, ui: &mut Ui) -> Vec<Event> {
         let mut events = Vec::new();
@@ -77,10 +82,10 @@ impl Workbench {
         ui.separator();
         self.parts(ui);
         ui.separator();
-        if !self.kept.is_open {
-            ui.label("The project is open elsewhere, or not to be written: it is only looked at.");
+        if let Some(why) = &self.kept.shut {
+            ui.label(format!("It is only looked at: {why}."));
         }
-        let is_open = self.kept.is_open;
+        let is_open = self.is_open();
         ui.add_enabled_ui(is_open, |ui| self.whole(ui, &mut events));
         ui.separator();
         self.bones(ui, &mut events);
@@ -171,7 +176,7 @@ impl Workbench {
         ui.strong(&joint.name);
         let mut shape = self.shaping.filter(|(of, _)| *of == node).map_or(kept, |(_, shape)| shape);
         let before = shape;
-        let is_open = self.kept.is_open;
+        let is_open = self.is_open();
         ui.add_enabled_ui(is_open, |ui| {
             // Sliders round what they show: what nobody moves stays as it is.
             let (mut plane, mut lean) = (shape.plane_rad.to_degrees(), shape.lean_rad.to_degrees());

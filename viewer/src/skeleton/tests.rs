@@ -214,6 +214,10 @@ fn a_clip_of_another_size_or_none_is_told() {
     small.clip.width = 100;
     let told = SkeletonPicture::new(small.clone(), Part::usual()).without_clip.unwrap();
     assert!(told.contains("6 frames of 96x72, and 6 of 100x72 were wanted"), "{told}");
+    let other = Film { sha256: Some("0".repeat(64)), width: WIDTH, ..small.clip.clone() };
+    let told =
+        SkeletonPicture::new(SkeletonScene { clip: other, ..scene() }, Part::usual()).without_clip.unwrap();
+    assert!(told.contains("another lies at"), "{told}");
     small.clip.path = Some(folder.path().join("none.y4m"));
     assert!(SkeletonPicture::new(small, Part::usual()).without_clip.is_some());
     assert_eq!(SkeletonPicture::new(scene(), Part::usual()).without_clip, None, "nobody wants it");

@@ -12,7 +12,7 @@ use honami_workbench::plant::{self};
 use honami_workbench::scene::{ForestScene, Scene};
 use serde_json::json;
 
-use super::{window, words};
+use super::{OF_FILES, none_of, window, words};
 use crate::cli::args::Common;
 use crate::cli::args::view::{Shot, View};
 use crate::cli::{Answer, Outcome, Usage, ends, report, simulate, want};
@@ -28,6 +28,8 @@ const MOST_FRAMES: f64 = 1e6;
 const ELEVATIONS: std::ops::RangeInclusive<f64> = 0.0..=90.0;
 /// Options of skeletons.
 const OF_SKELETONS: [&str; 7] = ["with", "set", "groups", "root", "flat", "as_grown", "parts"];
+/// Options of what the viewer draws, which the terminal does without.
+const OF_CARDS: [&str; 3] = ["size", "samples", "adapter"];
 /// Leaves are between so long, metres.
 const LEAF_LENGTHS: std::ops::RangeInclusive<f64> = 1e-4..=10.0;
 
@@ -48,6 +50,9 @@ pub(super) fn view(args: &View, common: &Common) -> anyhow::Result<Outcome> {
             format!("a forest is seen from 0 to 90 degrees above the horizon, not from {elevation:?}")
         })?;
     }
+    if args.offscreen.is_none() {
+        none_of(args, &OF_FILES, "of files (--offscreen)")?;
+    }
     let n_frames = n_frames(&args.shot);
     want(n_frames <= MOST_FRAMES, || {
         format!("{} frames are too many: say fewer --seconds or a lower --fps", Brief(n_frames))
@@ -63,6 +68,8 @@ pub(super) fn view(args: &View, common: &Common) -> anyhow::Result<Outcome> {
     })?;
     if args.offscreen.is_some() {
         viewer::program()?;
+    } else if !in_window {
+        none_of(args, &OF_CARDS, "of pictures that the viewer draws, and the terminal draws by itself")?;
     }
     let (scene, told, notes) = made(args, common)?;
     if let Some(out) = &args.offscreen {
@@ -73,6 +80,13 @@ pub(super) fn view(args: &View, common: &Common) -> anyhow::Result<Outcome> {
         return window::forest(args, scene, common).map(Outcome::Exit);
     }
     ends::leave();
+    let shot = &args.shot;
+    let mut scene = scene;
+    let orbit = &mut scene.orbit;
+    orbit.azimuth = shot.azimuth.map_or(orbit.azimuth, |degrees| degrees.to_radians() as f32);
+    orbit.elevation = shot.elevation.map_or(orbit.elevation, |degrees| degrees.to_radians() as f32);
+    orbit.zoom(shot.distance.unwrap_or(1.0) as f32);
+    orbit.stay_above();
     let end = crate::app::run_forest(scene)?;
     Ok(Outcome::Exit(end.map_or(ExitCode::SUCCESS, |end| ExitCode::from(end.status()))))
 }

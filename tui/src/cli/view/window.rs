@@ -105,8 +105,9 @@ fn open(path: &Path) -> anyhow::Result<(Project, Option<String>)> {
 /// Passes on to the viewer what comes by standard input, for as long as anything does.
 fn relay(tell: Teller) -> std::io::Result<()> {
     let pass = move || {
-        for line in std::io::stdin().lock().lines().map_while(Result::ok) {
-            tell.pass(&format!("{line}\n"));
+        // What is no text is garbled, and told as such: the next line is read.
+        for line in std::io::stdin().lock().split(b'\n').map_while(Result::ok) {
+            tell.pass(&format!("{}\n", String::from_utf8_lossy(&line)));
         }
     };
     std::thread::Builder::new().name("relay".to_owned()).spawn(pass).map(drop)
@@ -148,10 +149,20 @@ impl Shown<'_> {
         if let Event::Root(_) = event {
             self.grower.request.root = None;
         }
+        let shown = self.show().err();
+        // It is kept, whatever there is to be seen of it.
+        Ok(Some(shown.map_or_else(
+            || line.clone(),
+            |why| format!("{line}; what is shown is older: {}", report::chain(&why)),
+        )))
+    }
+
+    /// Shows the skeleton as it is now.
+    fn show(&mut self) -> anyhow::Result<()> {
         let (scene, _) = self.grower.grow(&self.project, self.common)?;
         let path: PathBuf = self.scenes.write(&Scene::Skeleton(Box::new(scene)))?;
         self.tell(&Command::Scene { protocol: PROTOCOL, path });
-        Ok(Some(line))
+        Ok(())
     }
 
     fn tell(&self, command: &Command) {
