@@ -34,7 +34,7 @@ const ELEVATIONS: [f32; 2] = [0.0, 1.5];
 /// Keys make a wind so many times as strong; one that is still becomes one of so much, metres per second.
 const STRONGER: f64 = 1.25;
 const LEAST_SPEED: f64 = 0.5;
-/// No keys make it stronger than hurricanes are.
+/// No keys make it stronger than hurricanes are; one that was typed so stays so.
 const MOST_SPEED: f64 = 60.0;
 /// And turn it by so much, degrees.
 const VEER: f64 = 15.0;
@@ -65,6 +65,8 @@ pub struct Forest {
     begun: Orbit,
     /// The wind, as it is typed.
     pub wind: String,
+    /// How many have been typed: each begins anew.
+    n_typed: u32,
     /// Whether time goes on.
     pub is_playing: bool,
     /// Steps that are to be taken while it does not.
@@ -114,6 +116,7 @@ impl Forest {
             orbit: scene.orbit,
             begun: scene.orbit,
             wind: scene.wind.clone(),
+            n_typed: 0,
             is_playing: true,
             steps: 0,
             typed: None,
@@ -193,14 +196,17 @@ impl Forest {
                 self.is_playing = false;
                 self.steps += 1;
             }
-            Action::MoreGroups => self.turn_wind("speed", |v| (v * STRONGER).clamp(LEAST_SPEED, MOST_SPEED)),
+            Action::MoreGroups => self.turn_wind("speed", stronger),
             Action::FewerGroups => self.turn_wind("speed", |v| v / STRONGER),
-            Action::FineLeft => self.turn_wind("towards", |v| v + VEER),
-            Action::FineRight => self.turn_wind("towards", |v| v - VEER),
+            Action::FineLeft => self.turn_wind("towards", |v| (v + VEER).rem_euclid(360.0)),
+            Action::FineRight => self.turn_wind("towards", |v| (v - VEER).rem_euclid(360.0)),
             Action::Wind => self.typed = Some(std::mem::take(&mut self.refused)),
             Action::Accept => {
                 let typed = self.typed.take().map(|typed| typed.trim().to_owned());
-                self.wind = typed.filter(|typed| !typed.is_empty()).unwrap_or(self.wind.clone());
+                if let Some(typed) = typed.filter(|typed| !typed.is_empty()) {
+                    self.wind = typed;
+                    self.n_typed += 1;
+                }
             }
             Action::Erase => drop(self.typed.as_mut().map(String::pop)),
             Action::Glyphs => self.glyphs = self.glyphs.next(),
@@ -314,6 +320,7 @@ impl Forest {
         (size[0] > 0 && size[1] > 0).then(|| Order {
             orbit: self.orbit,
             wind: self.wind.clone(),
+            n_typed: self.n_typed,
             size,
             // A cell is twice as high as wide.
             n_square: 2 * across * u32::from(area.height),
@@ -327,4 +334,10 @@ impl Forest {
     pub fn shown_glyphs(&self, is_mono: bool) -> Glyphs {
         if is_mono { Glyphs::Halves } else { self.glyphs }
     }
+}
+
+/// A speed made stronger, the way it blows.
+fn stronger(speed: f64) -> f64 {
+    let most = MOST_SPEED.max(speed.abs());
+    (speed.abs() * STRONGER).clamp(LEAST_SPEED, most).copysign(speed)
 }

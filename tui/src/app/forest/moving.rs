@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use honami_workbench::plant::sway::free;
-use honami_workbench::scene::forest::live::Live;
+use honami_workbench::scene::forest::live::{self, Live, LiveError};
 use honami_workbench::scene::{ForestScene, Orbit, raster};
 
 use super::Shot;
@@ -19,6 +19,8 @@ const MOST_S: f64 = 0.25;
 pub(super) struct Order {
     pub(super) orbit: Orbit,
     pub(super) wind: String,
+    /// How many winds have been typed: each begins anew, one that keys turn goes on.
+    pub(super) n_typed: u32,
     /// Pixels, across and down,
     pub(super) size: [u32; 2],
     /// and how many down if they were square.
@@ -73,13 +75,14 @@ impl Worker {
         let since = self.last.as_ref().map_or(0.0, |(last, then)| {
             if last.is_playing { now.saturating_sub(*then).as_secs_f64().min(MOST_S) } else { 0.0 }
         });
+        let begins = self.last.as_ref().is_some_and(|(last, _)| last.n_typed != order.n_typed);
         let played = if order.is_playing { since } else { 0.0 };
         self.clock += played + f64::from(order.n_steps) * self.scene.pace.step;
         self.last = Some((Order { n_steps: 0, ..order.clone() }, now));
         self.is_busy = true;
         let (live, scene, wind) = (Arc::clone(&self.live), Arc::clone(&self.scene), self.wind.clone());
         let until = self.clock;
-        self.drawing.ask(move || draw(&live, &scene, wind, &order, until))
+        self.drawing.ask(move || draw(&live, &scene, (wind, begins), &order, until))
     }
 
     /// What has been drawn, or why nothing was.
@@ -96,11 +99,12 @@ impl Worker {
     }
 }
 
-/// Goes on until a time, seconds, and draws; what it says is wrong with a wind leaves the one that blows.
+/// Goes on until a time, seconds, and draws; what it says is wrong with a wind leaves the one that blows. What is ordered begins
+/// anew, or is the same wind with other values.
 fn draw(
     live: &Mutex<Option<Live>>,
     scene: &Arc<ForestScene>,
-    mut wind: String,
+    (mut wind, begins): (String, bool),
     order: &Order,
     until: f64,
 ) -> (Result<Shot, String>, String) {
@@ -113,10 +117,12 @@ fn draw(
                 none.insert(Live::new(Arc::clone(scene), n_threads, free())?)
             }
         };
-        if order.wind != wind {
+        if begins {
             live.blow(&order.wind)?;
-            wind.clone_from(&order.wind);
+        } else if order.wind != wind {
+            live.turn(live::wind(scene, &order.wind, free())?);
         }
+        wind.clone_from(&order.wind);
         (0..steps_until(until, live.time(), scene.pace.step)).try_for_each(|_| live.step())?;
         let (time, blowing) = (live.time(), live.blowing(0));
         let camera = order.orbit.camera();
@@ -126,7 +132,7 @@ fn draw(
         let pixels = squeezed(raster::forest(scene, &grove, &seen, &camera, square), square, order.size[1]);
         Ok(Shot { size: order.size, pixels, time, wind: blowing.into() })
     })();
-    (drawn.map_err(|error: honami_workbench::scene::forest::live::LiveError| error.to_string()), wind)
+    (drawn.map_err(|error: LiveError| error.to_string()), wind)
 }
 
 /// Whole steps from a time to another: what is left of one is there the next time.
@@ -158,9 +164,32 @@ fn squeezed(pixels: Vec<[u8; 3]>, [width, height]: [u32; 2], n_rows: u32) -> Vec
 
 #[cfg(test)]
 mod tests {
-    //! Rows that become fewer, and steps.
+    //! Winds that go on or begin, rows that become fewer, and steps.
 
-    use super::{squeezed, steps_until};
+    use super::{Arc, Mutex, Order, draw, squeezed, steps_until};
+    use crate::app::forest::tests::copies;
+
+    /// A squall that has come is twice as strong where its speed is; one that is typed is still on its way.
+    #[test]
+    fn a_wind_that_keys_turn_goes_on_and_one_that_is_typed_begins() {
+        let scene = Arc::new(copies(1, "squall"));
+        let blowing = |then: &str, begins: bool| {
+            let live = Mutex::new(None);
+            let speed_at = |wind: &str, begins: bool, until: f64| {
+                let (orbit, wind) = (scene.orbit, wind.to_owned());
+                let (size, n_square) = ([4, 4], 4);
+                let order = Order { orbit, wind, n_typed: 0, size, n_square, is_playing: true, n_steps: 0 };
+                let (shot, _) = draw(&live, &scene, ("squall".to_owned(), begins), &order, until);
+                shot.unwrap().wind[0]
+            };
+            assert!(speed_at("squall", false, 0.0) < 1.0, "it is on its way");
+            [speed_at("squall", false, 6.0), speed_at(then, begins, 6.0)]
+        };
+        let [before, then] = blowing("squall:speed=30", false);
+        assert!(before > 14.0 && (then - 2.0 * before).abs() < 1e-9, "{before} {then}");
+        let [before, then] = blowing("squall", true);
+        assert!(before > 14.0 && then < 1.0, "{before} {then}");
+    }
 
     /// A hundred pictures, 50 ms apart, take five seconds, however long a step is.
     #[test]

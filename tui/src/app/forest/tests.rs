@@ -9,12 +9,18 @@ use crate::term::key::Key;
 use honami_workbench::plant::scene::{Shown, scene};
 use honami_workbench::plant::sway::Motion;
 use honami_workbench::plant::{Wish as Plant, vibrate};
+use honami_workbench::scene::ForestScene;
+
+/// So many copies of a small tree.
+pub(super) fn copies(n_copies: usize, wind: &str) -> ForestScene {
+    let plant = vibrate(&Plant::of("synth::tree:40,1", Some(4)), &()).unwrap();
+    let shown = Shown { name: "tree".to_owned(), wind: wind.to_owned(), leaves: None, leaf_length: None };
+    let motion = Motion { n_copies, ..Motion::default() };
+    scene(&plant, &motion, &shown).unwrap()
+}
 
 fn forest() -> Forest {
-    let plant = vibrate(&Plant::of("synth::tree:40,1", Some(4)), &()).unwrap();
-    let shown = Shown { name: "tree".to_owned(), wind: "wind".to_owned(), leaves: None, leaf_length: None };
-    let motion = Motion { n_copies: 9, ..Motion::default() };
-    Forest::new(&scene(&plant, &motion, &shown).unwrap(), &Config::default())
+    Forest::new(&copies(9, "wind"), &Config::default())
 }
 
 fn press(forest: &mut Forest, typed: &str) -> Option<Wish> {
@@ -37,7 +43,7 @@ fn keys_turn_the_eye_and_the_wind() {
         ("+", |f| f.wind == "wind:speed=10"),
         ("- -", |f| f.wind == "wind:speed=5.12"),
         ("H", |f| f.wind == "wind:towards=15"),
-        ("L L", |f| f.wind == "wind:towards=-30"),
+        ("L L", |f| f.wind == "wind:towards=330"),
         ("i s t o r m x Backspace Enter", |f| f.wind == "storm" && f.typed.is_none()),
         ("i x y Esc", |f| f.wind == "wind" && f.context() == Context::Forest),
         ("i Enter", |f| f.wind == "wind"),
@@ -51,6 +57,22 @@ fn keys_turn_the_eye_and_the_wind() {
     }
     for (typed, wish) in [("q", Wish::Leave), ("Q", Wish::Leave), ("Ctrl-l", Wish::Redraw)] {
         assert_eq!(press(&mut forest(), typed), Some(wish), "{typed}");
+    }
+    // What blows, what is pressed, and what blows then: never weaker by +, the other way by neither, nor further round than
+    // once.
+    let winds = [
+        ("wind:speed=80", "+", "wind:speed=80"),
+        ("wind:speed=50", "+ +", "wind:speed=60"),
+        ("steady:speed=-4", "+", "steady:speed=-5"),
+        ("steady:speed=-4", "-", "steady:speed=-3.2"),
+        ("steady:speed=0", "+", "steady:speed=0.5"),
+        ("wind:towards=350", "H", "wind:towards=5"),
+        ("wind:towards=-30", "H", "wind:towards=345"),
+    ];
+    for (wind, typed, then) in winds {
+        let mut forest = Forest::new(&copies(1, wind), &Config::default());
+        press(&mut forest, typed);
+        assert_eq!(forest.wind, then, "{wind} {typed}");
     }
     // What has no speed says so.
     let mut still = forest();
