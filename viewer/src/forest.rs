@@ -11,6 +11,7 @@ mod card;
 mod chains;
 mod host;
 mod paint;
+mod shade;
 mod skin;
 mod stage;
 #[cfg(test)]

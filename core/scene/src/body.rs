@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::tubes::{self, Tubes};
 use light::Light;
+pub(crate) use light::SHADE;
 
 /// From how many heights of the plant on: the shares of its nodes and of its modes that are moved, vertices of a ring, and the
 /// share of its leaves, which are larger by as much.

@@ -14,6 +14,7 @@ pub mod paint;
 pub mod palette;
 pub mod raster;
 pub mod skeleton;
+pub mod sky;
 #[cfg(test)]
 mod testing;
 pub mod tubes;

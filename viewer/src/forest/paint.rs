@@ -1,9 +1,11 @@
 //! How a forest looks: sky and ground, shadows on it, wood, leaves.
 
 use bytemuck::{Pod, Zeroable};
+use honami_scene::sky::{SUN, Shadow};
 use honami_scene::{Camera, ForestScene};
 use wgpu::{BindingType, BufferBindingType, ShaderStages};
 
+use super::shade;
 use super::skin::{self, Drawn};
 use super::stage::{CALL_BYTES, LEVEL_BYTES, Stage};
 use crate::gpu::Gpu;
@@ -23,11 +25,19 @@ struct Look {
     /// Of the plant, metres.
     height: f32,
     up: [f32; 3],
-    /// Radius of the crown, metres.
-    crown: f32,
+    /// Half of the length of a crown's shadow along the sun's way, metres.
+    along: f32,
     forward: [f32; 3],
     /// Metres that a pixel is wide a metre away.
     pixel: f32,
+    sun: [f32; 3],
+    /// Half of the width of a crown's shadow, metres.
+    wide: f32,
+    /// Of a crown's shadow, metres from the root.
+    middle: [f32; 2],
+    /// How much of the sun leaves take.
+    dense: f32,
+    filler: f32,
 }
 
 /// Pipelines for a number of samples.
@@ -38,6 +48,7 @@ pub(super) struct Paint {
     read: wgpu::BindGroup,
     sky: wgpu::RenderPipeline,
     shadows: wgpu::RenderPipeline,
+    strokes: wgpu::RenderPipeline,
     wood: wgpu::RenderPipeline,
     leaves: wgpu::RenderPipeline,
     /// Of vertices that are worked out already: wood, leaves.
@@ -74,6 +85,7 @@ const BACKDROP: Way = Way {
     is_cut: false,
 };
 const SHADOWS: Way = Way { vertex: "shadow_at", fragment: "shadow", blend: Some(DARKEST), ..BACKDROP };
+const STROKES: Way = Way { vertex: "stroke_at", fragment: "stroke", ..SHADOWS };
 const WOOD: Way =
     Way { vertex: "wood_at", fragment: "wood", is_solid: true, cull: Some(wgpu::Face::Back), ..BACKDROP };
 const SKINNED_WOOD: Way = Way { vertex: "wood_skinned", ..WOOD };
@@ -121,9 +133,9 @@ impl Paint {
         });
         let module = shaders::module(device, "forest");
         let of = |way: &Way| pipeline(gpu, &layout, &module, samples, way);
-        let [sky, shadows, wood, leaves] = [&BACKDROP, &SHADOWS, &WOOD, &LEAVES].map(of);
+        let [sky, shadows, strokes, wood, leaves] = [&BACKDROP, &SHADOWS, &STROKES, &WOOD, &LEAVES].map(of);
         let skinned = [&SKINNED_WOOD, &SKINNED_LEAVES].map(of);
-        Self { samples, look, looked, read, sky, shadows, wood, leaves, skinned }
+        Self { samples, look, looked, read, sky, shadows, strokes, wood, leaves, skinned }
     }
 
     pub(super) fn samples(&self) -> u32 {
@@ -139,7 +151,8 @@ impl Paint {
         skinned: Option<(&wgpu::Buffer, &[Drawn])>,
         shot: &Shot,
     ) {
-        gpu.queue.write_buffer(&self.look, 0, bytemuck::bytes_of(&look(target, scene, shot)));
+        let look = look(target, scene, shot);
+        gpu.queue.write_buffer(&self.look, 0, bytemuck::bytes_of(&look));
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let mut pass = target.pass(&mut encoder);
         pass.set_bind_group(0, &self.looked, &[]);
@@ -152,8 +165,15 @@ impl Paint {
         // What nothing hides.
         pass.set_pipeline(&self.sky);
         pass.draw(0..3, 0..1);
-        pass.set_pipeline(&self.shadows);
-        pass.draw(0..4, 0..stage.n_copies as u32);
+        if look.dense > 0.0 {
+            pass.set_pipeline(&self.shadows);
+            pass.draw(0..4, 0..stage.n_copies as u32);
+        }
+        if stage.n_pieces > 0 {
+            pass.set_pipeline(&self.strokes);
+            pass.set_vertex_buffer(0, stage.pieces.slice(..));
+            pass.draw(0..6 * stage.n_copies as u32, 0..stage.n_pieces);
+        }
         drop(pass);
         gpu.queue.submit([encoder.finish()]);
     }
@@ -191,7 +211,7 @@ impl Paint {
 fn look(target: &Target, scene: &ForestScene, shot: &Shot) -> Look {
     let [right, up, forward] = shot.camera.axes();
     let half = (shot.camera.angle / 2.0).tan();
-    let crown = scene.stirring.rest().iter().map(|at| at.x.hypot(at.y)).fold(0.0, f64::max);
+    let shadow = Shadow::of(scene);
     Look {
         matrix: lens::matrix(&shot.camera, target.aspect()),
         eye: shot.camera.eye,
@@ -199,9 +219,14 @@ fn look(target: &Target, scene: &ForestScene, shot: &Shot) -> Look {
         right: right.map(|v| v * half * target.aspect()),
         height: scene.stirring.height() as f32,
         up: up.map(|v| v * half),
-        crown: crown as f32,
+        along: shadow.along,
         forward,
         pixel: pixel(&shot.camera, target.size().height),
+        sun: SUN,
+        wide: shadow.wide,
+        middle: shadow.middle,
+        dense: shadow.dense,
+        filler: 0.0,
     }
 }
 
@@ -232,7 +257,11 @@ fn pipeline(
     way: &Way,
 ) -> wgpu::RenderPipeline {
     let is_strip = way.vertex == SHADOWS.vertex;
-    let is_skinned = [SKINNED_WOOD.vertex, SKINNED_LEAVES.vertex].contains(&way.vertex);
+    let read: &[Option<wgpu::VertexBufferLayout<'_>>] = match way.vertex {
+        vertex if [SKINNED_WOOD.vertex, SKINNED_LEAVES.vertex].contains(&vertex) => &[Some(skin::LAYOUT)],
+        vertex if vertex == STROKES.vertex => &[Some(shade::LAYOUT)],
+        _ => &[],
+    };
     let topology = match is_strip {
         true => wgpu::PrimitiveTopology::TriangleStrip,
         false => wgpu::PrimitiveTopology::TriangleList,
@@ -244,7 +273,7 @@ fn pipeline(
             module,
             entry_point: Some(way.vertex),
             compilation_options: Default::default(),
-            buffers: if is_skinned { &[Some(skin::LAYOUT)] } else { &[] },
+            buffers: read,
         },
         primitive: wgpu::PrimitiveState { topology, cull_mode: way.cull, ..Default::default() },
         depth_stencil: Some(nearest(way.is_solid)),

@@ -8,6 +8,7 @@ use wgpu::util::{BufferInitDescriptor, DeviceExt as _};
 
 use super::By;
 use super::body::{Part, Parts};
+use super::shade;
 use crate::gpu::{Gpu, GpuError};
 
 /// From the numbers of one level to the next, bytes: what every adapter can begin a binding at.
@@ -80,6 +81,9 @@ pub(super) struct Stage {
     rings: wgpu::Buffer,
     leaves: wgpu::Buffer,
     pub(super) indices: wgpu::Buffer,
+    /// What casts the shadows of wood, and how many pieces that are.
+    pub(super) pieces: wgpu::Buffer,
+    pub(super) n_pieces: u32,
     /// Of every level, so many [`LEVEL_BYTES`] apart.
     pub(super) levels: wgpu::Buffer,
     /// Of every level two calls: its wood, its leaves.
@@ -129,6 +133,7 @@ impl Stage {
         // A plant without leaves has a buffer of them nevertheless.
         let mut leaves = bytemuck::cast_slice(&parts.leaves).to_vec();
         leaves.resize(leaves.len().max(64), 0);
+        let shading = shade::pieces(scene);
         let stage = Self {
             n_copies,
             n_rows,
@@ -142,6 +147,8 @@ impl Stage {
             rings: made("rings", rings, Uses::STORAGE),
             leaves: made("leaves", &leaves, Uses::STORAGE),
             indices: made("indices", bytemuck::cast_slice(&parts.indices), Uses::INDEX),
+            pieces: made("pieces", bytemuck::cast_slice(&shading), Uses::VERTEX),
+            n_pieces: shading.len() as u32,
             levels: made("levels", &levels(scene, &parts), Uses::UNIFORM | Uses::STORAGE),
             calls: made("calls", &calls(&parts), both | Uses::INDIRECT),
             parts: parts.levels,

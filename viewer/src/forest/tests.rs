@@ -8,6 +8,7 @@ use crate::target::{Size, Target};
 use crate::testing;
 use honami_mechanics::{Details, Following, Forest, Pose, Threads};
 use honami_scene::forest::live::{self, Begun};
+use honami_scene::sky::SUN;
 use honami_scene::{ForestScene, Orbit};
 
 const SIZE: Size = Size { width: 320, height: 180, samples: 4 };
@@ -245,5 +246,66 @@ fn what_an_adapter_has_no_room_for_is_said() {
     for by in [By::Processor, By::Card] {
         let error = drawn(1024, by, 0.7).unwrap_err().to_string();
         assert!(error.contains("600 copies") && error.contains("fewer copies"), "{error}");
+    }
+}
+
+/// Seen from above, beside the same ground without any shadow: that of a crown where the sun casts it, and none of a bare
+/// plant; of either that of its trunk.
+#[test]
+fn crowns_cast_shadows_where_they_are_and_trunks_do() {
+    let Some(gpu) = testing::gpu() else { return };
+    let mut leafy = ForestScene { wind: "still".to_owned(), run_in: 0.0, ..testing::forest(600, 6, 1) };
+    leafy.body.levels.iter_mut().flat_map(|level| &mut level.leaves).for_each(|leaf| leaf.length *= 3.0);
+    let mut bare = leafy.clone();
+    bare.body.levels.iter_mut().for_each(|level| level.leaves.clear());
+    let mut none = bare.clone();
+    none.body.levels.iter_mut().flat_map(|level| &mut level.rings).for_each(|ring| ring.radius = 0.0);
+    let height = leafy.stirring.height() as f32;
+    // Where the shadow of a place ends that is a height above the root, and what is across that.
+    let fall: [f32; 2] = [0, 1].map(|axis| -height * SUN[axis] / SUN[2]);
+    let across = [-fall[1], fall[0]].map(|v| v * height / fall[0].hypot(fall[1]));
+    let target = [fall[0] / 2.0, fall[1] / 2.0, 0.0];
+    let orbit = Orbit { target, distance: 2.6 * height, azimuth: 2.4, elevation: 1.2, angle: 0.6 };
+    let (camera, size) = (orbit.camera(), Size { width: 640, height: 480, samples: 4 });
+    // So far along the shadow of the height and so far beside it, both in heights: the mean of a few pixels.
+    let light = |pixels: &[[u8; 3]], along: f32, beside: f32| {
+        let [x, y] = [0, 1].map(|axis| fall[axis] * along + across[axis] * beside);
+        let ([right, up], _) = camera.seen([x, y, 0.0]);
+        let (x, y) = ((320.0 + 240.0 * right) as usize, (240.0 - 240.0 * up) as usize);
+        let near = (y - 1..y + 2).flat_map(|y| (x - 1..x + 2).map(move |x| y * 640 + x));
+        near.map(|k| f32::from(pixels[k][1])).sum::<f32>() / 9.0
+    };
+    for by in [By::Processor, By::Card] {
+        let drawn = |scene: &ForestScene| {
+            let mut picture = ForestPicture::new(&gpu, scene.clone(), by).unwrap();
+            let target = Target::new(&gpu, size).unwrap();
+            picture.draw(&gpu, &target, &Shot { time: 0.0, camera }).unwrap();
+            target.read(&gpu).unwrap()
+        };
+        let [leafy, bare, none] = [&leafy, &bare, &none].map(drawn);
+        let left =
+            |pixels: &[[u8; 3]], along, beside| light(pixels, along, beside) / light(&none, along, beside);
+        // Many places, that no branch decides; on the side where the crown itself is not before it.
+        let crown = |pixels: &[[u8; 3]]| {
+            let at = |k: usize| left(pixels, 0.62 + 0.02 * (k % 10) as f32, 0.02 * (k / 10) as f32 - 0.1);
+            (0..100).map(at).sum::<f32>() / 100.0
+        };
+        let [of_leaves, of_wood] = [&leafy, &bare].map(|pixels| crown(pixels));
+        assert!(of_leaves < 0.75, "{by:?}: under leaves {of_leaves} is left");
+        assert!((0.85..0.999).contains(&of_wood), "{by:?}: under branches {of_wood} is left");
+        // Trunks are not quite straight: the darkest place across, all along.
+        let trunk = |pixels: &[[u8; 3]]| {
+            let across = |along: f32| {
+                (-6..7).map(|k| left(pixels, along, 0.005 * k as f32)).fold(f32::INFINITY, f32::min)
+            };
+            [0.06, 0.09, 0.12, 0.15].map(across).iter().fold(0.0_f32, |most, left| most.max(*left))
+        };
+        let [under_leaves, thin] = [&leafy, &bare].map(|pixels| trunk(pixels));
+        assert!(
+            thin < 0.85 && under_leaves < 0.85,
+            "{by:?}: trunks leave {thin}, with leaves {under_leaves}"
+        );
+        let open = left(&bare, 0.12, -0.1);
+        assert!(open > 0.97, "{by:?}: beside a trunk {open} is left");
     }
 }

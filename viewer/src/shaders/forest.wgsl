@@ -9,9 +9,17 @@ struct Look {
     right: vec3f,
     height: f32,
     up: vec3f,
-    crown: f32,
+    // Half of the length of a crown's shadow along the sun's way, and of its width.
+    along: f32,
     forward: vec3f,
     pixel: f32,
+    // Where the sun stands, of length 1.
+    sun: vec3f,
+    wide: f32,
+    // Where the middle of a crown's shadow is from the root, and how much of the sun leaves take.
+    middle: vec2f,
+    dense: f32,
+    filler: f32,
 }
 
 // A ring of vertices about a node; see the body of a scene.
@@ -95,7 +103,7 @@ fn over_all(@builtin(vertex_index) k: u32) -> Seen {
 
 fn sky(way: vec3f) -> vec3f {
     let up = clamp(way.z, 0.0, 1.0);
-    let sun = max(dot(way, SUN), 0.0);
+    let sun = max(dot(way, look.sun), 0.0);
     let blue = mix(HAZE, vec3f(0.13, 0.30, 0.62), 1.0 - exp(-4.5 * up));
     return blue + vec3f(0.22, 0.16, 0.09) * pow(sun, 6.0) + vec3f(0.9, 0.75, 0.5) * pow(sun, 80.0);
 }
@@ -114,12 +122,18 @@ fn grass(at: vec2f, width: f32) -> vec3f {
     return vec3f(0.088, 0.112, 0.042) * (1.0 + 0.9 * light) + vec3f(0.026, 0.014, 0.0) * light;
 }
 
+// Of a pixel on the ground: it is longer than wide by as much as it is seen flat.
+fn width_on_ground(at: vec2f) -> f32 {
+    let way = vec3f(at, 0.0) - look.eye;
+    let distance = length(way);
+    return look.pixel * distance / sqrt(max(-way.z / distance, 1e-4));
+}
+
 // The ground where so much of the sun is seen, from so far.
 fn ground(at: vec2f, distance: f32, sunlit: f32) -> vec4f {
     let way = normalize(vec3f(at, 0.0) - look.eye);
-    // A pixel on the ground is longer than wide by as much as it is seen flat.
-    let width = look.pixel * distance / sqrt(max(-way.z, 1e-4));
-    let light = SUNLIGHT * SUN.z * sunlit + ambient(vec3f(0.0, 0.0, 1.0)) * (0.6 + 0.4 * sunlit);
+    let width = width_on_ground(at);
+    let light = SUNLIGHT * look.sun.z * sunlit + ambient(vec3f(0.0, 0.0, 1.0)) * (0.6 + 0.4 * sunlit);
     let clear = exp(-distance / (HAZY * look.height));
     return vec4f(shown(mix(sky(vec3f(way.xy, 0.0)), grass(at, width) * light, clear)), 1.0);
 }
@@ -134,8 +148,9 @@ fn sky_and_ground(seen: Seen) -> @location(0) vec4f {
     return ground(look.eye.xy + way.xy * distance, distance, 1.0);
 }
 
-// ---- Shadows on the ground: that of a crown in the sun, soft, and the darker foot. Where several fall the darkest is seen.
+// ---- Shadows on the ground. Where several fall the darkest is seen.
 
+// That of a crown in the sun, soft, and the darker foot.
 struct Shade {
     @builtin(position) position: vec4f,
     // In radii of the crown, along the sun's way over the ground and across; and metres from the root.
@@ -149,13 +164,11 @@ struct Shade {
 fn shadow_at(@builtin(vertex_index) corner: u32, @builtin(instance_index) k: u32) -> Shade {
     let copy = copies[k];
     let size = copy.scale;
-    let away = normalize(-SUN.xy);
+    let away = normalize(-look.sun.xy);
     let across = vec2f(-away.y, away.x);
-    // The middle of the crown, as high as it is above the ground, and how long that is on it.
-    let slope = length(SUN.xy) / SUN.z;
-    let middle = 0.62 * look.height * size * slope;
-    let along = look.crown * size * 0.55 + 0.38 * look.height * size * slope;
-    let wide = look.crown * size * 0.95;
+    let middle = length(look.middle) * size;
+    let along = look.along * size;
+    let wide = look.wide * size;
     let side = vec2f(f32(corner & 1u) * 2.0 - 1.0, f32(corner >> 1u) * 2.0 - 1.0);
     // From behind the foot to beyond the crown's end.
     let begin = -wide * 0.5;
@@ -176,10 +189,63 @@ fn shadow_at(@builtin(vertex_index) corner: u32, @builtin(instance_index) k: u32
 fn shadow(shade: Shade) -> @location(0) vec4f {
     let edge = length(shade.at) + 0.35 * (noise(shade.at * 3.1 + shade.chance * 57.0) - 0.5)
         + 0.18 * (noise(shade.at * 9.7 + shade.chance * 31.0) - 0.5);
-    let crown = 0.78 * (1.0 - smoothstep(0.50, 1.15, edge));
-    let foot = 0.6 * exp(-dot(shade.foot, shade.foot) * 260.0);
+    let crown = 0.78 * look.dense * (1.0 - smoothstep(0.50, 1.15, edge));
+    let foot = 0.6 * look.dense * exp(-dot(shade.foot, shade.foot) * 260.0);
     let sunlit = (1.0 - crown) * (1.0 - foot);
     return ground(shade.place, distance(look.eye, vec3f(shade.place, 0.0)), sunlit);
+}
+
+// A piece of wood at rest: its ends, and how thick it is there.
+struct Piece {
+    @location(0) from_: vec4f,
+    @location(1) to: vec4f,
+}
+
+// Its shadow, a stroke that is the more blurred the farther it has come.
+struct Stroke {
+    @builtin(position) position: vec4f,
+    @location(0) place: vec2f,
+    // From edge to edge -1 to 1, and how much of it is wood.
+    @location(1) across: f32,
+    @location(2) full: f32,
+}
+
+// Half of how blurred a shadow is, of how far it has come: the sun is half a degree wide.
+const BLUR = 0.0047;
+
+// The two triangles of a stroke: to its left or right, at its beginning or its end.
+const CORNERS = array<vec2f, 6>(
+    vec2f(-1.0, -1.0), vec2f(1.0, -1.0), vec2f(-1.0, 1.0), vec2f(-1.0, 1.0), vec2f(1.0, -1.0), vec2f(1.0, 1.0));
+
+@vertex
+fn stroke_at(@builtin(vertex_index) k: u32, piece: Piece) -> Stroke {
+    let copy = copies[k / 6u];
+    let fall = look.sun.xy / look.sun.z;
+    let corner = CORNERS[k % 6u];
+    let end = select(piece.from_, piece.to, corner.y > 0.0) * copy.scale;
+    let along = in_world(copy, piece.to.xyz - piece.from_.xyz);
+    let gap = along.xy - fall * along.z;
+    let way = gap / max(length(gap), 1e-6);
+    let middle = copy.place + in_world(copy, end.xyz).xy - fall * end.z;
+    let radius = end.w;
+    let blur = BLUR * max(end.z, 0.0) / look.sun.z;
+    // Never so thin that the middles of pixels miss it, but as faint as it is thin.
+    let half = max(radius + blur, 1.2 * width_on_ground(middle));
+    // Over the bend between one piece and the next.
+    let beyond = 0.4 * half * corner.y;
+    var stroke: Stroke;
+    stroke.place = middle + way * beyond + vec2f(-way.y, way.x) * half * corner.x;
+    stroke.position = look.matrix * vec4f(stroke.place, 0.0, 1.0);
+    stroke.across = corner.x;
+    stroke.full = 2.0 * radius / half;
+    return stroke;
+}
+
+@fragment
+fn stroke(stroke: Stroke) -> @location(0) vec4f {
+    let dark = 1.0 - smoothstep(clamp(stroke.full - 1.0, 0.0, 0.95), 1.0, abs(stroke.across));
+    let sunlit = 1.0 - 0.75 * min(stroke.full, 1.0) * dark;
+    return ground(stroke.place, distance(look.eye, vec3f(stroke.place, 0.0)), sunlit);
 }
 
 // ---- What moves: wood and leaves.
@@ -256,7 +322,7 @@ fn wood(wood: Wood) -> @location(0) vec4f {
     let ridges = noise(vec2f(wood.bark.x * 5.0, wood.bark.y * 40.0 / look.height)) - 0.5;
     let patches = noise(vec2f(wood.bark.x * 0.7, wood.bark.y * 9.0 / look.height) + wood.chance * 9.0) - 0.5;
     let bark = vec3f(0.165, 0.128, 0.098) * (1.0 + 0.5 * ridges * near + 0.35 * patches);
-    let sun = max(dot(normal, SUN), 0.0) * smoothstep(0.15, 0.75, wood.open);
+    let sun = max(dot(normal, look.sun), 0.0) * smoothstep(0.15, 0.75, wood.open);
     let light = SUNLIGHT * sun + ambient(normal) * (0.25 + 0.75 * wood.open);
     return vec4f(shown(hazed(bark * light, distance)), 1.0);
 }
@@ -298,11 +364,11 @@ fn blade_at(place: vec3f, at: vec2f, normal: vec3f, across: vec3f, open: f32, hu
         var looks = normalize(normal - fold * across);
         // The side that is seen is the one that counts.
         looks *= select(-1.0, 1.0, dot(looks, towards) >= 0.0);
-        let towards_sun = dot(looks, SUN);
+        let towards_sun = dot(looks, look.sun);
         let facing = max(towards_sun, 0.0);
         let through = 0.55 * max(-towards_sun, 0.0);
         let glow = vec3f(1.55, 1.75, 0.55) * green;
-        let bright = 0.035 * pow(max(dot(reflect(-SUN, looks), towards / distance), 0.0), 18.0);
+        let bright = 0.035 * pow(max(dot(reflect(-look.sun, looks), towards / distance), 0.0), 18.0);
         var light = SUNLIGHT * sunlit * (green * facing + glow * through + vec3f(bright));
         light += green * ambient(looks) * (0.18 + 0.95 * open);
         let colour = shown(hazed(light, distance));

@@ -1,7 +1,5 @@
 // What light does: a low sun, the sky, haze; from what shines to what a screen shows.
 
-// Where the sun stands, of length 1.
-const SUN = vec3f(-0.54, -0.62, 0.57);
 const SUNLIGHT = vec3f(2.35, 2.12, 1.78);
 const SKYLIGHT = vec3f(0.62, 0.74, 0.92);
 // What comes back from the ground.

@@ -7,7 +7,7 @@ use super::foliage::Hung;
 /// Cells along the longest side of the box round all leaves.
 const CELLS: f64 = 24.0;
 /// Of a leaf's length squared, the mean area that it takes out of a ray.
-const SHADE: f64 = 0.12;
+pub(crate) const SHADE: f64 = 0.12;
 
 /// Leaves in cells, and what is seen through them.
 pub(super) struct Light {
