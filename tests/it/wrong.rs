@@ -92,7 +92,7 @@ const CASES: &[Case] = &[
     ("export p.honami tracks nowhere/out.csv", FAILED, &["nowhere/out.csv", "there is no folder nowhere"]),
     ("export bare.honami tracks out.csv", FAILED, &["no tracks yet", "track features first"]),
     ("export p.honami movie -", USAGE, &["standard output", "name one"]),
-    ("export p.honami movie out.avi", FAILED, &[".mp4, .y4m or a folder", "out.avi"]),
+    ("export p.honami movie out.avi", USAGE, &[".mp4, .y4m or a folder", "out.avi"]),
     ("export p.honami movie clip.y4m", FAILED, &["clip.y4m is there already", "another name"]),
     ("export p.honami movie nowhere/out.y4m", FAILED, &["nowhere/out.y4m", "No such file"]),
     ("export p.honami movie out.y4m --show leaves", USAGE, &["motion, trails, groups, skeleton", "leaves"]),
