@@ -54,6 +54,7 @@ pub mod state;
 mod stills;
 mod tally;
 pub mod tracks;
+pub mod typing;
 pub mod update;
 pub mod versus;
 pub mod view;

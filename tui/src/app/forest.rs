@@ -13,7 +13,9 @@ use honami_workbench::scene::{ForestScene, Orbit};
 
 use super::action::{Action, Context};
 use super::config::Config;
-use super::keymap::{Found, KeyMap};
+use super::keymap::{KeyMap, Read};
+use super::menu::{Choice, Menu};
+use super::typing::{self, TYPED_MAX};
 use super::view::{self, theme::Theme};
 use crate::term::glyph::Glyphs;
 use crate::term::input::{Event, Mouse, MouseKind};
@@ -71,6 +73,8 @@ pub struct Forest {
     pub is_playing: bool,
     /// Steps that are to be taken while it does not.
     steps: u32,
+    /// A list over the picture: the palette, or the help.
+    pub menu: Option<Menu>,
     /// What is being typed as another wind.
     pub typed: Option<String>,
     /// What was typed last and is none.
@@ -119,6 +123,7 @@ impl Forest {
             n_typed: 0,
             is_playing: true,
             steps: 0,
+            menu: None,
             typed: None,
             refused: String::new(),
             complaint: config.complaint(),
@@ -135,40 +140,54 @@ impl Forest {
     /// Where keys are read.
     #[must_use]
     pub fn context(&self) -> Context {
-        if self.typed.is_some() { Context::Prompt } else { Context::Forest }
+        match (&self.menu, &self.typed) {
+            (Some(_), _) => Context::Menu,
+            (None, Some(_)) => Context::Prompt,
+            (None, None) => Context::Forest,
+        }
     }
 
     /// A key was pressed.
     pub fn on_key(&mut self, key: Key) -> Option<Wish> {
-        self.pending.push(key);
-        match self.keys.find(self.context(), &self.pending) {
-            Found::Prefix => None,
-            Found::Action(action) => {
-                self.pending.clear();
+        match self.keys.read(self.context(), &mut self.pending, key) {
+            Read::Action(action) => {
                 self.complaint = None;
-                self.act(action)
+                return self.act(action);
             }
-            Found::Nothing => {
-                let is_whole = std::mem::take(&mut self.pending).len() == 1;
-                if let (Some(typed), Some(c), true) = (&mut self.typed, key.text(), is_whole) {
-                    typed.push(c);
-                }
-                None
-            }
+            Read::Text(c) => self.on_text(c.encode_utf8(&mut [0; 4])),
+            Read::Nothing => {}
+        }
+        None
+    }
+
+    /// Text was typed or pasted.
+    pub fn on_text(&mut self, text: &str) {
+        match (&mut self.menu, &mut self.typed) {
+            (Some(menu), _) => menu.type_in(text.chars()),
+            (None, Some(typed)) => typing::append(typed, text.chars(), TYPED_MAX),
+            (None, None) => {}
         }
     }
 
-    /// Text was pasted.
-    pub fn on_paste(&mut self, text: &str) {
-        if let Some(typed) = &mut self.typed {
-            typed.extend(text.trim().chars().filter(|c| !c.is_control()));
-        }
-    }
-
-    /// The mouse goes round the forest, its wheel nearer and farther away.
-    pub fn on_mouse(&mut self, mouse: Mouse) {
+    /// The mouse goes round the forest, its wheel nearer and farther away; in a list they choose.
+    pub fn on_mouse(&mut self, mouse: Mouse) -> Option<Wish> {
         let at = (mouse.column, mouse.row);
-        match mouse.kind {
+        let pointed = view::forest::row_at(self, mouse.row);
+        match (mouse.kind, &mut self.menu) {
+            (MouseKind::WheelUp, Some(menu)) => menu.step(-1),
+            (MouseKind::WheelDown, Some(menu)) => menu.step(1),
+            (MouseKind::Press(0), Some(menu)) => {
+                menu.at = pointed?;
+                return self.choose();
+            }
+            (_, Some(_)) => self.dragged = None,
+            (_, None) => self.look_about(mouse.kind, at),
+        }
+        None
+    }
+
+    fn look_about(&mut self, kind: MouseKind, at: (u16, u16)) {
+        match kind {
             MouseKind::WheelUp => self.orbit.zoom(NEARER),
             MouseKind::WheelDown => self.orbit.zoom(1.0 / NEARER),
             MouseKind::Press(0) => self.dragged = Some(at),
@@ -183,6 +202,9 @@ impl Forest {
     }
 
     fn act(&mut self, action: Action) -> Option<Wish> {
+        if self.menu.as_mut().is_some_and(|menu| menu.act(action)) {
+            return None;
+        }
         match action {
             Action::Left | Action::OrbitLeft => self.go_round(-TURN, 0.0),
             Action::Right | Action::OrbitRight => self.go_round(TURN, 0.0),
@@ -201,6 +223,10 @@ impl Forest {
             Action::FineLeft => self.turn_wind("towards", |v| (v + VEER).rem_euclid(360.0)),
             Action::FineRight => self.turn_wind("towards", |v| (v - VEER).rem_euclid(360.0)),
             Action::Wind => self.typed = Some(std::mem::take(&mut self.refused)),
+            Action::Palette | Action::Help => {
+                self.menu = Some(Menu::of_actions(action, &self.keys, Context::Forest));
+            }
+            Action::Accept if self.menu.is_some() => return self.choose(),
             Action::Accept => {
                 let typed = self.typed.take().map(|typed| typed.trim().to_owned());
                 if let Some(typed) = typed.filter(|typed| !typed.is_empty()) {
@@ -208,9 +234,11 @@ impl Forest {
                     self.n_typed += 1;
                 }
             }
-            Action::Erase => drop(self.typed.as_mut().map(String::pop)),
+            Action::Erase | Action::EraseLine => {
+                self.typed.iter_mut().for_each(|typed| typing::take_back(typed, action));
+            }
             Action::Glyphs => self.glyphs = self.glyphs.next(),
-            Action::Back if self.typed.take().is_some() => {}
+            Action::Back if self.menu.take().is_some() || self.typed.take().is_some() => {}
             Action::Back => {
                 let quit = self.keys.keys_of(Context::Forest, Action::Quit).unwrap_or_default();
                 self.complaint = Some(format!("{quit} leaves"));
@@ -222,6 +250,14 @@ impl Forest {
             _ => {}
         }
         None
+    }
+
+    /// Closes the list and does what was chosen in it.
+    fn choose(&mut self) -> Option<Wish> {
+        match self.menu.take()?.choice()? {
+            Choice::Action(action) => self.act(action),
+            _ => None,
+        }
     }
 
     fn go_round(&mut self, by: f32, up: f32) {
@@ -305,8 +341,8 @@ impl Forest {
     fn hear(&mut self, event: Event) -> Option<Wish> {
         match event {
             Event::Key(key) => return self.on_key(key),
-            Event::Mouse(mouse) => self.on_mouse(mouse),
-            Event::Paste(text) => self.on_paste(&text),
+            Event::Mouse(mouse) => return self.on_mouse(mouse),
+            Event::Paste(text) => self.on_text(&typing::pasted(&text)),
             Event::Reply(_) => {}
         }
         None

@@ -27,6 +27,17 @@ pub enum Found {
     Nothing,
 }
 
+/// What a key is, with those before it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Read {
+    /// It calls this.
+    Action(Action),
+    /// It is a letter of a text.
+    Text(char),
+    /// Nothing, or nothing yet.
+    Nothing,
+}
+
 /// The live key map.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct KeyMap {
@@ -71,6 +82,22 @@ impl KeyMap {
             }
         }
         found
+    }
+
+    /// Reads a key in a place, after those of a sequence that is not whole yet: a letter alone that calls nothing is text.
+    pub fn read(&self, context: Context, pending: &mut Vec<Key>, key: Key) -> Read {
+        pending.push(key);
+        match self.find(context, pending) {
+            Found::Prefix => Read::Nothing,
+            Found::Action(action) => {
+                pending.clear();
+                Read::Action(action)
+            }
+            Found::Nothing => {
+                let is_alone = std::mem::take(pending).len() == 1;
+                key.text().filter(|_| is_alone).map_or(Read::Nothing, Read::Text)
+            }
+        }
     }
 
     /// The bindings that begin with some keys.

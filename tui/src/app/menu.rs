@@ -7,7 +7,7 @@ use honami_model::document::RunId;
 use honami_model::track::TrackId;
 use honami_workbench::versus::{Entrant, last_builds};
 
-use super::action::{Action, TABLE};
+use super::action::{Action, Context, TABLE};
 use super::files::{Lead, Listing};
 use super::form::Plugin;
 use super::fuzzy;
@@ -15,6 +15,7 @@ use super::groups::Groups;
 use super::keymap::KeyMap;
 use super::state::{Mode, State};
 use super::tracks::TrackRow;
+use super::typing;
 
 /// What a row does when it is chosen.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -79,10 +80,10 @@ impl Menu {
         Self { title, typed: String::new(), at: 0, below, folder: None, rows, matching }
     }
 
-    /// Every action that works where the menu was opened.
+    /// Every action that works in a place, as the palette or the help.
     #[must_use]
-    pub fn of_actions(title: &'static str, keys: &KeyMap, below: Mode) -> Self {
-        let context = below.context();
+    pub fn of_actions(asked: Action, keys: &KeyMap, context: Context) -> Self {
+        let title = if asked == Action::Help { "what works here" } else { "actions" };
         let rows = TABLE.iter().filter(|info| info.action.word_in(context).is_some());
         let rows = rows.map(|info| Row {
             label: info.name.replace('-', " "),
@@ -90,7 +91,13 @@ impl Menu {
             keys: keys.all_keys_of(context, info.action).join("  "),
             choice: Choice::Action(info.action),
         });
-        Self::new(title, rows.collect(), below)
+        Self::new(title, rows.collect(), Mode::Review)
+    }
+
+    /// The same over what is open, which keys will mean again.
+    #[must_use]
+    pub fn over(self, below: Mode) -> Self {
+        Self { below, ..self }
     }
 
     /// Every shown track.
@@ -271,6 +278,22 @@ impl Menu {
         }
         self.matching = scored.into_iter().map(|(_, i)| i).collect();
         self.at = 0;
+    }
+
+    /// Types more into it.
+    pub fn type_in(&mut self, more: impl Iterator<Item = char>) {
+        self.retype(|typed| typing::append(typed, more, typing::TYPED_MAX));
+    }
+
+    /// Does what an action does in any list; whether it does anything there.
+    pub fn act(&mut self, action: Action) -> bool {
+        match action {
+            Action::Up => self.step(-1),
+            Action::Down => self.step(1),
+            Action::Erase | Action::EraseLine => self.retype(|typed| typing::take_back(typed, action)),
+            _ => return false,
+        }
+        true
     }
 
     /// Moves the choice by so many rows, staying in the list.

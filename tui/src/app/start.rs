@@ -9,10 +9,11 @@ use super::action::{Action, Context};
 use super::config::Config;
 use super::door::{Gives, Offers};
 use super::files::{self, Lead};
-use super::keymap::{Found, KeyMap};
+use super::keymap::{KeyMap, Read};
 use super::menu::{Choice, Menu};
 use super::opening::Plan;
 use super::recent::{self, Recent};
+use super::typing;
 use super::view::{self, theme::Theme};
 use crate::term::glyph::Glyphs;
 use crate::term::input::{Event, Mouse, MouseKind};
@@ -114,29 +115,20 @@ impl Start {
 
     /// A key was pressed.
     pub fn on_key(&mut self, key: Key) -> Option<Wish> {
-        self.pending.push(key);
-        match self.keys.find(self.context(), &self.pending) {
-            Found::Prefix => None,
-            Found::Action(action) => {
-                self.pending.clear();
+        match self.keys.read(self.context(), &mut self.pending, key) {
+            Read::Action(action) => {
                 self.complaint = None;
-                self.act(action)
+                return self.act(action);
             }
-            Found::Nothing => {
-                let is_whole = std::mem::take(&mut self.pending).len() == 1;
-                if let (Some(menu), Some(c), true) = (&mut self.menu, key.text(), is_whole) {
-                    menu.retype(|typed| typed.push(c));
-                }
-                None
-            }
+            Read::Text(c) => self.menu.iter_mut().for_each(|menu| menu.type_in([c].into_iter())),
+            Read::Nothing => {}
         }
+        None
     }
 
     /// Text was pasted.
     pub fn on_paste(&mut self, text: &str) {
-        if let Some(menu) = &mut self.menu {
-            menu.retype(|typed| typed.extend(text.trim().chars().filter(|c| !c.is_control())));
-        }
+        self.menu.iter_mut().for_each(|menu| menu.type_in(typing::pasted(text).chars()));
     }
 
     /// The mouse did something.
@@ -158,17 +150,13 @@ impl Start {
     }
 
     fn act(&mut self, action: Action) -> Option<Wish> {
+        if self.menu.as_mut().is_some_and(|menu| menu.act(action)) {
+            return None;
+        }
         match action {
             Action::Up => self.step(-1),
             Action::Down => self.step(1),
             Action::Accept => return self.accept(),
-            Action::Erase => {
-                if let Some(menu) = &mut self.menu {
-                    menu.retype(|typed| {
-                        typed.pop();
-                    });
-                }
-            }
             Action::GoFile => return Some(self.browse(false)),
             Action::Back | Action::Quit if self.menu.is_some() || self.page.is_some() => {
                 (self.menu, self.page) = (None, None);

@@ -47,6 +47,7 @@ use super::keymap::Found;
 use super::lesson;
 use super::menu::{Choice, Menu};
 use super::state::{Mode, Notice, State};
+use super::typing::{self, TYPED_MAX, append};
 use crate::term::input::{Mouse, MouseKind};
 use crate::term::key::Key;
 
@@ -182,8 +183,7 @@ pub fn update(state: &mut State, msg: Msg) -> Vec<Effect> {
             mouse::on_mouse(state, mouse)
         }
         Msg::Paste(text) => {
-            let text: String = text.trim().chars().filter(|c| !c.is_control()).collect();
-            on_text(state, &text);
+            on_text(state, &typing::pasted(&text));
             Vec::new()
         }
         Msg::Resize(columns, rows) => {
@@ -223,8 +223,6 @@ fn pressed(state: &mut State) {
 const COUNT_MAX: u32 = 999_999;
 /// Longest name of a track or a group, characters.
 const NAME_MAX: usize = 60;
-/// Longest text typed into a menu or a form, characters.
-const TYPED_MAX: usize = 256;
 
 fn on_key(state: &mut State, key: Key) -> Vec<Effect> {
     if !state.held.is_empty() {
@@ -259,7 +257,7 @@ fn on_text(state: &mut State, text: &str) {
     logged::text(state, text);
     let mut chars = text.chars();
     match &mut state.mode {
-        Mode::Menu(menu) => menu.retype(|typed| append(typed, chars, TYPED_MAX)),
+        Mode::Menu(menu) => menu.type_in(chars),
         Mode::Prompt(typed) => append(typed, chars.filter(char::is_ascii_digit), 9),
         Mode::Name(typed) | Mode::GroupName(typed) => append(typed, chars, NAME_MAX),
         Mode::Form(form) => {
@@ -288,12 +286,6 @@ fn on_text(state: &mut State, text: &str) {
             }
         }
     }
-}
-
-/// Types more, as far as there is room.
-fn append(typed: &mut String, more: impl Iterator<Item = char>, n_max: usize) {
-    let n = typed.chars().count();
-    typed.extend(more.take(n_max.saturating_sub(n)));
 }
 
 /// Does an action and forgets its count.
@@ -352,10 +344,11 @@ fn choose(state: &mut State) -> Vec<Effect> {
 }
 
 /// Opens a menu over what is open.
-fn open_menu(state: &mut State, title: &'static str) {
+fn open_menu(state: &mut State, asked: Action) {
     let below = std::mem::replace(&mut state.mode, Mode::Review);
     debug_assert!(below.context() != Context::Menu, "a menu lists no menus");
-    state.mode = Mode::Menu(Box::new(Menu::of_actions(title, &state.keys, below)));
+    let menu = Menu::of_actions(asked, &state.keys, below.context());
+    state.mode = Mode::Menu(Box::new(menu.over(below)));
 }
 
 #[cfg(test)]

@@ -45,7 +45,10 @@ pub fn draw(state: &State, shot: Option<&Shot>) -> Frame {
         Mode::Label(typed) => labels::draw(state, typed, &layout, &mut frame),
         Mode::Form(open) => form::draw(open, layout.picture, &mut frame),
         Mode::Menu(open) => menu::draw(open, layout.picture, &mut frame),
-        _ if !state.pending.is_empty() => menu::which_key(state, layout.picture, &mut frame),
+        _ if !state.pending.is_empty() => {
+            let keys = (&state.keys, state.mode.context());
+            menu::which_key(keys, &state.pending, layout.picture, &mut frame);
+        }
         _ => {}
     }
     // Last, over everything: what happened must be seen.

@@ -3,6 +3,7 @@
 use super::{Forest, Shot, Wish};
 use crate::app::action::Context;
 use crate::app::config::Config;
+use crate::app::keymap::KeyMap;
 use crate::app::view;
 use crate::term::input::{Mouse, MouseKind};
 use crate::term::key::Key;
@@ -31,7 +32,7 @@ fn press(forest: &mut Forest, typed: &str) -> Option<Wish> {
 fn keys_turn_the_eye_and_the_wind() {
     let begun = forest().orbit;
     type Then = fn(&Forest) -> bool;
-    let cases: [(&str, Then); 16] = [
+    let cases: [(&str, Then); 22] = [
         ("l", |f| f.orbit.azimuth > 0.1 && f.orbit.azimuth < 0.2),
         ("h", |f| f.orbit.azimuth > 6.0),
         ("k", |f| f.orbit.elevation > f.begun.elevation),
@@ -47,6 +48,12 @@ fn keys_turn_the_eye_and_the_wind() {
         ("i s t o r m x Backspace Enter", |f| f.wind == "storm" && f.typed.is_none()),
         ("i x y Esc", |f| f.wind == "wind" && f.context() == Context::Forest),
         ("i Enter", |f| f.wind == "wind"),
+        ("i x y Ctrl-u s t o r m Enter", |f| f.wind == "storm"),
+        (": w i n d Enter", |f| f.menu.is_none() && f.typed.is_some()),
+        (": x Ctrl-u Esc", |f| f.menu.is_none() && f.complaint.is_none()),
+        ("? Down Down Up", |f| f.menu.as_ref().is_some_and(|menu| menu.at == 1)),
+        ("? p l a y Enter", |f| f.menu.is_none() && !f.is_playing),
+        ("v", |f| text(f).iter().any(|row| row.contains("sextants"))),
         ("Esc", |f| f.complaint.as_deref() == Some("q leaves")),
     ];
     for (typed, then) in cases {
@@ -55,7 +62,13 @@ fn keys_turn_the_eye_and_the_wind() {
         assert_eq!(press(&mut forest, typed), None);
         assert!(then(&forest), "{typed}: {} {:?}", forest.wind, forest.orbit);
     }
-    for (typed, wish) in [("q", Wish::Leave), ("Q", Wish::Leave), ("Ctrl-l", Wish::Redraw)] {
+    for (typed, wish) in [
+        ("q", Wish::Leave),
+        ("Q", Wish::Leave),
+        ("Ctrl-l", Wish::Redraw),
+        (": l e a v e Enter", Wish::Leave),
+        ("? Ctrl-l", Wish::Redraw),
+    ] {
         assert_eq!(press(&mut forest(), typed), Some(wish), "{typed}");
     }
     // What blows, what is pressed, and what blows then: never weaker by +, the other way by neither, nor further round than
@@ -79,6 +92,32 @@ fn keys_turn_the_eye_and_the_wind() {
     still.wind = "still".to_owned();
     press(&mut still, "+");
     assert_eq!(still.complaint.as_deref(), Some("still has no speed to change: choose another"));
+}
+
+#[test]
+fn every_binding_answers() {
+    let mut begun = forest();
+    press(&mut begun, "l");
+    for binding in KeyMap::default().bindings().iter().filter(|binding| binding.context == Context::Forest) {
+        let mut forest = begun.clone();
+        let wish = binding.keys.iter().filter_map(|key| forest.on_key(*key)).last();
+        let is_silent = wish.is_none() && format!("{forest:?}") == format!("{begun:?}");
+        assert!(forest.pending.is_empty() && !is_silent, "{binding:?} is silent");
+    }
+}
+
+#[test]
+fn the_help_is_seen_and_clicked() {
+    let mut forest = forest();
+    press(&mut forest, "?");
+    let rows = text(&forest);
+    assert!(rows.iter().any(|row| row.contains("what works here")), "{rows:?}");
+    forest.on_mouse(Mouse { kind: MouseKind::WheelDown, column: 9, row: 9 });
+    assert_eq!(forest.menu.as_ref().map(|menu| menu.at), Some(1), "the wheel goes on in the list");
+    press(&mut forest, "Ctrl-u z o o m");
+    let row = text(&forest).iter().position(|row| row.trim_start().starts_with("zoom in")).unwrap();
+    let wish = forest.on_mouse(Mouse { kind: MouseKind::Press(0), column: 9, row: row as u16 });
+    assert!(wish.is_none() && forest.menu.is_none() && forest.orbit.distance < forest.begun.distance);
 }
 
 #[test]
@@ -109,7 +148,10 @@ fn its_screen_says_what_there_is_and_what_blows() {
     assert_eq!(rows[0], "tree  9 plants, 4 modes");
     assert!(rows[11].contains("going on for a while"), "{rows:?}");
     assert_eq!(rows[22], "wind");
-    assert!(rows[23].contains("hl round") && rows[23].contains("q leave"), "{}", rows[23]);
+    assert!(rows[23].contains("hl round") && rows[23].ends_with("? help  q leave"), "{}", rows[23]);
+    forest.size.0 = 120;
+    assert!([". step", "V front", "v q finer"].iter().all(|hint| text(&forest)[23].contains(hint)));
+    forest.size.0 = 80;
     let area = view::forest::picture(&forest);
     let size = [u32::from(area.width), 2 * u32::from(area.height)];
     let pixels = vec![[10, 200, 30]; (size[0] * size[1]) as usize];

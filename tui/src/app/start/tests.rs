@@ -61,6 +61,7 @@ fn keys_choose_what_is_opened() {
         ("g c ~ / a Enter", typed("~/a")),
         ("g c x y z Enter", typed("/data/xyz")),
         ("g c x Backspace Enter", follow(Lead::File(PathBuf::from("/data/malva.honami")))),
+        ("g c x y z Ctrl-u Enter", follow(Lead::File(PathBuf::from("/data/malva.honami")))),
         ("j j j j Enter", Some(Wish::Offer(0))),
         ("j j j j j j j Enter", Some(Wish::Offer(1))),
         ("q", Some(Wish::Leave)),

@@ -24,6 +24,7 @@ use crate::app::menu::Choice;
 use crate::app::panel::Panel;
 use crate::app::state::Notice;
 use crate::app::tracks::TrackRow;
+use crate::app::typing;
 
 /// Does an action. The count, if one was typed, is still in the state.
 pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {
@@ -44,7 +45,7 @@ pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {
         Action::Quit if matches!(state.mode, Mode::Review) => return vec![Effect::Leave],
         Action::Quit => return back(state),
         Action::Leave => return leave(state),
-        Action::Erase => return erase(state),
+        Action::Erase | Action::EraseLine => return erase(state, action),
         Action::PlayPause => time::play(state, Pace::Real, 1.0),
         Action::PlayBackwards => time::play(state, Pace::Real, -1.0),
         Action::SlowForward => time::play(state, Pace::Slow, 1.0),
@@ -87,8 +88,7 @@ pub(super) fn act(state: &mut State, action: Action) -> Vec<Effect> {
         Action::RetrackBackward => return edit::retrack(state, retrack::Way::Backward),
         Action::RunTracker => open_form(state, Task::Track),
         Action::RunClusterer => open_form(state, Task::Cluster),
-        Action::Palette => open_menu(state, "actions"),
-        Action::Help => open_menu(state, "what works here"),
+        Action::Palette | Action::Help => open_menu(state, action),
         Action::Redraw => return vec![Effect::Redraw],
         Action::Suspend => return vec![Effect::Suspend],
         Action::Mouse => return turn_mouse(state),
@@ -381,19 +381,11 @@ fn back(state: &mut State) -> Vec<Effect> {
     Vec::new()
 }
 
-fn erase(state: &mut State) -> Vec<Effect> {
+fn erase(state: &mut State, action: Action) -> Vec<Effect> {
     match &mut state.mode {
-        Mode::Menu(menu) => menu.retype(|typed| {
-            typed.pop();
-        }),
-        Mode::Prompt(typed) | Mode::Name(typed) | Mode::GroupName(typed) => {
-            typed.pop();
-        }
-        Mode::Form(form) => {
-            if let Some(typed) = &mut form.typed {
-                typed.pop();
-            }
-        }
+        Mode::Menu(menu) => drop(menu.act(action)),
+        Mode::Prompt(typed) | Mode::Name(typed) | Mode::GroupName(typed) => typing::take_back(typed, action),
+        Mode::Form(form) => form.typed.iter_mut().for_each(|typed| typing::take_back(typed, action)),
         Mode::Sketch(_) => sketch::take_back(state),
         Mode::Review
         | Mode::Place(_)

@@ -3,9 +3,12 @@
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 
-use super::{lines, picture as pictures, put, style};
+use super::{lines, menu, picture as pictures, put, style};
 use crate::app::forest::{Forest, Shot};
 use crate::term::encode::Frame;
+
+/// Hints that give way first.
+const LATER: [&str; 3] = ["step", "front", "finer"];
 
 /// The whole screen.
 #[must_use]
@@ -24,6 +27,11 @@ pub fn draw(forest: &Forest, is_mono: bool) -> Frame {
             area.height / 2,
             &Line::styled("going on for a while …", style::DIM).centered(),
         ),
+    }
+    match &forest.menu {
+        Some(open) => menu::draw(open, area, &mut frame),
+        None if forest.pending.is_empty() => {}
+        None => menu::which_key((&forest.keys, forest.context()), &forest.pending, area, &mut frame),
     }
     let title = vec![
         Span::styled(forest.name.clone(), style::BOLD),
@@ -51,12 +59,20 @@ pub fn draw(forest: &Forest, is_mono: bool) -> Frame {
         put(&mut frame, Rect { y: rows - 2, height: 1, ..all }, 0, &line);
     }
     if rows > 1 {
-        lines::put_right(&mut frame, Rect { y: rows - 1, height: 1, ..all }, &hints(forest), 0);
+        let room = usize::from(columns).saturating_sub(2);
+        let hints = lines::own_hints(&forest.keys, forest.context(), &LATER, room);
+        lines::put_right(&mut frame, Rect { y: rows - 1, height: 1, ..all }, &hints, 0);
     }
     if let Some(theme) = &forest.theme {
         theme.paint(&mut frame);
     }
     frame
+}
+
+/// The row of the open list that lies in a row of the screen.
+#[must_use]
+pub fn row_at(forest: &Forest, row: u16) -> Option<usize> {
+    menu::row_at(forest.menu.as_ref()?, picture(forest), row)
 }
 
 /// Where the picture is.
@@ -78,14 +94,4 @@ fn blowing(forest: &Forest) -> Vec<Span<'static>> {
     let told = format!("  {arrow} {speed:4.1} m/s, seen from {:.0}°", forest.orbit.azimuth.to_degrees());
     spans.push(Span::styled(told, style::DIM));
     spans
-}
-
-fn hints(forest: &Forest) -> Line<'static> {
-    let mut spans = Vec::new();
-    for (keys, word) in forest.keys.hints(forest.context()) {
-        spans.push(Span::raw(if spans.is_empty() { "" } else { "  " }));
-        spans.push(Span::styled(keys, style::ACCENT));
-        spans.push(Span::styled(format!(" {word}"), style::DIM));
-    }
-    Line::from(spans)
 }

@@ -15,7 +15,7 @@ use super::{fill, fitted, put, style, width};
 use crate::app::action::{Action, Context, TABLE};
 use crate::app::clock::rate_words;
 use crate::app::correcting::{Moving, Tool, nudge_px};
-use crate::app::keymap::shown;
+use crate::app::keymap::{KeyMap, shown};
 use crate::app::layout::{Lens, bar, column_of, frame_at};
 use crate::app::panel::Panel;
 use crate::app::recovery::Recovery;
@@ -500,10 +500,26 @@ fn hint_line(state: &State, room: usize) -> Line<'static> {
         "key-frame" => 4,
         _ => 3,
     });
+    fitting(hints, &["help"], room)
+}
+
+/// What keys do on a screen of its own, as far as there is room: what `later` names last, help and the way out always.
+pub(super) fn own_hints(keys: &KeyMap, context: Context, later: &[&str], room: usize) -> Line<'static> {
+    let mut hints = keys.hints(context);
+    hints.sort_by_key(|(_, word)| later.contains(word));
+    let hints = hints.into_iter().map(|(keys, word)| (keys, word.to_owned()));
+    fitting(hints.collect(), &["help", "leave"], room)
+}
+
+/// As many hints as there is room for, the first first; those to be kept stand at the end.
+fn fitting(hints: Vec<(String, String)>, kept: &[&str], room: usize) -> Line<'static> {
     let cells = |(keys, word): &(String, String)| width(keys) + 1 + width(word) + 2;
-    let help = hints.iter().position(|(_, word)| word == "help").map(|at| hints.remove(at));
-    let reserved = help.as_ref().map_or(0, cells);
-    let mut used = reserved;
+    let (mut kept, hints): (Vec<_>, Vec<_>) =
+        hints.into_iter().partition(|(_, word)| kept.contains(&word.as_str()));
+    while kept.iter().map(cells).sum::<usize>() > room + 2 {
+        kept.pop();
+    }
+    let mut used: usize = kept.iter().map(cells).sum();
     let mut shown: Vec<(String, String)> = Vec::new();
     for hint in hints {
         used += cells(&hint);
@@ -512,7 +528,7 @@ fn hint_line(state: &State, room: usize) -> Line<'static> {
         }
         shown.push(hint);
     }
-    shown.extend(help.filter(|_| reserved <= room + 2));
+    shown.extend(kept);
     let mut spans = Vec::new();
     for (i, (keys, word)) in shown.into_iter().enumerate() {
         spans.push(Span::raw(if i > 0 { "  " } else { "" }));

@@ -5,10 +5,11 @@ use ratatui::text::{Line, Span};
 
 use super::lines::wrapped;
 use super::{fill, padded, panel, put, style, width};
-use crate::app::keymap::shown;
+use crate::app::action::Context;
+use crate::app::keymap::{KeyMap, shown};
 use crate::app::menu::{Menu, Row};
-use crate::app::state::State;
 use crate::term::encode::Frame;
+use crate::term::key::Key;
 
 /// Cells of the panel, at most: what every action does can be read in full.
 const WIDTH: u16 = 140;
@@ -117,9 +118,8 @@ pub(super) fn draw(menu: &Menu, area: Rect, frame: &mut Frame) {
 }
 
 /// What may follow the keys typed so far, at once. Where the rows do not suffice, names stand in columns.
-pub(super) fn which_key(state: &State, area: Rect, frame: &mut Frame) {
-    let context = state.mode.context();
-    let follow: Vec<_> = state.keys.after(context, &state.pending).collect();
+pub(super) fn which_key((keys, context): (&KeyMap, Context), pending: &[Key], area: Rect, frame: &mut Frame) {
+    let follow: Vec<_> = keys.after(context, pending).collect();
     let n_columns = follow.len().div_ceil(usize::from(area.height.max(1))).max(1);
     let n_rows = follow.len().div_ceil(n_columns);
     let height = u16::try_from(n_rows).unwrap_or(u16::MAX).min(area.height);
@@ -131,11 +131,10 @@ pub(super) fn which_key(state: &State, area: Rect, frame: &mut Frame) {
         (0..).map(|column| Rect { x: rows.x + 1 + column * width, width: width.saturating_sub(gap), ..rows });
     for (column, bindings) in columns.zip(follow.chunks(n_rows.max(1))) {
         for (y, binding) in (0..).zip(bindings) {
-            let rest =
-                Span::styled(format!("{:<4}", shown(&binding.keys[state.pending.len()..])), style::ACCENT);
+            let rest = Span::styled(format!("{:<4}", shown(&binding.keys[pending.len()..])), style::ACCENT);
             let info = binding.action.info();
             let line = if n_columns == 1 {
-                let typed = Span::styled(format!("{:<3} ", shown(&state.pending)), style::DIM);
+                let typed = Span::styled(format!("{:<3} ", shown(pending)), style::DIM);
                 Line::from(vec![typed, rest, Span::raw(info.doc)])
             } else {
                 Line::from(vec![rest, Span::raw(info.name.replace('-', " "))])

@@ -31,7 +31,9 @@ pub fn draw(start: &Start) -> Frame {
         put(&mut frame, Rect { y, height: 1, ..list }, 0, &line);
     }
     if rows > 0 {
-        lines::put_right(&mut frame, Rect { y: rows - 1, height: 1, ..all }, &hints(start), 0);
+        let room = usize::from(columns).saturating_sub(2);
+        let hints = lines::own_hints(&start.keys, start.context(), &[], room);
+        lines::put_right(&mut frame, Rect { y: rows - 1, height: 1, ..all }, &hints, 0);
     }
     if let Some(theme) = &start.theme {
         theme.paint(&mut frame);
@@ -112,14 +114,4 @@ fn page(title: &str, lines: &[String], all: Rect, list: Rect, frame: &mut Frame)
     for (y, line) in (0..list.height).zip(lines) {
         put(frame, list, y, &Line::raw(line.as_str()));
     }
-}
-
-fn hints(start: &Start) -> Line<'static> {
-    let mut spans = Vec::new();
-    for (keys, word) in start.keys.hints(start.context()) {
-        spans.push(Span::raw(if spans.is_empty() { "" } else { "  " }));
-        spans.push(Span::styled(keys, style::ACCENT));
-        spans.push(Span::styled(format!(" {word}"), style::DIM));
-    }
-    Line::from(spans)
 }
