@@ -103,6 +103,7 @@ fn what_cannot_be_shown_is_said() {
         ("view synth::tree:60,1 --seconds -1 --offscreen a.mp4", "wanted a number above 0, got -1", 2),
         ("view synth::tree:60,1 --azimuth nan --offscreen a.png", "wanted a number, got nan", 2),
         ("view synth::tree:60,1 --offscreen notes.mtg", "notes.mtg is there already: choose another name", 1),
+        ("view synth::tree:60,1 --spacing 3 --offscreen a.png", "--forest", 2),
         ("view synth::tree:60,1 --forest 0 --offscreen a.png", "wanted 1 to 10000000 copies, got 0", 2),
         (
             "view synth::tree:60,1 skeleton --offscreen a.png",

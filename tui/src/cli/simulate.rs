@@ -102,7 +102,7 @@ pub(super) fn simulate(args: &Simulate, common: &Common) -> anyhow::Result<Answe
 /// Whether more than modes is wanted.
 fn is_moved(args: &Simulate, motion: &Motion) -> bool {
     let is_written = args.out.is_some() || args.cache.is_some() || args.glb.is_some();
-    args.wind != "still" || motion.pull.abs() > 0.0 || args.forest.is_some() || is_written
+    args.wind != "still" || motion.pull.abs() > 0.0 || args.stand.forest.is_some() || is_written
 }
 
 /// Files that are wanted, with what each is and how its name ends.
@@ -145,7 +145,6 @@ fn place(path: &Path) -> PathBuf {
 fn motion(args: &Simulate, n_frames: u32) -> Motion {
     let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     Motion {
-        n_copies: args.forest.unwrap_or(1) as usize,
         n_frames,
         fps: args.fps,
         n_substeps: args.substeps,
@@ -155,7 +154,6 @@ fn motion(args: &Simulate, n_frames: u32) -> Motion {
             Method::Symplectic => Integrator::Symplectic,
             Method::Newmark => Integrator::Newmark,
         },
-        damping: Damping { alpha: args.alpha, beta: args.beta, mass: args.heavier, air: args.air_damping },
         form: match args.bend {
             Bend::Turn => Form::Turn,
             Bend::Linear => Form::Linear,
@@ -165,11 +163,8 @@ fn motion(args: &Simulate, n_frames: u32) -> Motion {
         pull: args.pull,
         n_sensors: args.sensors as usize,
         sensors: args.nodes.clone(),
-        size_spread: args.size_spread,
-        mass_spread: args.mass_spread,
-        spacing: args.spacing,
-        seed: args.seed,
         n_threads: args.threads.unwrap_or(cores),
+        ..args.stand.motion()
     }
 }
 

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Args, FromArgMatches, Subcommand, ValueEnum};
+use honami_workbench::mechanics::Damping;
+use honami_workbench::plant::sway::Motion;
 
 use super::WithPlugin;
 
@@ -42,30 +44,8 @@ pub(in crate::cli) struct Simulate {
     /// How nodes follow the modes.
     #[arg(long, value_enum, default_value_t = Bend::Turn)]
     pub(in crate::cli) bend: Bend,
-    /// Damping by mass, per second.
-    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 0.3)]
-    pub(in crate::cli) alpha: f64,
-    /// Damping by stiffness, seconds.
-    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 0.008)]
-    pub(in crate::cli) beta: f64,
-    /// Damping by the air, which grows with the wind: so many times what the drag of branches and leaves gives; 0: none.
-    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 1.0)]
-    pub(in crate::cli) air_damping: f64,
-    /// So many times as heavy as its wood.
-    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 1.0)]
-    pub(in crate::cli) heavier: f64,
-    /// A forest of so many copies, each at its place in the wind.
-    #[arg(long, value_name = "K", value_parser = copies)]
-    pub(in crate::cli) forest: Option<u32>,
-    /// Copies are up to 1 + X times as large or as small as the plant; the first is as it was measured.
-    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 0.0, requires = "forest")]
-    pub(in crate::cli) size_spread: f64,
-    /// Copies are up to 1 + X times as heavy or as light as one of their size.
-    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 0.0, requires = "forest")]
-    pub(in crate::cli) mass_spread: f64,
-    /// How far copies stand apart, metres (default: 0.8 times the height of the plant); each is up to a quarter of it off.
-    #[arg(long, value_name = "M", allow_negative_numbers = true, requires = "forest")]
-    pub(in crate::cli) spacing: Option<f64>,
+    #[command(flatten)]
+    pub(in crate::cli) stand: Stand,
     /// Ends of branches of the first copy that are followed, all over it, the highest first.
     #[arg(long, value_name = "N", default_value_t = 12)]
     pub(in crate::cli) sensors: u32,
@@ -89,9 +69,58 @@ pub(in crate::cli) struct Simulate {
     /// Threads (default: as many as there are cores).
     #[arg(long, value_name = "N", value_parser = threads)]
     pub(in crate::cli) threads: Option<usize>,
+}
+
+/// How a plant is damped and how heavy it is, and copies of it.
+#[derive(Args, Debug)]
+pub(in crate::cli) struct Stand {
+    /// Damping by mass, per second.
+    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 0.3)]
+    alpha: f64,
+    /// Damping by stiffness, seconds.
+    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 0.008)]
+    beta: f64,
+    /// Damping by the air, which grows with the wind: so many times what the drag of branches and leaves gives; 0: none.
+    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 1.0)]
+    air_damping: f64,
+    /// So many times as heavy as its wood.
+    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 1.0)]
+    heavier: f64,
+    /// A forest of so many copies, each at its place in the wind.
+    #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = copies)]
+    pub(in crate::cli) forest: Option<u32>,
+    /// Copies are up to 1 + X times as large or as small as the plant; the first is as it was measured.
+    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 0.0, requires = "forest")]
+    size_spread: f64,
+    /// Copies are up to 1 + X times as heavy or as light as one of their size.
+    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 0.0, requires = "forest")]
+    mass_spread: f64,
+    /// How far copies stand apart, metres (default: 0.8 times the height of the plant); each is up to a quarter of it off.
+    #[arg(long, value_name = "M", allow_negative_numbers = true, requires = "forest")]
+    spacing: Option<f64>,
     /// Of where copies stand, how they are turned, and their sizes and masses.
     #[arg(long, value_name = "S", default_value_t = 1)]
-    pub(in crate::cli) seed: u64,
+    seed: u64,
+}
+
+impl Stand {
+    /// What moves so.
+    pub(in crate::cli) fn motion(&self) -> Motion {
+        Motion {
+            n_copies: self.forest.unwrap_or(1) as usize,
+            damping: Damping {
+                alpha: self.alpha,
+                beta: self.beta,
+                mass: self.heavier,
+                air: self.air_damping,
+            },
+            size_spread: self.size_spread,
+            mass_spread: self.mass_spread,
+            spacing: self.spacing,
+            seed: self.seed,
+            ..Motion::default()
+        }
+    }
 }
 
 /// Which options were typed, though it be what they are anyhow, by the names of their fields.

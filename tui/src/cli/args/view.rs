@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::grow::Place;
-use super::plant::{Plant, Typed, copies};
+use super::plant::{Plant, Stand, Typed};
 use super::{Size, WithPlugin, movie_rate};
 
 /// Scenes in a window, or into a file.
@@ -51,12 +51,10 @@ pub(in crate::cli) struct View {
     pub(in crate::cli) shot: Shot,
 }
 
-/// Copies of a plant in the wind.
+/// Copies of a plant in the wind; nobody has seen a forest of equals.
 #[derive(Args, Debug)]
+#[command(mut_arg("size_spread", |spread| spread.default_value("0.15")))]
 pub(in crate::cli) struct Trees {
-    /// A forest of so many copies, each at its place in the wind.
-    #[arg(long, value_name = "K", default_value_t = 1, allow_negative_numbers = true, value_parser = copies)]
-    pub(in crate::cli) forest: u32,
     /// What blows, as `honami simulate` takes it: wind:speed=5,towards=90, or storm+vortex.
     #[arg(long, value_name = "WIND", default_value = "wind")]
     pub(in crate::cli) wind: String,
@@ -66,30 +64,8 @@ pub(in crate::cli) struct Trees {
     /// Length of a leaf, metres, 0.0001 to 10 (default: as a plant of that size has).
     #[arg(long, value_name = "M", allow_negative_numbers = true)]
     pub(in crate::cli) leaf_length: Option<f64>,
-    /// Copies are up to 1 + X times as large or as small as the plant; the first is as it was measured.
-    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 0.15)]
-    pub(in crate::cli) size_spread: f64,
-    /// Copies are up to 1 + X times as heavy or as light as one of their size.
-    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 0.0)]
-    pub(in crate::cli) mass_spread: f64,
-    /// How far copies stand apart, metres (default: 0.8 times the height of the plant).
-    #[arg(long, value_name = "M", allow_negative_numbers = true)]
-    pub(in crate::cli) spacing: Option<f64>,
-    /// Damping by mass, per second.
-    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 0.3)]
-    pub(in crate::cli) alpha: f64,
-    /// Damping by stiffness, seconds.
-    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 0.008)]
-    pub(in crate::cli) beta: f64,
-    /// Damping by the air: so many times what the drag of branches and leaves gives.
-    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 1.0)]
-    pub(in crate::cli) air_damping: f64,
-    /// So many times as heavy as its wood.
-    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 1.0)]
-    pub(in crate::cli) heavier: f64,
-    /// Of where copies stand, how they are turned, and their sizes and masses.
-    #[arg(long, value_name = "S", default_value_t = 1)]
-    pub(in crate::cli) seed: u64,
+    #[command(flatten)]
+    pub(in crate::cli) stand: Stand,
 }
 
 /// How it is filmed.

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use honami_model::brief::{Brief, counted};
-use honami_workbench::mechanics::{Damping, Integrator};
+use honami_workbench::mechanics::Integrator;
 use honami_workbench::plant::scene::{Shown, scene};
 use honami_workbench::plant::sway::Motion;
 use honami_workbench::plant::{self};
@@ -103,20 +103,9 @@ fn made(args: &View, common: &Common) -> anyhow::Result<(ForestScene, String, Ve
     let bar = report::Bar::with(common);
     let plant = plant::vibrate(&simulate::wish(&args.plant), &bar)?;
     let motion = Motion {
-        n_copies: trees.forest as usize,
         fps: args.shot.fps.unwrap_or(Motion::default().fps),
         integrator: Integrator::Exact,
-        damping: Damping {
-            alpha: trees.alpha,
-            beta: trees.beta,
-            mass: trees.heavier,
-            air: trees.air_damping,
-        },
-        size_spread: trees.size_spread,
-        mass_spread: trees.mass_spread,
-        spacing: trees.spacing,
-        seed: trees.seed,
-        ..Motion::default()
+        ..trees.stand.motion()
     };
     let name = Path::new(&args.plant.source).file_name();
     let name = name.map_or_else(|| args.plant.source.clone(), |name| name.to_string_lossy().into_owned());
