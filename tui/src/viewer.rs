@@ -95,10 +95,30 @@ fn build(is_release: bool) -> String {
     format!("cargo build {}-p {NAME}", if is_release { "--release " } else { "" })
 }
 
-/// Has the viewer draw so many frames, or as many as there are, and waits for its end; what goes wrong it says itself.
+/// Whether there is a display for a window, by variables of the environment.
+pub(crate) fn has_display(variable: impl Fn(&str) -> Option<OsString>) -> bool {
+    ["DISPLAY", "WAYLAND_DISPLAY"]
+        .into_iter()
+        .any(|name| variable(name).is_some_and(|value| !value.is_empty()))
+}
+
+/// What a window needs here.
 ///
 /// # Errors
-/// Where it is not there, does not start, or fails.
+/// Where the viewer is not there, or no display; what draws without one is nothing to somebody in a terminal.
+pub(crate) fn opens(variable: impl Fn(&str) -> Option<OsString>) -> anyhow::Result<()> {
+    program()?;
+    ensure!(
+        has_display(variable),
+        "there is no display for a window: neither DISPLAY nor WAYLAND_DISPLAY is set"
+    );
+    Ok(())
+}
+
+/// Has the viewer draw so many frames, or as many as there are, and waits for its end.
+///
+/// # Errors
+/// Where it is not there, does not start, or fails, by its own words where it has any.
 pub(crate) fn have(args: &[OsString], n_frames: u32, progress: &dyn Progress) -> anyhow::Result<()> {
     let program = program()?;
     // Where this process ends, so does the pipe, and with it the viewer.
@@ -106,22 +126,25 @@ pub(crate) fn have(args: &[OsString], n_frames: u32, progress: &dyn Progress) ->
     let spawned = command.arg("--attended").stdin(Stdio::piped()).stdout(Stdio::piped()).spawn();
     let mut child = spawned.with_context(|| starting(&program))?;
     let held = child.stdin.take();
+    let mut words = String::new();
     for line in
         child.stdout.take().into_iter().flat_map(|told| BufReader::new(told).lines().map_while(Result::ok))
     {
-        if let Ok(Event::Frame(frame)) = control::event(&line)
-            && progress.report(u64::from(frame) + 1, u64::from(n_frames), "frames") == Flow::Stop
-        {
-            drop(held);
-            child.wait().with_context(|| starting(&program))?;
-            return Err(WorkbenchError::Stopped.into());
+        match control::event(&line) {
+            Ok(Event::Failed(why)) => words = why,
+            Ok(Event::Frame(frame))
+                if progress.report(u64::from(frame) + 1, u64::from(n_frames), "frames") == Flow::Stop =>
+            {
+                drop(held);
+                child.wait().with_context(|| starting(&program))?;
+                return Err(WorkbenchError::Stopped.into());
+            }
+            _ => {}
         }
     }
     let status = child.wait().with_context(|| starting(&program))?;
     drop(held);
-    // What it says by itself need not be said twice.
-    ensure!(status.code() != Some(1), "nothing was drawn");
-    ending(status).map_or(Ok(()), |how| Err(anyhow::anyhow!(how)))
+    ending(status).map_or(Ok(()), |how| Err(anyhow::anyhow!(with_words(status, how, &words))))
 }
 
 /// Why a viewer that says what it speaks is not to be talked to, where it is another version.
@@ -188,7 +211,7 @@ fn last_words(errors: impl Read) -> String {
 fn with_words(status: ExitStatus, how: String, words: &str) -> String {
     match (status.code(), words.strip_prefix(&format!("{NAME}: ")).unwrap_or(words)) {
         (_, "") => how,
-        (Some(1), words) => format!("the viewer: {words}"),
+        (Some(1 | 2), words) => format!("the viewer: {words}"),
         (_, words) => format!("{how}; it last said: {words}"),
     }
 }

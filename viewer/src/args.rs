@@ -62,7 +62,7 @@ pub struct Args {
     /// the input ends the window.
     #[arg(long, conflicts_with = "offscreen")]
     pub control: bool,
-    /// End where standard input ends, and tell of every frame that is written.
+    /// End where standard input ends, and tell of every frame that is written, and why there are no more.
     #[arg(long, hide = true, conflicts_with = "control")]
     pub attended: bool,
     /// List what could draw, the best first, which is what does.

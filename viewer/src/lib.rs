@@ -20,7 +20,9 @@ use std::io::Write as _;
 use anyhow::bail;
 use honami_media::MediaError;
 use honami_media::write::Kind;
+use honami_model::brief;
 use honami_scene::Scene;
+use honami_scene::control::Event;
 use serde_json::json;
 
 use args::Args;
@@ -50,6 +52,16 @@ pub fn run(args: &Args) -> anyhow::Result<()> {
 pub fn is_usage(error: &anyhow::Error) -> bool {
     matches!(error.downcast_ref(), Some(GpuError::Name { .. }))
         || matches!(error.downcast_ref(), Some(MediaError::Ending { .. }))
+}
+
+/// Says why it failed: to whoever attends, who says it on, else on standard error.
+pub fn complain(error: &anyhow::Error, is_attended: bool) {
+    let why = brief::told(error.as_ref());
+    if is_attended {
+        app::pipe::tell(&Event::Failed(why));
+    } else {
+        say(&why);
+    }
 }
 
 /// What draws a scene.

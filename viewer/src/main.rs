@@ -6,7 +6,6 @@ use std::io::Write as _;
 use std::process::ExitCode;
 
 use clap::Parser as _;
-use honami_model::brief;
 use honami_viewer::args::Args;
 
 fn main() -> ExitCode {
@@ -18,8 +17,7 @@ fn main() -> ExitCode {
     match honami_viewer::run(&args) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            // Nobody left to tell is no reason to fail otherwise.
-            writeln!(std::io::stderr(), "honami-viewer: {}", brief::told(error.as_ref())).unwrap_or_default();
+            honami_viewer::complain(&error, args.attended);
             if honami_viewer::is_usage(&error) { ExitCode::from(2) } else { ExitCode::FAILURE }
         }
     }

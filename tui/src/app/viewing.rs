@@ -163,7 +163,7 @@ fn begin(
     scenes: &Mutex<Option<Scenes>>,
     hear: impl FnMut(Heard) + Send + 'static,
 ) -> anyhow::Result<Teller> {
-    viewer::program()?;
+    viewer::opens(|name| std::env::var_os(name))?;
     let (scene, notes) = grower.scene(stop)?;
     let [width, height] = usual_size(&scene);
     let path = write(scenes, scene)?;

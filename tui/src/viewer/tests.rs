@@ -17,6 +17,21 @@ fn the_viewer_is_beside_this_program_or_is_missed_with_what_builds_it() {
     }
 }
 
+/// Variables that are set, and whether they name a display.
+#[test]
+fn a_window_wants_a_display() {
+    for (set, there) in [
+        (&[][..], false),
+        (&[("DISPLAY", ""), ("WAYLAND_DISPLAY", "")], false),
+        (&[("DISPLAY", ":0")], true),
+        (&[("WAYLAND_DISPLAY", "wayland-1")], true),
+    ] {
+        let variable =
+            |name: &str| set.iter().find(|(known, _)| *known == name).map(|(_, value)| value.into());
+        assert_eq!(has_display(variable), there, "{set:?}");
+    }
+}
+
 #[test]
 fn ends_are_told_in_words() {
     for (raw, told) in [
@@ -35,6 +50,7 @@ fn last_words_are_in_the_line_about_an_end() {
         "thread 'main' panicked at src/app.rs:3:5:\nno room\nnote: run with `RUST_BACKTRACE=1`\n\n";
     for (raw, printed, told) in [
         (1 << 8, "libEGL: no\nhonami-viewer: there is no display\n", "the viewer: there is no display"),
+        (2 << 8, "honami-viewer: no adapter is called so\n", "the viewer: no adapter is called so"),
         (1 << 8, "", "the viewer failed, with status 1"),
         (101 << 8, panicked, "the viewer failed, with status 101; it last said: no room"),
         (9, "", "the viewer crashed, by signal 9"),

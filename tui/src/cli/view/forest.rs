@@ -57,9 +57,7 @@ pub(super) fn view(args: &View, common: &Common) -> anyhow::Result<Outcome> {
     want(n_frames <= MOST_FRAMES, || {
         format!("{} frames are too many: say fewer --seconds or a lower --fps", Brief(n_frames))
     })?;
-    let has_display = ["DISPLAY", "WAYLAND_DISPLAY"]
-        .into_iter()
-        .any(|name| std::env::var_os(name).is_some_and(|value| !value.is_empty()));
+    let has_display = viewer::has_display(|name| std::env::var_os(name));
     let in_window = args.offscreen.is_none() && !args.terminal && has_display && viewer::program().is_ok();
     let is_shown =
         in_window || (std::io::stdout().is_terminal() && std::io::stdin().is_terminal() && !common.json);
