@@ -14,6 +14,7 @@ mod home;
 mod isolated;
 mod journal_kill;
 mod locks;
+mod matte;
 mod movie;
 mod offers;
 mod opencv;

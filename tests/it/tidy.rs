@@ -44,6 +44,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "honami-store",
             "honami-media",
             "honami-exchange",
+            "honami-matting",
             "honami-motion",
             "honami-mechanics",
             "honami-review",

@@ -71,6 +71,13 @@ const CASES: &[Case] = &[
     ("track p.honami --points points.csv --region 1,2,3,4", USAGE, &["--points", "--region"]),
     ("track p.honami --region 500,500,10,10", USAGE, &["no pixel of the clip, 160x120,", "500,500,10,10"]),
     ("track p.honami --detect --mask black.y4m", FAILED, &["all of the mask is black", "black.y4m"]),
+    ("matte p.honami", USAGE, &["--scribbles or --trimap", "--picture OUT.png"]),
+    ("matte p.honami --out a.png", USAGE, &["--scribbles or --trimap"]),
+    ("matte p.honami --picture a.jpg", USAGE, &[".png", "a.jpg"]),
+    ("matte p.honami --scribbles black.png --trimap black.png", USAGE, &["--scribbles", "--trimap"]),
+    ("matte p.honami --picture a.png --frame 40", USAGE, &["frames 40..41", "0..40"]),
+    ("matte p.honami --scribbles missing.png", FAILED, &["no such file", "missing.png"]),
+    ("matte missing.honami --picture a.png", FAILED, &["there is no project missing.honami"]),
     // Results.
     ("cluster p.honami --groups 0", USAGE, &["groups, not 0"]),
     ("cluster p.honami --groups 9999", USAGE, &["groups, not 9999"]),

@@ -15,6 +15,7 @@ mod grow;
 mod help;
 mod keys;
 mod log;
+mod matte;
 mod movie;
 mod project;
 mod replay;
@@ -201,6 +202,7 @@ fn run(command: Command, common: &Common) -> anyhow::Result<Outcome> {
         }
         Command::Compare(args) => compare::compare(&args, common)?,
         Command::Components(args) => components::components(&args)?,
+        Command::Matte(args) => matte::matte(&args, common)?,
         Command::Spectrum(args) => spectrum::spectrum(&args)?,
         Command::Simulate(args) => simulate::simulate(&args, common)?,
         Command::Export(args) => exchange::export(&args, common)?,

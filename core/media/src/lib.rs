@@ -18,6 +18,7 @@ mod open;
 mod programs;
 mod scale;
 mod source;
+mod still;
 pub mod write;
 
 pub use error::{MediaError, Size};
@@ -26,6 +27,7 @@ pub use media::{FrameRef, Media};
 pub use open::{Decoder, OpenOptions, Step, cache_folder, open, open_images, open_with};
 pub use programs::ffmpeg_version;
 pub use scale::Rect;
+pub use still::Still;
 
 #[cfg(test)]
 mod tests;

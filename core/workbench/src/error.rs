@@ -732,6 +732,14 @@ pub enum WorkbenchError {
     /// A `.glb` could not be written.
     #[error(transparent)]
     Document(#[from] honami_exchange::glb::DocumentError),
+    /// There is no matte of a picture, or of what was painted on it.
+    #[error("{source}: {}", path.display())]
+    Matte {
+        /// The picture, or the marks on it.
+        path: PathBuf,
+        /// Why.
+        source: honami_matting::MattingError,
+    },
     /// A thread of the program has panicked.
     #[error("a fault of the program's own; the session's log has its report")]
     Fault,
@@ -759,6 +767,7 @@ impl WorkbenchError {
                 | Self::Frames { .. }
                 | Self::Groups { .. }
                 | Self::NoSuchTracks
+                | Self::Matte { source: honami_matting::MattingError::Option { .. }, .. }
                 | Self::EmptyRegion { .. }
                 | Self::FarRoot { .. }
                 | Self::Unit { .. }

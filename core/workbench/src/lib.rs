@@ -17,6 +17,7 @@ pub mod generate;
 mod ground;
 pub mod grow;
 pub mod import;
+pub mod matte;
 pub mod movie;
 pub mod offer;
 pub mod plant;
@@ -50,6 +51,8 @@ pub use honami_exchange::foreign;
 pub use honami_exchange::origin;
 /// Plugins and their parameters.
 pub use honami_host as plugins;
+/// Opacities of plants.
+pub use honami_matting as matting;
 /// Plants as beams, in the wind.
 pub use honami_mechanics as mechanics;
 /// Clips and their frames.

@@ -1,6 +1,7 @@
 //! The command line as typed. Stable: scripts and tests use it.
 
 pub(super) mod grow;
+pub(super) mod matte;
 pub(super) mod plant;
 pub(super) mod view;
 
@@ -83,6 +84,8 @@ pub(super) enum Command {
     Edit(Project),
     /// Run trackers side by side on a clip and say how far they can be trusted.
     Compare(Compare),
+    /// How much of every pixel is plant, from a few strokes on a picture; and the mask of what is worth tracking.
+    Matte(matte::Matte),
     /// Frequencies of tracks and groups, in Hz from the frame times.
     Spectrum(Spectrum),
     /// What moves together: where, along which line and how fast, by bi-orthogonal decomposition of the tracks.

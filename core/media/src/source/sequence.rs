@@ -97,7 +97,7 @@ impl Decode for Images {
     }
 }
 
-fn open(file: &Path) -> Result<impl ImageDecoder, MediaError> {
+pub(crate) fn open(file: &Path) -> Result<impl ImageDecoder, MediaError> {
     let reader = ImageReader::open(file)
         .and_then(ImageReader::with_guessed_format)
         .map_err(|e| MediaError::io("read", file, e))?;
@@ -109,7 +109,7 @@ fn open(file: &Path) -> Result<impl ImageDecoder, MediaError> {
     Ok(decoder)
 }
 
-fn damaged(file: &Path, error: &image::ImageError) -> MediaError {
+pub(crate) fn damaged(file: &Path, error: &image::ImageError) -> MediaError {
     MediaError::damaged(file, error.to_string())
 }
 

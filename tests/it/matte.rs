@@ -1,0 +1,114 @@
+//! `honami matte`: a few strokes on a frame become opacities, a mask that detectors read, and its picture.
+
+use std::fs;
+
+use honami_tests::{Bench, rows};
+use honami_workbench::media::{Still, write};
+
+const SIZE: [usize; 2] = [96, 72];
+const MIDDLE: [f64; 2] = [50.0, 34.0];
+
+/// A leaf that lies before a bright sky, and its opacities; it moves to the right.
+fn frame(n: usize) -> (Vec<[u8; 3]>, Vec<f64>) {
+    let pixels = (0..SIZE[0] * SIZE[1]).map(|pixel| {
+        let [x, y] = [(pixel % SIZE[0]) as f64, (pixel / SIZE[0]) as f64];
+        let [u, v] = [x - MIDDLE[0] - n as f64, y - MIDDLE[1]];
+        let alpha = (20.5 - u.hypot(v)).clamp(0.0, 1.0);
+        // Hard spots, on which corners are found.
+        let spot = if ((u / 5.0).floor() + (v / 5.0).floor()).rem_euclid(2.0) < 1.0 { 60.0 } else { 0.0 };
+        let leaf = [40.0 + spot / 2.0, 90.0 + spot, 30.0];
+        let sky = [180.0 + 20.0 * (x / 15.0).sin(), 190.0, 215.0 + 20.0 * (y / 11.0).cos()];
+        let colour = |c: usize| (alpha * leaf[c] + (1.0 - alpha) * sky[c]).round() as u8;
+        ([0, 1, 2].map(colour), alpha)
+    });
+    pixels.unzip()
+}
+
+fn save(bench: &Bench, name: &str, rgb: &[[u8; 3]]) {
+    write::still(&bench.path(name), rgb, SIZE[0] as u32, SIZE[1] as u32).unwrap();
+}
+
+/// Paints black along the border and white within 6 px of the middle.
+fn paint(rgb: &mut [[u8; 3]]) -> [usize; 2] {
+    let mut n_painted = [0; 2];
+    for (pixel, colour) in rgb.iter_mut().enumerate() {
+        let [x, y] = [pixel % SIZE[0], pixel / SIZE[0]];
+        let is_border = x < 3 || y < 3 || x + 3 >= SIZE[0] || y + 3 >= SIZE[1];
+        if is_border {
+            (*colour, n_painted[0]) = ([0; 3], n_painted[0] + 1);
+        } else if (x as f64 - MIDDLE[0]).hypot(y as f64 - MIDDLE[1]) < 6.0 {
+            (*colour, n_painted[1]) = ([255; 3], n_painted[1] + 1);
+        }
+    }
+    n_painted
+}
+
+#[test]
+fn strokes_on_a_frame_become_a_mask_in_which_features_are_found() {
+    let bench = Bench::new();
+    fs::create_dir(bench.path("frames")).unwrap();
+    for n in 0..3 {
+        save(&bench, &format!("frames/f{n}.png"), &frame(n).0);
+    }
+    bench.json("new p.honami frames --fps 25");
+    let said = bench.json("matte p.honami --picture first.png");
+    assert_eq!((&said["width"], &said["height"]), (&96.into(), &72.into()));
+
+    let mut scribbled = Still::read(&bench.path("first.png")).unwrap().rgb;
+    let [background, foreground] = paint(&mut scribbled);
+    save(&bench, "scribbled.png", &scribbled);
+    let said = bench.json(
+        "matte p.honami --scribbles scribbled.png --out alpha.png --mask mask.png --parts parts.png --band 3",
+    );
+    assert_eq!(said["marked"]["background"], background);
+    assert_eq!(said["marked"]["foreground"], foreground);
+    let parts = said["parts"].as_object().unwrap();
+    let n_pixels: u64 = parts.values().map(|n| n.as_u64().unwrap()).sum();
+    assert_eq!(n_pixels, 96 * 72);
+    let alpha = Still::read(&bench.path("alpha.png")).unwrap().gray();
+    let truth = frame(0).1;
+    let off: f64 = alpha.iter().zip(&truth).map(|(a, b)| (f64::from(*a) / 255.0 - b).abs()).sum();
+    assert!(off / (truth.len() as f64) < 0.02, "mean {}", off / truth.len() as f64);
+
+    // The mask is the leaf without its boundary, and features are found there.
+    let mask = Still::read(&bench.path("mask.png")).unwrap().gray();
+    let n_kept = mask.iter().filter(|&&value| value == 255).count();
+    assert_eq!(parts["kept"], n_kept);
+    let wanted = std::f64::consts::PI * 17.0 * 17.0;
+    assert!((n_kept as f64 - wanted).abs() < 0.15 * wanted, "{n_kept} of {wanted}");
+    bench.json("track p.honami --detect --mask mask.png");
+    bench.json("export p.honami tracks t.csv");
+    let tracks = rows(&bench.path("t.csv"));
+    let first: Vec<_> = tracks.iter().filter(|row| row["frame"] == "0").collect();
+    assert!(first.len() >= 5, "{} features", first.len());
+    for row in first {
+        let [x, y] = ["x", "y"].map(|column| row[column].parse::<f64>().unwrap().round() as usize);
+        assert_eq!(mask[y * SIZE[0] + x], 255, "a feature at {x}, {y}");
+    }
+
+    // An image by itself, with a trimap; its own colours are somewhat others.
+    let trimap: Vec<[u8; 3]> = truth
+        .iter()
+        .map(|&alpha| if alpha <= 0.0 || alpha >= 1.0 { alpha } else { 0.5 })
+        .map(|alpha| [(alpha * 255.0) as u8; 3])
+        .collect();
+    save(&bench, "trimap.png", &trimap);
+    bench.json("matte frames/f0.png --trimap trimap.png --out again.png --with-trunk");
+    let again = Still::read(&bench.path("again.png")).unwrap().gray();
+    let off: f64 = again.iter().zip(&truth).map(|(a, b)| (f64::from(*a) / 255.0 - b).abs()).sum();
+    assert!(off / (truth.len() as f64) < 0.01, "mean {}", off / truth.len() as f64);
+
+    // What does not fit is named with its file.
+    save(&bench, "untouched.png", &Still::read(&bench.path("first.png")).unwrap().rgb);
+    write::still(&bench.path("small.png"), &[[0; 3]; 12], 4, 3).unwrap();
+    for (line, words) in [
+        ("matte p.honami --scribbles untouched.png --out no.png", ["nothing is marked", "untouched.png"]),
+        ("matte p.honami --scribbles small.png --out no.png", ["4x3 pixels, the picture 96x72", "small.png"]),
+        ("matte small.png --trimap small.png --out no.png", ["only background is marked", "small.png"]),
+    ] {
+        let ran = bench.line(line);
+        assert_eq!(ran.code, Some(1), "{line}: {}", ran.stderr);
+        assert!(words.iter().all(|word| ran.stderr.contains(word)), "{line}: {}", ran.stderr);
+        assert!(!bench.path("no.png").exists());
+    }
+}
