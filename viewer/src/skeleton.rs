@@ -3,6 +3,7 @@
 mod drawn;
 mod lens;
 mod pipelines;
+mod room;
 #[cfg(test)]
 mod tests;
 
@@ -15,6 +16,7 @@ use honami_scene::{Orbit, SkeletonScene};
 use self::drawn::Drawn;
 use self::lens::Lens;
 use self::pipelines::Pipelines;
+use self::room::Room;
 use crate::gpu::Gpu;
 use crate::offscreen::{Picture, Shot};
 use crate::target::Target;
@@ -83,6 +85,8 @@ pub struct SkeletonPicture {
     /// Why the clip is not behind it, though it should be.
     pub without_clip: Option<String>,
     media: Option<Media>,
+    /// What all of its frames take.
+    room: Room,
     /// The clip's frame that is on the card, and how large.
     on_card: Option<(u32, [u32; 2])>,
     /// What draws, for targets with so many samples.
@@ -97,7 +101,8 @@ impl SkeletonPicture {
             Ok(media) => (media, None),
             Err(why) => (None, Some(why)),
         };
-        Self { scene, parts, chosen: None, without_clip, media, on_card: None, pipelines: None }
+        let room = Room::of(&scene);
+        Self { scene, parts, chosen: None, without_clip, media, room, on_card: None, pipelines: None }
     }
 
     /// What to say where the parts that are on have nothing to draw.
@@ -129,6 +134,7 @@ impl SkeletonPicture {
             *self = Self { chosen: self.chosen, ..Self::new(scene, std::mem::take(&mut self.parts)) };
             return;
         }
+        self.room = Room::of(&scene);
         self.scene = scene;
     }
 
@@ -142,7 +148,8 @@ impl SkeletonPicture {
     /// How places are seen in a picture.
     fn lens(&self, shot: &Shot, target: &Target) -> Lens {
         let clip = &self.scene.clip;
-        Lens::new(&shot.camera, target.aspect(), clip.width as f32 / clip.height as f32)
+        let (aspect, clip_aspect) = (target.aspect(), clip.width as f32 / clip.height as f32);
+        Lens::new(&self.room.fit(&shot.camera, aspect, clip_aspect), aspect, clip_aspect)
     }
 
     /// Where a place is seen in a picture, pixels from its upper left corner; `None` behind the eye.

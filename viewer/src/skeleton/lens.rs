@@ -29,11 +29,8 @@ impl Lens {
         let axes = camera.axes();
         let [right, up, forward] = axes;
         let away = dot(camera.target, forward) - dot(camera.eye, forward);
-        // The front looks along y; where that is so to rounding, it is so.
-        let aside = (forward[0].hypot(forward[2])).atan2(forward[1]);
-        let share = ((aside - 1e-4) / WHOLE).clamp(0.0, 1.0);
-        let depth = share * share * (3.0 - 2.0 * share);
-        let half = (camera.angle / 2.0).tan() * (clip_aspect / aspect).max(1.0);
+        let depth = depth(forward);
+        let [_, half] = edges(camera, aspect, clip_aspect);
         let eye = camera.eye;
         let row = |axis: [f32; 3], by: f32| [axis[0] * by, axis[1] * by, axis[2] * by, -dot(axis, eye) * by];
         let (near, far) = (NEAREST * away, FARTHEST * away);
@@ -61,6 +58,20 @@ impl Lens {
         };
         (sum(3) > 0.0).then(|| [sum(0) / sum(3), sum(1) / sum(3)])
     }
+}
+
+/// How much perspective there is where a camera looks this way: 0 from the front, 1 from elsewhere.
+pub(super) fn depth(forward: [f32; 3]) -> f32 {
+    // The front looks along y; where that is so to rounding, it is so.
+    let aside = (forward[0].hypot(forward[2])).atan2(forward[1]);
+    let share = ((aside - 1e-4) / WHOLE).clamp(0.0, 1.0);
+    share * share * (3.0 - 2.0 * share)
+}
+
+/// From the middle of a picture to its right and its upper edge at what is looked at, of the distance to that.
+pub(super) fn edges(camera: &Camera, aspect: f32, clip_aspect: f32) -> [f32; 2] {
+    let half = (camera.angle / 2.0).tan() * (clip_aspect / aspect).max(1.0);
+    [half * aspect, half]
 }
 
 fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
