@@ -101,7 +101,7 @@ const CASES: &[Case] = &[
     ("export p.honami movie -", USAGE, &["standard output", "name one"]),
     ("export p.honami movie out.avi", USAGE, &[".mp4, .y4m or a folder", "out.avi"]),
     ("export p.honami movie clip.y4m", FAILED, &["clip.y4m is there already", "another name"]),
-    ("export p.honami movie nowhere/out.y4m", FAILED, &["nowhere/out.y4m", "No such file"]),
+    ("export p.honami movie nowhere/out.y4m", FAILED, &["nowhere/out.y4m", "nowhere is no folder"]),
     ("export p.honami movie out.y4m --show leaves", USAGE, &["motion, trails, groups, skeleton", "leaves"]),
     ("export p.honami movie out.y4m --show groups", FAILED, &["no groups yet"]),
     ("export p.honami movie out.y4m --frames 30..50", USAGE, &["30..50", "0..40"]),

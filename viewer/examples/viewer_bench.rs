@@ -59,12 +59,15 @@ fn main() -> anyhow::Result<()> {
         [of[FRAMES / 2], of[FRAMES * 3 / 4] - of[FRAMES / 4]].map(|ms| (ms * 100.0).round() / 100.0)
     };
     let frame = ms(|t| t.modes + t.pose + t.draw);
+    // Each mode of each node of each copy, where none is left out.
+    let updates =
+        is("--all").then(|| (n_copies * n_nodes * n_modes) as f64 / ms(|t| t.modes + t.pose)[0] * 1000.0);
     let json = json!({
         "adapter": gpu.name(), "by": format!("{by:?}"),
         "copies": n_copies, "nodes": n_nodes, "modes": n_modes,
         "fps": (10_000.0 / frame[0]).round() / 10.0, "frame_ms": frame,
         "wind_ms": ms(|t| t.wind), "modes_ms": ms(|t| t.modes), "pose_ms": ms(|t| t.pose), "draw_ms": ms(|t| t.draw),
-        "first_frame_s": first_s, "peak_mb": peak_mb(),
+        "node_modes_per_s": updates.map(f64::round), "first_frame_s": first_s, "peak_mb": peak_mb(),
     });
     std::io::Write::write_all(&mut std::io::stdout(), format!("{json:#}\n").as_bytes())?;
     Ok(())

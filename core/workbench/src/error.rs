@@ -1,5 +1,7 @@
 //! What can keep a job from its end.
 
+mod typed;
+
 use std::ops::Range;
 use std::path::PathBuf;
 
@@ -746,59 +748,4 @@ pub enum WorkbenchError {
     /// The caller stopped a job that keeps nothing.
     #[error("stopped")]
     Stopped,
-}
-
-impl WorkbenchError {
-    /// Whether other options, numbers or names are wanted than were typed: not another file, nor more room or work.
-    #[must_use]
-    pub fn is_as_typed(&self) -> bool {
-        use honami_mechanics::{BeamsError, ForestError};
-        use honami_structure::StructureError as Grown;
-        match self {
-            Self::PlantFile(error) => return error.is_as_typed(),
-            Self::Weather(error) => return error.is_as_typed(),
-            _ => {}
-        }
-        matches!(
-            self,
-            Self::MovieSize { .. }
-                | Self::Media(honami_media::MediaError::Ending { .. })
-                | Self::NoPlant { .. }
-                | Self::Frames { .. }
-                | Self::Groups { .. }
-                | Self::NoSuchTracks
-                | Self::Matte { source: honami_matting::MattingError::Option { .. }, .. }
-                | Self::EmptyRegion { .. }
-                | Self::FarRoot { .. }
-                | Self::Unit { .. }
-                | Self::NoCarried { .. }
-                | Self::NoVertices
-                | Self::TooFast { .. }
-                | Self::Structure(
-                    Grown::Shift(_)
-                        | Grown::Copies
-                        | Grown::Root { .. }
-                        // Where none was typed it is 0: no level of this skeleton has two bones.
-                        | Grown::NoLevel { wanted: 1.., .. }
-                        | Grown::Threshold { .. }
-                        | Grown::TooFewJoints { .. }
-                        | Grown::Unit(_)
-                )
-                | Self::Onto { source: Grown::Unit(_), .. }
-                | Self::Units { .. }
-                | Self::Pixels
-                | Self::Pace { .. }
-                | Self::Substeps { .. }
-                | Self::Pull { .. }
-                | Self::Spread { .. }
-                | Self::Spacing { .. }
-                | Self::Sensor { .. }
-                | Self::Leaves(_)
-                | Self::NoMeaning { .. }
-                | Self::Drag { .. }
-                | Self::Beams(BeamsError::Material(_) | BeamsError::Longest(_))
-                | Self::TooManyModes { .. }
-                | Self::Forest(ForestError::Damping { .. })
-        )
-    }
 }
