@@ -66,8 +66,8 @@ fn strokes_on_a_frame_become_a_mask_in_which_features_are_found() {
     let n_pixels: u64 = parts.values().map(|n| n.as_u64().unwrap()).sum();
     assert_eq!(n_pixels, 96 * 72);
     let alpha = Still::read(&bench.path("alpha.png")).unwrap().gray();
+    let truth = frame(0).1;
     let off = |alpha: &[u8]| {
-        let truth = frame(0).1;
         let off: f64 = alpha.iter().zip(&truth).map(|(a, b)| (f64::from(*a) / 255.0 - b).abs()).sum();
         off / truth.len() as f64
     };
@@ -104,8 +104,7 @@ fn strokes_on_a_frame_become_a_mask_in_which_features_are_found() {
     save(&bench, "trimap.png", &trimap);
     bench.json("matte frames/f0.png --trimap trimap.png --out again.png --with-trunk");
     let again = Still::read(&bench.path("again.png")).unwrap().gray();
-    let off: f64 = again.iter().zip(&truth).map(|(a, b)| (f64::from(*a) / 255.0 - b).abs()).sum();
-    assert!(off / (truth.len() as f64) < 0.01, "mean {}", off / truth.len() as f64);
+    assert!(off(&again) < 0.01, "{}", off(&again));
 
     // What does not fit is named with its file.
     save(&bench, "untouched.png", &Still::read(&bench.path("first.png")).unwrap().rgb);
