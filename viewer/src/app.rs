@@ -20,7 +20,7 @@ use self::canvas::Canvas;
 use self::forest::ForestWindow;
 use self::pipe::Pipe;
 use self::player::Player;
-use self::skeleton::Workbench;
+use self::skeleton::SkeletonPanel;
 use crate::args::Args;
 use crate::gpu;
 use crate::offscreen::{Picture as _, Shot};
@@ -101,7 +101,7 @@ struct App {
     pipe: Pipe,
     fault: Fault,
     canvas: Canvas,
-    workbench: Workbench,
+    panel: SkeletonPanel,
     player: Player,
     /// What was said last.
     line: String,
@@ -119,7 +119,7 @@ impl App {
         canvas.begin(picture.orbit(), args);
         pipe.tell(&Event::Ready { protocol: PROTOCOL, adapter: canvas.gpu.name() });
         let player = Player::new(picture.scene.times.clone());
-        Ok(Self { pipe, fault, canvas, workbench: Workbench::new(picture), player, line: String::new() })
+        Ok(Self { pipe, fault, canvas, panel: SkeletonPanel::new(picture), player, line: String::new() })
     }
 
     /// Does what was told by the pipe.
@@ -141,10 +141,10 @@ impl App {
                 Command::Cut(k) => self.pipe.tell(&Event::Cut(k)),
                 Command::Wind(_) => self.pipe.tell(&Event::Failed("no wind blows in a skeleton".to_owned())),
                 Command::Camera(seat) => self.canvas.sit(seat),
-                Command::Select(chosen) => self.workbench.choose(chosen),
+                Command::Select(chosen) => self.panel.choose(chosen),
                 Command::Say(line) => {
                     self.line = line;
-                    self.workbench.let_be();
+                    self.panel.let_be();
                 }
                 Command::Capture(path) => self.pipe.capture(context, path),
                 Command::Quit => context.send_viewport_cmd(egui::ViewportCommand::Close),
@@ -164,7 +164,7 @@ impl App {
             Ok(scene) => {
                 let frame = self.first() + self.player.row() as u32;
                 self.player.take(scene.times.clone());
-                self.workbench.take(*scene);
+                self.panel.take(*scene);
                 if !self.player.is_playing {
                     self.go(frame.saturating_sub(self.first()) as usize);
                 }
@@ -175,7 +175,7 @@ impl App {
 
     /// The clip's frame that is the first of the skeleton's.
     fn first(&self) -> u32 {
-        self.workbench.picture.scene.first_frame
+        self.panel.picture.scene.first_frame
     }
 
     fn go(&mut self, row: usize) {
@@ -207,7 +207,7 @@ impl App {
     }
 
     fn front(&mut self) {
-        self.canvas.orbit = self.workbench.picture.orbit();
+        self.canvas.orbit = self.panel.picture.orbit();
     }
 
     /// Keys, as the terminal has them.
@@ -230,7 +230,7 @@ impl App {
         if pressed(Key::F) {
             self.front();
         }
-        if self.workbench.is_open() {
+        if self.panel.is_open() {
             if pressed(Key::U) {
                 self.pipe.tell(&Event::Undo);
             }
@@ -239,12 +239,12 @@ impl App {
             }
         }
         if pressed(Key::Enter)
-            && let Some(event) = self.workbench.keep()
+            && let Some(event) = self.panel.keep()
         {
             self.pipe.tell(&event);
         }
         if pressed(Key::Escape) {
-            self.workbench.let_be();
+            self.panel.let_be();
         }
     }
 
@@ -273,28 +273,28 @@ impl App {
     /// The picture, as large as there is room, and what a mouse does in it.
     fn picture(&mut self, ui: &mut Ui) -> anyhow::Result<()> {
         let (response, area) = self.canvas.place(ui)?;
-        if self.workbench.is_rooting {
+        if self.panel.is_rooting {
             self.canvas.orbit = Orbit { azimuth: 0.0, elevation: 0.0, ..self.canvas.orbit };
         }
-        self.canvas.look(ui, &response, area, !self.workbench.is_rooting);
+        self.canvas.look(ui, &response, area, !self.panel.is_rooting);
         let scale = ui.pixels_per_point();
         let shot = Shot { time: self.player.now(), camera: self.canvas.orbit.camera() };
         let Some(target) = self.canvas.target() else { return Ok(()) };
         let clicked = response.interact_pointer_pos().filter(|_| response.clicked());
         if let Some(at) = clicked.map(|at| (at - area.min) * scale) {
-            let picture = &self.workbench.picture;
-            if self.workbench.is_rooting {
+            let picture = &self.panel.picture;
+            if self.panel.is_rooting {
                 let root = picture.placed(&shot, target, [at.x, at.y]);
                 self.pipe.tell(&Event::Root(Some(root)));
-                self.workbench.is_rooting = false;
+                self.panel.is_rooting = false;
             } else {
                 let chosen =
                     picture.nearest(&shot, target, [at.x, at.y], NEAR_POINTS * scale).map(Chosen::Bone);
-                self.workbench.choose(chosen);
+                self.panel.choose(chosen);
                 self.pipe.tell(&Event::Selected(chosen));
             }
         }
-        self.workbench.picture.draw(&self.canvas.gpu, target, &shot)?;
+        self.panel.picture.draw(&self.canvas.gpu, target, &shot)?;
         self.canvas.show(ui, area);
         Ok(())
     }
@@ -307,8 +307,7 @@ impl eframe::App for App {
         self.keys(ui);
         self.tick(f64::from(ui.input(|input| input.stable_dt)));
         egui::Panel::bottom("time").show(ui, |ui| self.transport(ui));
-        let events =
-            egui::Panel::right("beside").exact_size(PANEL).show(ui, |ui| self.workbench.panel(ui)).inner;
+        let events = egui::Panel::right("beside").exact_size(PANEL).show(ui, |ui| self.panel.show(ui)).inner;
         events.iter().for_each(|event| self.pipe.tell(event));
         let drawn =
             egui::CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| self.picture(ui)).inner;

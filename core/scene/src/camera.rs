@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::vector::{cross, dot, unit};
+
 /// Of how far the target is from 0, so near an eye may come.
 const NEAREST: f32 = 1e-4;
 /// So high above the ground an eye stays, of how far it is from what it looks at.
@@ -82,19 +84,6 @@ impl Camera {
         let half = (self.angle / 2.0).tan() * depth;
         ([right / half, up / half], depth)
     }
-}
-
-fn unit(v: [f32; 3]) -> [f32; 3] {
-    let length = dot(v, v).sqrt().max(f32::MIN_POSITIVE);
-    v.map(|v| v / length)
-}
-
-pub(crate) fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-pub(crate) fn cross(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 #[cfg(test)]

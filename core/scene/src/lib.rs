@@ -18,6 +18,7 @@ pub mod sky;
 #[cfg(test)]
 mod testing;
 pub mod tubes;
+pub mod vector;
 pub mod weather;
 
 pub use camera::{Camera, Orbit};

@@ -10,10 +10,11 @@ mod tests;
 
 use rayon::prelude::*;
 
-use crate::camera::{Camera, cross, dot};
+use crate::camera::Camera;
 use crate::forest::ForestScene;
 use crate::forest::live::Seen;
 use crate::grove::Grove;
+use crate::vector::{cross, dot};
 use ground::Ground;
 use stroke::Stroke;
 

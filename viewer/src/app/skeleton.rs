@@ -10,8 +10,8 @@ use crate::skeleton::{Part, SkeletonPicture};
 /// More groups than this nobody cuts by a slider.
 const MOST_GROUPS: u32 = 64;
 
-/// A skeleton that is worked on.
-pub(super) struct Workbench {
+/// A skeleton that is worked on, and the panel beside it.
+pub(super) struct SkeletonPanel {
     /// As it is drawn: with what is being done.
     pub(super) picture: SkeletonPicture,
     /// As it was told.
@@ -24,7 +24,7 @@ pub(super) struct Workbench {
     cut: u32,
 }
 
-impl Workbench {
+impl SkeletonPanel {
     pub(super) fn new(picture: SkeletonPicture) -> Self {
         let kept = picture.scene.clone();
         let cut = kept.n_groups;
@@ -73,7 +73,7 @@ impl Workbench {
     }
 
     /// The panel beside the picture; returns what is to be told.
-    pub(super) fn panel(&mut self, ui: &mut Ui) -> Vec<Event> {
+    pub(super) fn show(&mut self, ui: &mut Ui) -> Vec<Event> {
         let mut events = Vec::new();
         ui.heading(&self.kept.name);
         for why in self.picture.without_clip.iter().chain(&self.picture.why_empty()) {

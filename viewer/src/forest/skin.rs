@@ -9,6 +9,7 @@ use honami_mechanics::Stand;
 use honami_scene::ForestScene;
 use honami_scene::body::{Leaf, Level, Ring};
 use honami_scene::forest::live::Seen;
+use honami_scene::vector::{cross, dot, unit};
 
 /// A vertex of wood or of a leaf.
 #[repr(C)]
@@ -52,7 +53,7 @@ pub(super) struct Eye {
 type Turned = [[f32; 3]; 3];
 
 /// A copy as it stands.
-struct Copy {
+struct Standing {
     place: [f32; 2],
     turn: [f32; 2],
     scale: f32,
@@ -94,7 +95,7 @@ pub(super) fn skin(
         let (own, others) = std::mem::take(&mut rest).split_at_mut(of_level(level));
         rest = others;
         let (at, stand) = (scene.places[seen.copy], &scene.stands[seen.copy]);
-        (level, seen.motion, Copy::new(seen.copy, at, stand, airs[seen.copy]), own)
+        (level, seen.motion, Standing::new(seen.copy, at, stand, airs[seen.copy]), own)
     });
     let pieces = Mutex::new(pieces.collect::<Vec<_>>().into_iter());
     let next = || pieces.lock().unwrap_or_else(PoisonError::into_inner).next();
@@ -112,7 +113,7 @@ pub(super) fn skin(
     drawn
 }
 
-impl Copy {
+impl Standing {
     fn new(copy: usize, place: [f32; 2], stand: &Stand, air: f32) -> Self {
         let (sin, cos) = stand.turn.sin_cos();
         Self { place, turn: [sin, cos], scale: stand.scale, chance: super::stage::chance(copy), air }
@@ -235,17 +236,4 @@ fn apply(turned: &Turned, way: [f32; 3]) -> [f32; 3] {
 
 fn add(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
     std::array::from_fn(|k| a[k] + b[k])
-}
-
-fn unit(v: [f32; 3]) -> [f32; 3] {
-    let length = dot(v, v).sqrt().max(f32::MIN_POSITIVE);
-    v.map(|v| v / length)
-}
-
-fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }

@@ -23,7 +23,7 @@ const MOST_MOVED: usize = 1 << 30;
 /// A copy, as shaders read it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct Copy {
+struct CopyNumbers {
     place: [f32; 2],
     /// Sine and cosine of its turn.
     turn: [f32; 2],
@@ -123,7 +123,7 @@ impl Stage {
             })
         };
         let both = Uses::STORAGE | Uses::COPY_DST | Uses::COPY_SRC;
-        let copies: Vec<Copy> = scene.places.iter().zip(&scene.stands).enumerate().map(copy).collect();
+        let copies: Vec<CopyNumbers> = scene.places.iter().zip(&scene.stands).enumerate().map(copy).collect();
         let rings = bytemuck::cast_slice(&parts.rings);
         if let Some(bytes) = pieces(scene, by, &parts).into_iter().find(|bytes| *bytes > most) {
             let what = format!("forest of {n_copies} copies, which has {bytes} bytes in one piece");
@@ -214,16 +214,16 @@ fn pieces(scene: &ForestScene, by: By, parts: &Parts) -> [usize; 5] {
     [
         size_of_val(parts.rings.as_slice()),
         size_of_val(parts.leaves.as_slice()),
-        of_all(size_of::<Copy>().max(size_of::<Felt>())),
+        of_all(size_of::<CopyNumbers>().max(size_of::<Felt>())),
         of_all(4 * parts.levels.len()),
         // Amplitudes and speeds of all modes.
         of_all(8 * n_modes),
     ]
 }
 
-fn copy((k, (place, stand)): (usize, (&[f32; 2], &honami_mechanics::Stand))) -> Copy {
+fn copy((k, (place, stand)): (usize, (&[f32; 2], &honami_mechanics::Stand))) -> CopyNumbers {
     let (sin, cos) = stand.turn.sin_cos();
-    Copy { place: *place, turn: [sin, cos], scale: stand.scale, chance: chance(k), filler: [0; 2] }
+    CopyNumbers { place: *place, turn: [sin, cos], scale: stand.scale, chance: chance(k), filler: [0; 2] }
 }
 
 /// What chance made of a copy, 0 to 1: as good as that, parts of the golden ratio.

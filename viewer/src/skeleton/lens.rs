@@ -2,6 +2,7 @@
 //! filmed; from elsewhere with it, so that depth is seen. Between the two the picture changes smoothly.
 
 use honami_scene::Camera;
+use honami_scene::vector::dot;
 
 /// From so far beside the front on perspective is whole, radians.
 const WHOLE: f32 = 0.4;
@@ -72,10 +73,6 @@ pub(super) fn depth(forward: [f32; 3]) -> f32 {
 pub(super) fn edges(camera: &Camera, aspect: f32, clip_aspect: f32) -> [f32; 2] {
     let half = (camera.angle / 2.0).tan() * (clip_aspect / aspect).max(1.0);
     [half * aspect, half]
-}
-
-fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 #[cfg(test)]

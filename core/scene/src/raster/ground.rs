@@ -1,8 +1,8 @@
 //! What is behind: the sky, and the ground with the shadows of crowns on it.
 
 use super::{Colour, Lens, SUN};
-use crate::camera::dot;
 use crate::forest::ForestScene;
+use crate::vector::dot;
 
 const HORIZON: Colour = [0.84, 0.88, 0.91];
 const ZENITH: Colour = [0.42, 0.60, 0.83];
