@@ -4,8 +4,8 @@ use crate::MattingError;
 use crate::cycle::Cycle;
 use crate::work::{dot, each};
 
-/// Solved when the energy of the error, `√(eᵀ A e)` as the cycle judges it, is less. Measured on photographs, no opacity is
-/// off by 0.001 then.
+/// Solved when the energy of the error, `√(eᵀ A e)` as the cycle judges it, is less. On four video frames no opacity changes
+/// by more than 1 of 255 with a bound 2000 times as tight.
 const ENERGY: f64 = 2e-5;
 /// Steps after which there is something wrong; pictures of leaves take some 50.
 const MOST_STEPS: usize = 1000;
