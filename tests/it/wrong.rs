@@ -107,7 +107,7 @@ const CASES: &[Case] = &[
     ("export p.honami movie out.y4m --frames 30..50", USAGE, &["30..50", "0..40"]),
     ("export p.honami movie out.y4m --scale 0.01", USAGE, &["16 to 8192 pixels", "--scale"]),
     ("export p.honami movie out.y4m --scale 2 --size 320x240", USAGE, &["--scale", "--size"]),
-    ("export p.honami movie out.y4m --fps 0", USAGE, &["frames per second", "above 0"]),
+    ("export p.honami movie out.y4m --fps 0", USAGE, &["frames per second", "0.001 to 100000"]),
     ("export p.honami movie out.y4m --trail 0", USAGE, &["--trail", "above 0"]),
     ("export p.honami movie out.y4m --format csv", USAGE, &["--format is of tables"]),
     ("export p.honami tracks out.csv --show tracks", USAGE, &["--show is of movies"]),
