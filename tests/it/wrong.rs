@@ -128,7 +128,7 @@ const CASES: &[Case] = &[
     ("compare p.honami --with nothing", USAGE, &["no tracker \"nothing\"", "klt"]),
     // Generated clips.
     ("synth clip.y4m", FAILED, &["clip.y4m", "choose another name"]),
-    ("synth out.gif", FAILED, &[".mp4, .y4m or a folder", "out.gif"]),
+    ("synth out.gif", USAGE, &[".mp4, .y4m or a folder", "out.gif"]),
     ("synth out.y4m --size 1x1", USAGE, &["WxH", "1x1"]),
     ("synth out.y4m --frames 1", USAGE, &["--frames"]),
     ("synth out.y4m --wind gale", USAGE, &["gale", "storm"]),
