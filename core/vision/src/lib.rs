@@ -8,6 +8,7 @@
 //! any number of threads and at every SIMD level (Fourier transforms, in `piv`, round as the processor has them).
 
 pub mod anchor;
+pub mod board;
 pub mod boxes;
 pub mod detect;
 pub mod field;
