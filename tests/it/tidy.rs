@@ -21,6 +21,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("honami-store", &["honami-model"]),
     ("honami-exchange", &["honami-model"]),
     ("honami-vision", &["honami-model"]),
+    ("honami-cameras", &[]),
     ("honami-matting", &[]),
     ("honami-motion", &["honami-model"]),
     ("honami-mechanics", &["honami-model"]),

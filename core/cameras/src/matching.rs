@@ -1,0 +1,176 @@
+//! Which track of one view is which of the other.
+
+use crate::assign::assigned;
+use crate::{CameraError, Pair, Pixel};
+
+/// Fewer frames that both were seen in say nothing.
+pub const FEWEST_FRAMES: usize = 8;
+
+/// A track as one camera saw it: its place in each frame, `None` where it was not seen. Frames of both views are at the same times.
+pub type Seen = [Option<Pixel>];
+
+/// What makes two tracks one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Tracks that are farther from each other's epipolar lines than this are not one, pixels; by the root mean square over frames.
+    pub farthest_px: f64,
+    /// What movement along the lines counts, pixels: where it is not alike at all it costs as much as lying so far from them.
+    pub unlike_px: f64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { farthest_px: 3.0, unlike_px: 2.0 }
+    }
+}
+
+/// Two tracks that are one, by their numbers in each view.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Match {
+    /// Number of the left one.
+    pub left: usize,
+    /// Number of the right one.
+    pub right: usize,
+    /// Root mean square distance from the epipolar lines, pixels.
+    pub epipolar_px: f64,
+    /// How alike they move, -1..=1; 0 where one of them hardly moves.
+    pub alike: f64,
+    /// How much more the next best pair of either would cost, pixels; infinite where there is none. A small number is a doubt.
+    pub margin_px: f64,
+}
+
+/// Tracks of two views that are one, so that their costs together are least: each track has a partner or none.
+///
+/// What is one place lies on the epipolar line in every frame, so what moves across the lines moves alike in both views; of the
+/// movement along them, which depends on depth, only its likeness in time counts.
+///
+/// # Errors
+/// [`CameraError::Reach`] of pixels beyond a camera's distortion.
+pub fn matched(
+    pair: &Pair,
+    left: &[&Seen],
+    right: &[&Seen],
+    options: &Options,
+) -> Result<Vec<Match>, CameraError> {
+    let mut likenesses = Vec::with_capacity(left.len() * right.len());
+    for l in left {
+        for r in right {
+            likenesses.push(likeness(pair, l, r)?);
+        }
+    }
+    let cost = |likeness: &Option<(f64, f64)>| match likeness {
+        Some((px, alike)) if *px <= options.farthest_px => px.hypot(options.unlike_px * (1.0 - alike) / 2.0),
+        _ => f64::INFINITY,
+    };
+    let costs: Vec<f64> = likenesses.iter().map(cost).collect();
+    let n = right.len();
+    let matches =
+        assigned(&costs, n).into_iter().enumerate().filter_map(|(left, right)| Some((left, right?)));
+    let with_margin = matches.filter_map(|(l, r)| {
+        let (epipolar_px, alike) = likenesses[l * n + r]?;
+        let in_row = (0..n).filter(|&other| other != r).map(|other| costs[l * n + other]);
+        let in_column = (0..left.len()).filter(|&other| other != l).map(|other| costs[other * n + r]);
+        let next = in_row.chain(in_column).fold(f64::INFINITY, f64::min);
+        Some(Match { left: l, right: r, epipolar_px, alike, margin_px: next - costs[l * n + r] })
+    });
+    Ok(with_margin.collect())
+}
+
+/// Root mean square distance from the epipolar lines, pixels, and how alike two tracks move; `None` where they were hardly seen
+/// together.
+fn likeness(pair: &Pair, left: &Seen, right: &Seen) -> Result<Option<(f64, f64)>, CameraError> {
+    let both: Vec<[Pixel; 2]> = left.iter().zip(right).filter_map(|(l, r)| Some([(*l)?, (*r)?])).collect();
+    if both.len() < FEWEST_FRAMES {
+        return Ok(None);
+    }
+    let mut squares = 0.0;
+    for seen in &both {
+        squares += pair.epipolar_px(seen)?.powi(2);
+    }
+    Ok(Some(((squares / both.len() as f64).sqrt(), alike(&both))))
+}
+
+/// Correlation of two movements, each along the direction in which it is largest; the sign of a direction is free.
+fn alike(both: &[[Pixel; 2]]) -> f64 {
+    /// What moves less stands still, pixels.
+    const STILL_PX: f64 = 0.1;
+    let n = both.len() as f64;
+    let along = |side: usize| -> Option<Vec<f64>> {
+        let middle = both.iter().map(|seen| seen[side]).sum::<Pixel>() / n;
+        let off: Vec<Pixel> = both.iter().map(|seen| seen[side] - middle).collect();
+        let scatter: nalgebra::Matrix2<f64> = off.iter().map(|off| off * off.transpose() / n).sum();
+        let eigen = scatter.symmetric_eigen();
+        let most = eigen.eigenvalues.imax();
+        let direction = eigen.eigenvectors.column(most).into_owned();
+        (eigen.eigenvalues[most].sqrt() > STILL_PX)
+            .then(|| off.iter().map(|off| off.dot(&direction)).collect())
+    };
+    let (Some(left), Some(right)) = (along(0), along(1)) else { return 0.0 };
+    let product = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
+    (product(&left, &right) / (product(&left, &left) * product(&right, &right)).sqrt()).abs()
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::*;
+    use crate::staged::{LENS, Noise};
+    use crate::{Camera, Place, Pose};
+
+    /// Leaves that sway, each at its own pace, as two cameras see them.
+    fn swaying(n: usize, sigma: f64) -> (Pair, [Vec<Vec<Option<Pixel>>>; 2]) {
+        let right_from_left = Pose::new(Vector3::new(0.0, 0.3, 0.02), Vector3::new(-1.2, 0.05, 0.2));
+        let pair = Pair { cameras: [LENS, Camera { fx: 560.0, fy: 560.0, ..LENS }], right_from_left };
+        let mut noise = Noise::new(21, sigma);
+        let mut views = [Vec::new(), Vec::new()];
+        for leaf in 0..n {
+            let k = leaf as f64;
+            let rest = Place::new((k * 2.4).sin(), (k * 1.7).cos() * 0.8, 4.0 + (k * 0.9).sin());
+            let at = |frame: usize| {
+                let phase = frame as f64 * (0.15 + 0.011 * k) + k;
+                rest + Vector3::new(phase.sin(), 0.4 * phase.cos(), 0.5 * (phase * 0.7).sin()) * 0.05
+            };
+            for (side, view) in views.iter_mut().enumerate() {
+                let stand = [Pose::identity(), right_from_left][side];
+                let see = |frame: usize| {
+                    Some(pair.cameras[side].project(&stand.of(&at(frame))).unwrap() + noise.pixel())
+                };
+                view.push((0..60).map(see).collect());
+            }
+        }
+        (pair, views)
+    }
+
+    fn slices(tracks: &[Vec<Option<Pixel>>]) -> Vec<&Seen> {
+        tracks.iter().map(Vec::as_slice).collect()
+    }
+
+    #[test]
+    fn leaves_are_matched_with_themselves_and_strangers_with_none() {
+        let (pair, [mut left, mut right]) = swaying(24, 0.3);
+        // The right view knows its tracks in another order, lacks one, and loses others for a while.
+        right.reverse();
+        right.remove(4);
+        left.remove(20);
+        left[3][10..40].fill(None);
+        let matches = matched(&pair, &slices(&left), &slices(&right), &Options::default()).unwrap();
+        assert_eq!(matches.len(), 22);
+        for found in matches {
+            let leaf = found.left + usize::from(found.left >= 20);
+            let right = 23 - leaf;
+            assert_eq!(found.right, right - usize::from(right > 4), "leaf {leaf}: {found:?}");
+            assert!(found.epipolar_px < 0.6, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn tracks_that_were_hardly_seen_together_are_no_match() {
+        let (pair, [left, mut right]) = swaying(2, 0.0);
+        right[1][FEWEST_FRAMES - 1..].fill(None);
+        let matches = matched(&pair, &slices(&left), &slices(&right), &Options::default()).unwrap();
+        assert_eq!(matches.iter().map(|m| (m.left, m.right)).collect::<Vec<_>>(), [(0, 0)]);
+        assert!(matches[0].alike > 0.9 && matches[0].epipolar_px < 1e-9, "{matches:?}");
+        assert!(matched(&pair, &[], &slices(&right), &Options::default()).unwrap().is_empty());
+    }
+}
