@@ -16,6 +16,7 @@ pub mod positions;
 pub mod score;
 pub mod spectrum;
 pub mod swing;
+pub mod welch;
 
 pub use bod::{Bod, Table, denoised};
 pub use composite::{Composite, composite};

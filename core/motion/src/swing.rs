@@ -16,7 +16,8 @@ mod tests;
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use periodogram::{Periodogram, straightened};
+use periodogram::Periodogram;
+pub(crate) use periodogram::straightened;
 
 /// Fewer samples than this are no swing.
 pub const FEWEST: usize = 12;

@@ -41,7 +41,7 @@ impl Periodogram {
 }
 
 /// Less its mean and its straight line.
-pub(super) fn straightened(series: &[f64]) -> Vec<f64> {
+pub(crate) fn straightened(series: &[f64]) -> Vec<f64> {
     let n = series.len() as f64;
     let (mean, middle) = (series.iter().sum::<f64>() / n, (n - 1.0) / 2.0);
     let (mut product, mut square) = (0.0, 0.0);
