@@ -40,6 +40,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
         "honami-workbench",
         &[
             "honami-model",
+            "honami-cameras",
             "honami-host",
             "honami-check",
             "honami-store",

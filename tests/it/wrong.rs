@@ -28,6 +28,14 @@ const CASES: &[Case] = &[
     ("log text.honami", FAILED, &["not a honami project", "honami new", "text.honami"]),
     ("track text.honami", FAILED, &["not a honami project"]),
     ("export text.honami tracks out.csv", FAILED, &["not a honami project"]),
+    // Cameras.
+    ("calibrate", USAGE, &["<IMAGES>"]),
+    ("calibrate clip.y4m --board 9", USAGE, &["inner corners as CxR", "got 9"]),
+    ("calibrate clip.y4m --square 0", USAGE, &["a length above 0 such as 25mm", "got 0"]),
+    ("calibrate clip.y4m --square 25in", USAGE, &["a length above 0 such as 25mm", "got 25in"]),
+    ("calibrate clip.y4m --window 0", USAGE, &["pixels, 1 to 100, or squares", "got 0"]),
+    ("calibrate clip.y4m", FAILED, &["none of ", "shows the whole target", "of the first: ", "9 by 6"]),
+    ("calibrate clip.y4m --rig none.toml", FAILED, &["none.toml"]),
     // Plugins and their parameters.
     ("track p.honami --with nothing", USAGE, &["no tracker \"nothing\"", "there are:", "klt"]),
     ("track p.honami --with movement", USAGE, &["no tracker \"movement\""]),

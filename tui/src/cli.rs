@@ -3,6 +3,7 @@
 mod args;
 mod begin;
 mod bench;
+mod calibrate;
 mod canvas;
 mod check;
 mod compare;
@@ -201,6 +202,7 @@ fn run(command: Command, common: &Common) -> anyhow::Result<Outcome> {
             return edit::edit(&args.project, common).map(|()| Outcome::Exit(ExitCode::SUCCESS));
         }
         Command::Compare(args) => compare::compare(&args, common)?,
+        Command::Calibrate(args) => calibrate::calibrate(&args, common)?,
         Command::Components(args) => components::components(&args)?,
         Command::Matte(args) => matte::matte(&args, common)?,
         Command::Spectrum(args) => spectrum::spectrum(&args)?,

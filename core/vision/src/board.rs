@@ -16,7 +16,7 @@ use honami_model::picture::Gray;
 
 use crate::pyramid::Pyramid;
 use grid::Grid;
-pub use refine::Window;
+pub use refine::{Window, refined};
 
 /// A side shorter than this holds no board.
 const SMALLEST_PX: u32 = 20;
@@ -109,7 +109,7 @@ pub fn find(picture: &Gray<'_>, board: Board, window: Window) -> Result<Vec<[f64
         if let Some(places) = grid.ordered(board) {
             let scale = f64::from(1_u32 << level);
             let places: Vec<[f64; 2]> = places.into_iter().map(|at| at.map(|c| c * scale)).collect();
-            return Ok(refine::refined(picture, &places, columns, window));
+            return Ok(refined(picture, &places, columns, window));
         }
         if best.as_ref().is_none_or(|best| grid.len() > best.len()) {
             best = Some(grid);

@@ -1,5 +1,6 @@
 //! What can keep a job from its end.
 
+mod cameras;
 mod typed;
 
 use std::ops::Range;
@@ -8,6 +9,8 @@ use std::path::PathBuf;
 use honami_model::brief::{Brief, counted};
 use honami_model::document::RunId;
 use honami_model::track::TrackId;
+
+pub use cameras::CamerasError;
 
 /// Why a use-case failed: what was wanted, what came, what to do, in one line.
 #[derive(Debug, thiserror::Error)]
@@ -742,6 +745,9 @@ pub enum WorkbenchError {
         /// Why.
         source: honami_matting::MattingError,
     },
+    /// Cameras are not known.
+    #[error(transparent)]
+    Cameras(#[from] CamerasError),
     /// A thread of the program has panicked.
     #[error("a fault of the program's own; the session's log has its report")]
     Fault,

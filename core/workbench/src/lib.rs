@@ -3,6 +3,7 @@
 //! A job has three steps. *Prepare* reads what it needs from the project; *run* works on any thread, reports
 //! [progress](progress::Progress) and can be stopped; *finish* commits one edit that undo takes back.
 
+pub mod calibrate;
 pub mod cluster;
 pub mod compare;
 pub mod components;
@@ -42,7 +43,9 @@ pub mod used;
 pub mod versus;
 pub mod view;
 
-pub use error::WorkbenchError;
+pub use error::{CamerasError, WorkbenchError};
+/// Cameras that measure.
+pub use honami_cameras as cameras;
 /// What plugins must bear.
 pub use honami_check as check;
 /// Tracks of other programs.

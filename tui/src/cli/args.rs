@@ -1,5 +1,6 @@
 //! The command line as typed. Stable: scripts and tests use it.
 
+pub(super) mod cameras;
 pub(super) mod grow;
 pub(super) mod matte;
 pub(super) mod plant;
@@ -84,6 +85,8 @@ pub(super) enum Command {
     Edit(Project),
     /// Run trackers side by side on a clip and say how far they can be trusted.
     Compare(Compare),
+    /// Cameras, from pictures of a chessboard or of targets on bars: focal length, centre, distortion, and of two how they stand.
+    Calibrate(cameras::Calibrate),
     /// How much of every pixel is plant, from a few strokes on a picture; and the mask of what is worth tracking.
     Matte(matte::Matte),
     /// Frequencies of tracks and groups, in Hz from the frame times.

@@ -28,12 +28,8 @@ const SPREAD: f64 = 0.2;
 const MOST_PX: f64 = 12.0;
 
 /// The corners of a grid of so many columns, each at its place; one that finds none near it stays where it was.
-pub(super) fn refined(
-    picture: &Gray<'_>,
-    corners: &[[f64; 2]],
-    columns: usize,
-    window: Window,
-) -> Vec<[f64; 2]> {
+#[must_use]
+pub fn refined(picture: &Gray<'_>, corners: &[[f64; 2]], columns: usize, window: Window) -> Vec<[f64; 2]> {
     (0..corners.len())
         .map(|i| {
             let cell = cell(corners, columns, i);

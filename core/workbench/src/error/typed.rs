@@ -1,6 +1,6 @@
 //! Which errors are of what was typed.
 
-use super::WorkbenchError;
+use super::{CamerasError, WorkbenchError};
 
 impl WorkbenchError {
     /// Whether other options, numbers or names are wanted than were typed: not another file, nor more room or work.
@@ -26,6 +26,7 @@ impl WorkbenchError {
                 | Self::FarRoot { .. }
                 | Self::Unit { .. }
                 | Self::NoCarried { .. }
+                | Self::Cameras(CamerasError::Pairs { .. })
                 | Self::NoVertices
                 | Self::TooFast { .. }
                 | Self::Structure(

@@ -1,0 +1,91 @@
+//! `calibrate`: cameras from pictures of a chessboard, or from tracks of targets.
+
+use honami_workbench::calibrate::{self, Calibrated, Cameras, Filmed, file, rig};
+use honami_workbench::cameras::Stereo;
+use honami_workbench::cameras::camera::NUMBERS;
+use serde_json::json;
+
+use super::args::Common;
+use super::args::cameras::Calibrate;
+use super::{Answer, look, report, want};
+
+/// Finds the target in all views, and the cameras that took them.
+pub(super) fn calibrate(args: &Calibrate, common: &Common) -> anyhow::Result<Answer> {
+    let cameras = match &args.rig {
+        Some(path) => {
+            want(args.images.len() == 1 && args.right.len() <= 1, || {
+                "--rig takes one project a camera: LEFT.honami --right RIGHT.honami".to_owned()
+            })?;
+            let rig = rig::read(path)?;
+            let right = args.right.first().map(|path| look(path)).transpose()?;
+            calibrate::by_rig(&look(&args.images[0])?, right.as_ref(), &rig)?
+        }
+        None => calibrate::by_board(&filmed(args), &report::Bar::with(common))?,
+    };
+    let mut answer = describe(&cameras);
+    if let Some(out) = &args.out {
+        file::write(&cameras, out)?;
+        answer.text += &format!("\nwritten: {}", out.display());
+    }
+    Ok(answer)
+}
+
+fn filmed(args: &Calibrate) -> Filmed {
+    Filmed {
+        left: args.images.clone(),
+        right: args.right.clone(),
+        board: args.board.0,
+        square: args.square.value,
+        unit: args.square.unit,
+        window: args.window,
+    }
+}
+
+fn describe(cameras: &Cameras) -> Answer {
+    let mut json = file::json(cameras);
+    let mut text = String::new();
+    match &cameras.right {
+        None => say(&mut text, "", &cameras.left),
+        Some((right, stereo)) => {
+            say(&mut text, "left: ", &cameras.left);
+            say(&mut text, "right: ", right);
+            say_pair(
+                &mut text,
+                stereo,
+                cameras.unit.map_or("in the unit of --square", calibrate::Unit::name),
+            );
+        }
+    }
+    if let Some([fx, rms]) = cameras.by_squares {
+        json["by_squares"] = json!({ "fx": fx, "rms": rms });
+        text += &format!(
+            "\nwindows that fit the squares (--window squares) agree better: fx {fx:.2}, rms {rms:.3} px"
+        );
+    }
+    Answer { json, text: text.trim_end().to_owned(), done: true }
+}
+
+fn say(text: &mut String, side: &str, calibrated: &Calibrated) {
+    let Calibrated { calibration, shown, left_out, .. } = calibrated;
+    let n = shown.len();
+    *text += &format!("{side}{n} views of the target, rms {:.3} px", calibration.rms_px);
+    let values = calibration.camera.numbers().into_iter().zip(calibration.errors);
+    let mut rows = vec![["", "", "±"].map(str::to_owned).to_vec()];
+    for (name, (value, error)) in NUMBERS.iter().zip(values) {
+        let digits = if name.starts_with(['f', 'c']) { 2 } else { 5 };
+        rows.push(vec![(*name).to_owned(), format!("{value:.digits$}"), format!("{error:.digits$}")]);
+    }
+    *text += &format!("\n{}\n", report::table(&rows));
+    let worst = calibration.views.iter().zip(shown).max_by(|a, b| a.0.rms_px.total_cmp(&b.0.rms_px));
+    if let Some((view, name)) = worst {
+        *text += &format!("worst: {name}, rms {:.3} px, {:.2} px at most\n", view.rms_px, view.worst_px);
+    }
+    left_out.iter().for_each(|(name, why)| *text += &format!("left out: {name}: {why}\n"));
+}
+
+fn say_pair(text: &mut String, stereo: &Stereo, unit: &str) {
+    let Stereo { baseline, baseline_error, rms_px, epipolar_px, .. } = stereo;
+    *text += &format!(
+        "both: rms {rms_px:.3} px, {epipolar_px:.3} px from the epipolar lines; {baseline:.3}±{baseline_error:.3} {unit} apart"
+    );
+}
