@@ -36,6 +36,7 @@ mod sdk;
 mod settings;
 mod shaped;
 mod simulated;
+mod space;
 mod stopped;
 mod tidy;
 mod trax;

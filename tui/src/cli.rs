@@ -25,6 +25,7 @@ mod review;
 mod shape;
 mod simulate;
 mod spectrum;
+mod sync;
 mod synth;
 mod track;
 mod view;
@@ -205,6 +206,7 @@ fn run(command: Command, common: &Common) -> anyhow::Result<Outcome> {
         Command::Calibrate(args) => calibrate::calibrate(&args, common)?,
         Command::Components(args) => components::components(&args)?,
         Command::Matte(args) => matte::matte(&args, common)?,
+        Command::Sync(args) => sync::sync(&args, common)?,
         Command::Spectrum(args) => spectrum::spectrum(&args)?,
         Command::Simulate(args) => simulate::simulate(&args, common)?,
         Command::Export(args) => exchange::export(&args, common)?,

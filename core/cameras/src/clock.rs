@@ -2,6 +2,10 @@
 
 use crate::CameraError;
 
+pub use views::{Movement, by_movements};
+
+mod views;
+
 /// A value over time: of a track along one axis, or of a sensor.
 #[derive(Clone, Copy, Debug)]
 pub struct Signal<'a> {

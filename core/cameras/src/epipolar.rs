@@ -45,8 +45,12 @@ impl Pair {
     /// # Errors
     /// [`CameraError::Reach`] of pixels beyond a camera's distortion.
     pub fn epipolar_px(&self, seen: &[Pixel; 2]) -> Result<f64, CameraError> {
-        let e = self.essential();
-        let [left, right] = self.rays(seen)?.map(|ray| ray.push(1.0));
+        Ok(self.epipolar_px_of(&self.essential(), &self.rays(seen)?))
+    }
+
+    /// The same of directions, with the essential matrix at hand.
+    pub(crate) fn epipolar_px_of(&self, e: &Matrix3<f64>, rays: &[Vector2<f64>; 2]) -> f64 {
+        let [left, right] = rays.map(|ray| ray.push(1.0));
         let off = right.dot(&(e * left));
         let far = |line: Vector3<f64>, camera: &Camera| {
             // The line a x + b y + c = 0 of directions is (a / fx, b / fy, …) of pixels.
@@ -55,7 +59,7 @@ impl Pair {
         };
         let [in_left, in_right] =
             [far(e.transpose() * right, &self.cameras[0]), far(e * left, &self.cameras[1])];
-        Ok((in_left.powi(2) / 2.0 + in_right.powi(2) / 2.0).sqrt())
+        (in_left.powi(2) / 2.0 + in_right.powi(2) / 2.0).sqrt()
     }
 }
 

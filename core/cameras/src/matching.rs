@@ -52,15 +52,23 @@ pub fn matched(
     right: &[&Seen],
     options: &Options,
 ) -> Result<Vec<Match>, CameraError> {
+    let rays = |tracks: &[&Seen], camera: usize| -> Result<Vec<Vec<Option<Pixel>>>, CameraError> {
+        let ray = |at: &Option<Pixel>| at.map(|at| pair.cameras[camera].undistort(&at)).transpose();
+        tracks.iter().map(|track| track.iter().map(ray).collect()).collect()
+    };
+    let (left_rays, right_rays) = (rays(left, 0)?, rays(right, 1)?);
     let mut likenesses = Vec::with_capacity(left.len() * right.len());
-    for l in left {
-        for r in right {
-            likenesses.push(likeness(pair, l, r)?);
+    for (l, l_rays) in left.iter().zip(&left_rays) {
+        for (r, r_rays) in right.iter().zip(&right_rays) {
+            let px = epipolar_px(pair, l_rays, r_rays);
+            // What lies too far away is none, however it moves.
+            let near = px.filter(|px| *px <= options.farthest_px);
+            likenesses.push(near.map(|px| (px, alike(&together(l, r)))));
         }
     }
     let cost = |likeness: &Option<(f64, f64)>| match likeness {
-        Some((px, alike)) if *px <= options.farthest_px => px.hypot(options.unlike_px * (1.0 - alike) / 2.0),
-        _ => f64::INFINITY,
+        Some((px, alike)) => px.hypot(options.unlike_px * (1.0 - alike) / 2.0),
+        None => f64::INFINITY,
     };
     let costs: Vec<f64> = likenesses.iter().map(cost).collect();
     let n = right.len();
@@ -76,18 +84,17 @@ pub fn matched(
     Ok(with_margin.collect())
 }
 
-/// Root mean square distance from the epipolar lines, pixels, and how alike two tracks move; `None` where they were hardly seen
-/// together.
-fn likeness(pair: &Pair, left: &Seen, right: &Seen) -> Result<Option<(f64, f64)>, CameraError> {
-    let both: Vec<[Pixel; 2]> = left.iter().zip(right).filter_map(|(l, r)| Some([(*l)?, (*r)?])).collect();
-    if both.len() < FEWEST_FRAMES {
-        return Ok(None);
-    }
-    let mut squares = 0.0;
-    for seen in &both {
-        squares += pair.epipolar_px(seen)?.powi(2);
-    }
-    Ok(Some(((squares / both.len() as f64).sqrt(), alike(&both))))
+/// Frames in which both are seen.
+fn together(left: &Seen, right: &Seen) -> Vec<[Pixel; 2]> {
+    left.iter().zip(right).filter_map(|(l, r)| Some([(*l)?, (*r)?])).collect()
+}
+
+/// Root mean square distance of directions from the epipolar lines, pixels; `None` where they were hardly seen together.
+fn epipolar_px(pair: &Pair, left: &Seen, right: &Seen) -> Option<f64> {
+    let essential = pair.essential();
+    let both = together(left, right);
+    let squares: f64 = both.iter().map(|rays| pair.epipolar_px_of(&essential, rays).powi(2)).sum();
+    (both.len() >= FEWEST_FRAMES).then(|| (squares / both.len() as f64).sqrt())
 }
 
 /// Correlation of two movements, each along the direction in which it is largest; the sign of a direction is free.

@@ -1,6 +1,7 @@
 //! What can keep a job from its end.
 
 mod cameras;
+mod space;
 mod typed;
 
 use std::ops::Range;
@@ -11,6 +12,7 @@ use honami_model::document::RunId;
 use honami_model::track::TrackId;
 
 pub use cameras::CamerasError;
+pub use space::SpaceError;
 
 /// Why a use-case failed: what was wanted, what came, what to do, in one line.
 #[derive(Debug, thiserror::Error)]
@@ -748,6 +750,9 @@ pub enum WorkbenchError {
     /// Cameras are not known.
     #[error(transparent)]
     Cameras(#[from] CamerasError),
+    /// Two views do not tell where something is.
+    #[error(transparent)]
+    Space(#[from] SpaceError),
     /// A thread of the program has panicked.
     #[error("a fault of the program's own; the session's log has its report")]
     Fault,

@@ -36,6 +36,7 @@ pub mod simulate;
 pub mod spectra;
 mod stamp;
 pub mod sways;
+pub mod sync;
 pub mod track;
 #[cfg(test)]
 mod tried;
@@ -43,7 +44,7 @@ pub mod used;
 pub mod versus;
 pub mod view;
 
-pub use error::{CamerasError, WorkbenchError};
+pub use error::{CamerasError, SpaceError, WorkbenchError};
 /// Cameras that measure.
 pub use honami_cameras as cameras;
 /// What plugins must bear.

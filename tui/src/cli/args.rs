@@ -4,6 +4,7 @@ pub(super) mod cameras;
 pub(super) mod grow;
 pub(super) mod matte;
 pub(super) mod plant;
+pub(super) mod space;
 pub(super) mod view;
 
 use std::path::PathBuf;
@@ -89,6 +90,8 @@ pub(super) enum Command {
     Calibrate(cameras::Calibrate),
     /// How much of every pixel is plant, from a few strokes on a picture; and the mask of what is worth tracking.
     Matte(matte::Matte),
+    /// How far the clocks of two clips are apart, with a standard error.
+    Sync(space::Sync),
     /// Frequencies of tracks and groups, in Hz from the frame times.
     Spectrum(Spectrum),
     /// What moves together: where, along which line and how fast, by bi-orthogonal decomposition of the tracks.

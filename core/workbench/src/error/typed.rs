@@ -11,6 +11,7 @@ impl WorkbenchError {
         match self {
             Self::PlantFile(error) => return error.is_as_typed(),
             Self::Weather(error) => return error.is_as_typed(),
+            Self::Space(error) => return error.is_as_typed(),
             _ => {}
         }
         matches!(
