@@ -37,6 +37,7 @@ mod settings;
 mod shaped;
 mod simulated;
 mod space;
+mod spectra;
 mod stopped;
 mod tidy;
 mod trax;

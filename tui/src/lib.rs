@@ -1,6 +1,7 @@
 //! honami in a terminal: the screen (`term`), the workbench on it (`app`), and the command line (`cli`).
 
 pub mod app;
+mod braille;
 pub mod cli;
 pub mod term;
 mod viewer;

@@ -93,11 +93,14 @@ impl AtomicFile {
     }
 }
 
-/// Whether a file is of the kind of a text: they begin with the same two words.
+/// Whether a file is of the kind of a text: they begin with the same two words, or are tables with the same columns.
 #[must_use]
 pub fn is_begun_alike(head: &[u8], text: &str) -> bool {
     let head = String::from_utf8_lossy(head);
-    head.split_whitespace().take(2).eq(text.split_whitespace().take(2))
+    // The heads of a table's columns may be one word, and what follows are numbers.
+    let first = text.lines().next().filter(|line| line.contains(','));
+    let is_table = first.is_some_and(|line| head.lines().next() == Some(line));
+    is_table || head.split_whitespace().take(2).eq(text.split_whitespace().take(2))
 }
 
 /// The first bytes of a file; none where there is none. What cannot be read is told when it is written.

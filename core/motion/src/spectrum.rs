@@ -17,7 +17,7 @@ use std::sync::Arc;
 use honami_model::clip::FrameTimes;
 use realfft::{RealFftPlanner, RealToComplex};
 
-pub use peaks::Peak;
+pub use peaks::{Peak, aliases_hz, may_be_alias};
 
 /// Fewer samples than this say nothing of frequencies.
 const FEWEST: usize = 8;

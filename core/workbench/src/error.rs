@@ -646,6 +646,9 @@ pub enum WorkbenchError {
         /// Half the rate, hertz.
         nyquist_hz: f64,
     },
+    /// A record cannot be cut into such pieces.
+    #[error(transparent)]
+    Piece(#[from] crate::densities::PieceError),
     /// Nothing is left of a record between two times.
     #[error("{what}")]
     NothingLeft {

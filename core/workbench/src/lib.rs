@@ -9,6 +9,7 @@ pub mod compare;
 pub mod components;
 pub mod correct;
 pub mod dense;
+pub mod densities;
 pub mod doctor;
 pub mod drive;
 mod ear;

@@ -8,11 +8,13 @@ use honami_exchange::TrackRow;
 use honami_model::clip::FrameTimes;
 use honami_model::track::{Span, TrackId};
 use honami_motion::spectrum::{Analyser, Spectrum};
+use honami_motion::welch::Welch;
 
 use honami_store::Project;
 
 pub use honami_motion::spectrum::Peak;
 
+use crate::densities::{self, Density, HalfPower, Pieces};
 use crate::error::WorkbenchError;
 use crate::sways::{self, Swing, Within};
 
@@ -33,6 +35,8 @@ pub struct Wanted {
     pub n_peaks: usize,
     /// When, and none at or below which frequency.
     pub within: Within,
+    /// What densities are taken of.
+    pub pieces: Pieces,
 }
 
 /// What sways.
@@ -60,6 +64,18 @@ pub struct Line {
     /// The share of the power about the strongest that is common to several tracks, 0 to 1 (see
     /// [`Analyser::coherence`]).
     pub coherence: Option<f64>,
+    /// Power of x and y together over frequency, px²/Hz: of several tracks the median. `None` where frames are unevenly timed, or
+    /// nothing was seen as long as a piece without a break.
+    pub density: Option<Density>,
+}
+
+impl Line {
+    /// How broad the density is about the strongest peak.
+    #[must_use]
+    pub fn half_power(&self) -> Option<HalfPower> {
+        let hz = self.peaks.first()?.hz;
+        self.density.as_ref()?.peak([hz / ABOUT, hz * ABOUT])
+    }
 }
 
 /// Frequencies of a project or of a table of tracks.
@@ -73,6 +89,8 @@ pub struct Spectra {
     pub start_s: f64,
     /// Frame rate, where frames are evenly timed.
     pub fps: Option<f64>,
+    /// Length of the pieces that densities are of, seconds, where there are any.
+    pub piece_s: Option<f64>,
     /// All tracks together, then groups, then tracks.
     pub lines: Vec<Line>,
     /// Tracks that were seen too briefly to say anything of, in fewer than 8 of the frames that were looked at.
@@ -145,6 +163,18 @@ fn of(
     let spans: BTreeMap<TrackId, &Span> = tracks.iter().map(|(id, span)| (*id, &**span)).collect();
     let fps = spectra.first().and_then(|(_, spectrum)| spectrum.even_fps);
     let swing = |ids: &[TrackId], peaks: &[Peak]| swing_of(&spans, ids, fps?, peaks.first()?.hz);
+    let welch = match fps {
+        Some(fps) => wanted.pieces.welch(fps, times.len() as usize)?,
+        None => None,
+    };
+    let of_track = |(id, span): &(TrackId, Arc<Span>)| {
+        Some((*id, densities::of_track(welch.as_ref()?, &positions(span, times.len()))?))
+    };
+    let densities: BTreeMap<TrackId, Density> = tracks.iter().filter_map(of_track).collect();
+    let density = |ids: &[TrackId]| {
+        let of: Vec<Density> = ids.iter().filter_map(|id| densities.get(id).cloned()).collect();
+        Density::median(&of)
+    };
     let median = |subject, of: Vec<Spectrum>, ids: &[TrackId]| {
         let median = Spectrum::median(&of)?;
         let peaks = wanted.of(&median, OVER_FLOOR_OF_MANY);
@@ -152,7 +182,8 @@ fn of(
             ids.iter().filter_map(|id| Some(positions(spans.get(id)?, times.len()))).collect();
         let coherence = peaks.first().and_then(|peak| analyser.coherence(&positions, peak.hz));
         let swing = swing(ids, &peaks);
-        Some(Line { subject, n_tracks: median.n_tracks, peaks, swing, coherence })
+        let n_tracks = median.n_tracks;
+        Some(Line { subject, n_tracks, peaks, swing, coherence, density: density(ids) })
     };
     let all: Vec<Spectrum> = spectra.iter().map(|(_, spectrum)| spectrum.clone()).collect();
     let first = all.first().cloned().ok_or(WorkbenchError::TooBrief)?;
@@ -172,13 +203,15 @@ fn of(
     lines.extend(spectra.iter().map(|(id, spectrum)| {
         let peaks = wanted.of(spectrum, OVER_FLOOR);
         let swing = if are_few { swing(&[*id], &peaks) } else { None };
-        Line { subject: Subject::Track(*id), n_tracks: 1, peaks, swing, coherence: None }
+        let density = density(&[*id]);
+        Line { subject: Subject::Track(*id), n_tracks: 1, peaks, swing, coherence: None, density }
     }));
     Ok(Spectra {
         resolution_hz: first.resolution_hz,
         nyquist_hz: first.nyquist_hz,
         start_s: times.as_slice()[0],
         fps: first.even_fps,
+        piece_s: welch.as_ref().map(Welch::piece_s),
         brief,
         lines,
     })

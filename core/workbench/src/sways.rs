@@ -7,15 +7,19 @@ mod tests;
 use std::path::Path;
 
 use honami_motion::accuracy;
+use honami_motion::spectrum;
 use honami_motion::swing::swing;
 pub use honami_motion::swing::{Manner, NoSwing, Swing, Told};
 
+use crate::densities::{Density, HalfPower, Pieces};
 use crate::error::WorkbenchError;
 use table::Table;
 pub use table::{Kind, kind};
 
 /// Slower than so many times in the whole series is a drift.
 const LOWEST_CYCLES: f64 = 3.0;
+/// A peak of the density lies within this factor of its swing.
+const ABOUT: f64 = 1.3;
 
 /// What of a record is looked at.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -39,38 +43,80 @@ pub struct Sways {
     pub start_s: f64,
     /// Nothing slower was looked for, hertz.
     pub lowest_hz: f64,
-    /// The name of each, and its strongest swing, or why it has none.
-    pub series: Vec<(String, Result<Swing, NoSwing>)>,
+    /// Length of the pieces that densities are of, seconds, if the record is as long as one.
+    pub piece_s: Option<f64>,
+    /// What the series are measured in, if that is known.
+    pub unit: Option<&'static str>,
+    /// Each of them.
+    pub series: Vec<Series>,
     /// Their median.
     pub median: Option<Swing>,
+}
+
+/// A series.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Series {
+    /// Its name.
+    pub name: String,
+    /// Its strongest swing, or why it has none.
+    pub swing: Result<Swing, NoSwing>,
+    /// Its power over frequency, the unit squared for each hertz; `None` where the record is too short for a piece.
+    pub density: Option<Density>,
 }
 
 /// How sensors swing, each in the direction in which it moves most.
 ///
 /// # Errors
 /// What the table says of its lines, [`WorkbenchError::Series`] for times that are uneven, and
-/// [`WorkbenchError::TooFast`].
-pub fn of_sensors(path: &Path, within: Within) -> Result<Sways, WorkbenchError> {
-    of(table::sensors(path, within)?, within)
+/// [`WorkbenchError::TooFast`], [`WorkbenchError::Piece`].
+pub fn of_sensors(path: &Path, within: Within, pieces: Pieces) -> Result<Sways, WorkbenchError> {
+    of(table::sensors(path, within)?, within, pieces)
 }
 
 /// How columns of numbers swing: samples in rows, at a rate that somebody knows or with a column of times.
 ///
 /// # Errors
-/// [`WorkbenchError::Series`] with the line, and [`WorkbenchError::TooFast`].
-pub fn of_columns(path: &Path, fps: Option<f64>, within: Within) -> Result<Sways, WorkbenchError> {
-    of(table::columns(path, fps, within)?, within)
+/// [`WorkbenchError::Series`] with the line, [`WorkbenchError::TooFast`], and [`WorkbenchError::Piece`].
+pub fn of_columns(
+    path: &Path,
+    fps: Option<f64>,
+    within: Within,
+    pieces: Pieces,
+) -> Result<Sways, WorkbenchError> {
+    of(table::columns(path, fps, within)?, within, pieces)
 }
 
-fn of(table: Table, within: Within) -> Result<Sways, WorkbenchError> {
-    let Table { fps, start_s, series } = table;
+fn of(table: Table, within: Within, pieces: Pieces) -> Result<Sways, WorkbenchError> {
+    let Table { fps, start_s, unit, series } = table;
     let n_samples = series.first().map_or(0, |(_, series)| series.len());
     within.check_above(fps / 2.0)?;
     let lowest_hz = within.above_hz.max(LOWEST_CYCLES * fps / n_samples.max(1) as f64);
-    let told = |(name, series): (String, Vec<f64>)| (name, swing(&series, fps, [lowest_hz, fps / 2.0]));
+    let welch = pieces.welch(fps, n_samples)?;
+    let told = |(name, series): (String, Vec<f64>)| Series {
+        name,
+        swing: swing(&series, fps, [lowest_hz, fps / 2.0]),
+        density: welch.as_ref().and_then(|welch| welch.density(&[&series])),
+    };
     let series: Vec<_> = series.into_iter().map(told).collect();
-    let median = median(series.iter().filter_map(|(_, swing)| swing.clone().ok()).collect());
-    Ok(Sways { fps, n_samples, start_s, lowest_hz, series, median })
+    let median = median(series.iter().filter_map(|series| series.swing.clone().ok()).collect());
+    let piece_s = welch.map(|welch| welch.piece_s());
+    Ok(Sways { fps, n_samples, start_s, lowest_hz, piece_s, unit, series, median })
+}
+
+impl Sways {
+    /// How broad the density of a series is about its swing, if it has one.
+    #[must_use]
+    pub fn half_power(&self, series: &Series) -> Option<HalfPower> {
+        let hz = series.swing.as_ref().ok()?.damped_hz();
+        series.density.as_ref()?.peak([hz / ABOUT, hz * ABOUT])
+    }
+
+    /// What else the strongest swing may be, hertz: it is so near half the rate that it may be faster than can be seen.
+    #[must_use]
+    pub fn may_be_alias(&self) -> Option<(f64, Vec<f64>)> {
+        let hz = self.median?.damped_hz();
+        spectrum::may_be_alias(hz, self.fps / 2.0).then(|| (hz, spectrum::aliases_hz(hz, self.fps)))
+    }
 }
 
 impl Within {

@@ -1,6 +1,5 @@
 //! Draws a state: pure, from the state and the picture at hand to a frame of cells.
 
-mod braille;
 pub mod column;
 pub mod forest;
 mod form;

@@ -5,6 +5,7 @@ pub(super) mod grow;
 pub(super) mod matte;
 pub(super) mod plant;
 pub(super) mod space;
+pub(super) mod spectrum;
 pub(super) mod view;
 
 use std::path::PathBuf;
@@ -93,7 +94,7 @@ pub(super) enum Command {
     /// How far the clocks of two clips are apart, with a standard error.
     Sync(space::Sync),
     /// Frequencies of tracks and groups, in Hz from the frame times.
-    Spectrum(Spectrum),
+    Spectrum(spectrum::Spectrum),
     /// What moves together: where, along which line and how fast, by bi-orthogonal decomposition of the tracks.
     ///
     /// A row for each component that stands out of the noise, the strongest first: its share of all motion; its singular value,
@@ -275,31 +276,6 @@ pub(super) struct Compare {
     /// True frame rate of the clip.
     #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = frames_per_second)]
     pub(super) fps: Option<f64>,
-}
-
-#[derive(Args, Debug)]
-pub(super) struct Spectrum {
-    /// Project file (.honami), a table of tracks (.csv), of sensors as `simulate` writes it (.csv), or columns of numbers
-    /// with one of times (time_s, t_s, time, t) or with --fps.
-    pub(super) project: PathBuf,
-    /// It is columns of numbers without times, so many rows a second: strain, tilt or whatever was recorded of what swings.
-    #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = frames_per_second)]
-    pub(super) fps: Option<f64>,
-    /// Only this track; of tracks alone.
-    #[arg(long, value_name = "ID")]
-    pub(super) track: Option<u32>,
-    /// How many peaks to name for each, 3 where it is not said; of tracks alone, other series have their strongest swing.
-    #[arg(long, value_name = "N")]
-    pub(super) peaks: Option<usize>,
-    /// Leave out what is slower: gusts move a plant more slowly than it swings.
-    #[arg(long, value_name = "HZ", default_value_t = 0.0, value_parser = hertz)]
-    pub(super) above: f64,
-    /// From this time on, seconds. Where what was held is let go within a record is found without it, and told.
-    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = seconds)]
-    pub(super) from: Option<f64>,
-    /// To this time, seconds.
-    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = seconds)]
-    pub(super) to: Option<f64>,
 }
 
 #[derive(Args, Debug)]

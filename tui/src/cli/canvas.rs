@@ -100,6 +100,12 @@ impl Canvas {
         ));
     }
 
+    /// A closed field without an edge.
+    pub(super) fn area(&mut self, points: &[[f64; 2]], fill: &str) {
+        let points: Vec<String> = points.iter().map(|[x, y]| format!("{x:.1},{y:.1}")).collect();
+        self.put(format_args!("<polygon points=\"{}\" fill=\"{fill}\"/>", points.join(" ")));
+    }
+
     pub(super) fn dot(&mut self, [x, y]: [f64; 2], pen: &Pen) {
         self.put(format_args!("<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"3.2\" fill=\"{}\"/>", pen.colour));
     }

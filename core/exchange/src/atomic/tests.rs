@@ -55,6 +55,8 @@ fn what_was_written_by_others_stays() {
     for (head, text, wanted) in [
         ("HIERARCHY\nROOT a", "HIERARCHY\nROOT b", true),
         ("# 1 2 3", "# number type", false),
+        ("series,hz\na,1", "series,hz\nb,2", true),
+        ("series,hz,x\na,1", "series,hz\nb,2", false),
         ("\u{fffd}", "<svg a", false),
     ] {
         assert_eq!(is_begun_alike(head.as_bytes(), text), wanted);

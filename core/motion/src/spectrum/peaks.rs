@@ -79,8 +79,8 @@ fn peak_at(spectrum: &Spectrum, top: usize, cell: f64) -> Peak {
         hz,
         amplitude_px: (0.5 * log_power).exp(),
         over_floor: log_power.exp() / floor(spectrum, top, cell),
-        aliases_hz: spectrum.even_fps.map(|fps| aliases(hz, fps)).unwrap_or_default(),
-        near_nyquist: hz > TOP_OF_BAND * spectrum.nyquist_hz,
+        aliases_hz: spectrum.even_fps.map(|fps| aliases_hz(hz, fps)).unwrap_or_default(),
+        near_nyquist: may_be_alias(hz, spectrum.nyquist_hz),
     }
 }
 
@@ -100,7 +100,15 @@ fn floor(spectrum: &Spectrum, top: usize, cell: f64) -> f64 {
     (median / (1.0 - 1.0 / (6.0 * spectrum.n_tracks as f64))).max(power[top] * 1e-12)
 }
 
-fn aliases(hz: f64, fps: f64) -> Vec<f64> {
+/// True frequencies that show up at `hz` as well where there are `fps` samples a second, |k fps ± hz|: the three lowest, hertz.
+#[must_use]
+pub fn aliases_hz(hz: f64, fps: f64) -> Vec<f64> {
     let folds = (1..=N_ALIASES).flat_map(|k| [f64::from(k) * fps - hz, f64::from(k) * fps + hz]);
     folds.take(N_ALIASES as usize).collect()
+}
+
+/// Whether a peak lies in the top fifth of the band, where what is faster than the band shows up first.
+#[must_use]
+pub fn may_be_alias(hz: f64, nyquist_hz: f64) -> bool {
+    hz > TOP_OF_BAND * nyquist_hz
 }

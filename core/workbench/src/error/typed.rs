@@ -30,6 +30,7 @@ impl WorkbenchError {
                 | Self::Cameras(CamerasError::Pairs { .. })
                 | Self::NoVertices
                 | Self::TooFast { .. }
+                | Self::Piece(_)
                 | Self::Structure(
                     Grown::Shift(_)
                         | Grown::Copies

@@ -51,6 +51,8 @@ pub(super) struct Table {
     pub(super) fps: f64,
     /// Time of the first sample, seconds.
     pub(super) start_s: f64,
+    /// What the series are measured in, if that is known.
+    pub(super) unit: Option<&'static str>,
     pub(super) series: Vec<(String, Vec<f64>)>,
 }
 
@@ -88,7 +90,7 @@ pub(super) fn sensors(path: &Path, within: Within) -> Result<Table, WorkbenchErr
         let most = axes.into_iter().max_by(|a, b| variance(a).total_cmp(&variance(b)));
         (format!("sensor {sensor}"), most.unwrap_or_default())
     });
-    Ok(Table { fps, start_s: times[range.start], series: series.collect() })
+    Ok(Table { fps, start_s: times[range.start], unit: Some("m"), series: series.collect() })
 }
 
 /// Columns: samples in rows, at a rate that somebody knows or with a column of times.
@@ -121,7 +123,7 @@ pub(super) fn columns(path: &Path, fps: Option<f64>, within: Within) -> Result<T
         )));
     }
     let series = names.into_iter().zip(values).map(|(name, column)| (name, column[range.clone()].to_vec()));
-    Ok(Table { fps: found, start_s: times[range.start], series: series.collect() })
+    Ok(Table { fps: found, start_s: times[range.start], unit: None, series: series.collect() })
 }
 
 /// Rows of numbers under names.

@@ -15,7 +15,8 @@ fn read(text: &str, fps: Option<f64>, within: Within) -> Result<Sways, String> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("record.txt");
     fs::write(&path, text).unwrap();
-    of_columns(&path, fps, within).map_err(|error| error.to_string().replace(path.to_str().unwrap(), "FILE"))
+    of_columns(&path, fps, within, Pieces::default())
+        .map_err(|error| error.to_string().replace(path.to_str().unwrap(), "FILE"))
 }
 
 fn rows(head: &str, row: impl Fn(f64) -> String) -> String {
@@ -37,7 +38,7 @@ fn a_record_is_read_however_its_columns_are_parted_and_named() {
     ] {
         let found = read(&text, fps, Within::default()).unwrap();
         assert!((found.fps - 10.0).abs() < 1e-6 && found.n_samples == 200, "{name}: {found:?}");
-        assert_eq!(found.series[0].0, name);
+        assert_eq!(found.series[0].name, name);
         let median = found.median.unwrap();
         assert!(
             (median.hz.value - 0.5).abs() < 1e-4 && (median.ratio.value - 0.05).abs() < 1e-3,
@@ -102,7 +103,7 @@ fn what_is_wrong_with_a_record_is_told_by_its_line() {
 fn times_count_from_the_record_and_a_part_of_it_is_a_swing_of_its_own() {
     let text = rows("t_s,x\n", |t| format!("{},{}", t + 100.0, swung((t - 4.0).max(0.0))));
     let whole = read(&text, None, Within::default()).unwrap();
-    let Ok(swing) = &whole.series[0].1 else { panic!("{whole:?}") };
+    let Ok(swing) = &whole.series[0].swing else { panic!("{whole:?}") };
     assert_eq!((whole.start_s, swing.manner), (100.0, Manner::LetGo));
     assert!((swing.first as f64 / 10.0 - 4.0).abs() < 0.3, "{swing:?}");
     let within = Within { from_s: Some(104.0), to_s: Some(114.0), above_hz: 0.0 };

@@ -17,12 +17,12 @@ use ratatui::text::Line;
 use honami_model::track::Status;
 use honami_workbench::palette::{self, DARK, KEY, UNSEEN};
 
-use super::braille::{DOTS, braille};
 use super::{put, style};
 use crate::app::layout::{Layout, Lens};
 use crate::app::skeleton::Skeletal;
 use crate::app::state::{Mode, State};
 use crate::app::tracks::TrackRow;
+use crate::braille::{DOTS, braille};
 use crate::term::encode::Frame;
 use crate::term::glyph::Glyphs;
 

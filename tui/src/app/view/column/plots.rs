@@ -10,9 +10,9 @@ use super::style;
 use crate::app::layout::{column_of, frame_at};
 use crate::app::plotted::{Plotted, Subject};
 use crate::app::state::State;
-use crate::app::view::braille::{DOTS, braille};
 use crate::app::view::lines::wrapped;
 use crate::app::view::put;
+use crate::braille::{DOTS, braille};
 use crate::term::encode::Frame;
 
 /// Frequencies are shown up to this many times that of the peak, if that is less than all.

@@ -8,7 +8,7 @@ use ratatui::text::{Line, Span};
 
 use super::style;
 use crate::app::groups::Groups;
-use crate::app::view::braille::{DOTS, braille};
+use crate::braille::{DOTS, braille};
 
 /// How far above its leaves the lowest merge is drawn, of the height of the highest.
 const LOWEST: f64 = 0.12;
