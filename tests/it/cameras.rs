@@ -1,6 +1,6 @@
 //! `calibrate`: cameras from pictures, by the program.
 
-use honami_tests::{Bench, data};
+use honami_tests::{Bench, data, rows};
 use serde_json::Value;
 
 /// OpenCV's pictures of one side, in order.
@@ -46,4 +46,79 @@ fn opencvs_pairs_give_opencvs_numbers() {
     is_near(&found, "rms", 0.178, 0.01);
     is_near(&found["stereo"], "rms", 0.194, 0.01);
     assert_eq!(found["by_squares"], Value::Null);
+}
+
+/// The numbers of cameras that were found beside the true ones, whatever the unit: focal lengths and distance within a share.
+#[track_caller]
+fn are_as_filmed(bench: &Bench, found: &Value, folder: &str, metres: f64, share: f64) {
+    let truth = std::fs::read_to_string(bench.path(&format!("{folder}/cameras.json"))).unwrap();
+    let truth: Value = serde_json::from_str(&truth).unwrap();
+    let number = |json: &Value, path: &str| json.pointer(path).and_then(Value::as_f64).unwrap();
+    for (path, from) in [("/fx", "/stereo/left/fx"), ("/right/fx", "/stereo/right/fx")] {
+        let off = number(found, from) / number(&truth, path) - 1.0;
+        assert!(off.abs() < share, "{path}: {} % off", 100.0 * off);
+    }
+    let baseline = number(&truth, "/stereo/baseline");
+    for k in 0..3 {
+        let path = format!("/stereo/shift/{k}");
+        let off = (number(found, &path) * metres - number(&truth, &path)) / baseline;
+        assert!(off.abs() < share, "{path}: {} % of the distance off", 100.0 * off);
+    }
+}
+
+#[test]
+fn a_board_that_was_filmed_gives_the_cameras_that_filmed_it() {
+    let bench = Bench::new();
+    bench.text("synth board --target board --frames 20 --size 640x480 --seed 4");
+    let line = "calibrate board/left.y4m --right board/right.y4m --square 30mm --window squares";
+    let found = bench.json(line);
+    are_as_filmed(&bench, &found, "board", 1e-3, 1e-3);
+    assert_eq!(found["unit"], "mm");
+    assert_eq!(found["views"].as_array().unwrap().len(), 20);
+}
+
+#[test]
+fn bars_that_were_tracked_give_the_cameras_that_filmed_them() {
+    let bench = Bench::new();
+    bench.text("synth bars --target bars --frames 240 --size 640x480 --seed 2");
+    for side in ["left", "right"] {
+        let truth = rows(&bench.path(&format!("bars/{side}.truth.csv")));
+        let first = truth.iter().filter(|row| row["frame"] == "0");
+        // A click is half a pixel off.
+        let points: String = first
+            .map(|row| {
+                let [x, y] = ["x", "y"].map(|axis| row[axis].parse::<f64>().unwrap() + 0.5);
+                format!("{},{x},{y}\n", row["track"])
+            })
+            .collect();
+        std::fs::write(bench.path(&format!("{side}.csv")), format!("id,x,y\n{points}")).unwrap();
+        bench.text(&format!("new {side}.honami bars/{side}.y4m"));
+        bench.text(&format!("track {side}.honami --with klt --points {side}.csv"));
+    }
+    let found =
+        bench.json("calibrate left.honami --right right.honami --rig bars/bars.toml --out found.json");
+    are_as_filmed(&bench, &found, "bars", 1.0, 0.01);
+    // By names, in another order; and what is wrong with a rig.
+    let rig = std::fs::read_to_string(bench.path("bars/bars.toml")).unwrap();
+    let turned = rig.replace("[0.0, 0.0], [-2.5, 0.0]", "[-2.5, 0.0], [0.0, 0.0]");
+    let named = r#"names = ["end", "middle", "2", "3", "4", "5"]"#;
+    std::fs::write(bench.path("named.toml"), format!("{turned}{named}\n")).unwrap();
+    let why = "no track is called end";
+    let failed = bench.run(["calibrate", "left.honami", "--rig", "named.toml"]);
+    assert!(failed.stderr.contains(why), "{}", failed.stderr);
+    let script = "name 0 middle\nname 1 end\nname 2 2\nname 3 3\nname 4 4\nname 5 5\n";
+    assert_eq!(bench.edit("left.honami", script).code, Some(0));
+    let alone = bench.json("calibrate left.honami --rig named.toml");
+    is_near(&alone, "fx", 640.0, 6.4);
+    for (text, why) in [
+        ("targets = [[0, 0], [1, 0], [2, 0], [3, 0]]", "lie on a line"),
+        ("targets = [[0, 0], [1, 0], [0, 1]]", "at least 4 points"),
+        ("targets = [[0, 0], [1, 0], [0, 1], [1, 1]]\nnames = [\"a\"]", "4 different names"),
+        ("targets = [[0, 0], [1, 0], [0, 1], [1, 1]]\ndiameter = 0", "above 0"),
+        ("bars = 2", "unknown field"),
+    ] {
+        std::fs::write(bench.path("wrong.toml"), text).unwrap();
+        let failed = bench.run(["calibrate", "left.honami", "--rig", "wrong.toml"]);
+        assert!(failed.stderr.contains(why) && failed.stderr.contains("wrong.toml"), "{}", failed.stderr);
+    }
 }

@@ -27,7 +27,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("honami-mechanics", &["honami-model"]),
     ("honami-structure", &["honami-model"]),
     ("honami-review", &["honami-model", "honami-vision"]),
-    ("honami-synth", &["honami-model"]),
+    ("honami-synth", &["honami-model", "honami-cameras"]),
     ("honami-scene", &["honami-model", "honami-exchange", "honami-mechanics", "honami-structure"]),
     ("honami-follow", &["honami-plugin", "honami-vision"]),
     ("honami-tracker-*", &["honami-plugin", "honami-vision", "honami-follow"]),

@@ -35,6 +35,8 @@ const CASES: &[Case] = &[
     ("calibrate clip.y4m --square 25in", USAGE, &["a length above 0 such as 25mm", "got 25in"]),
     ("calibrate clip.y4m --window 0", USAGE, &["pixels, 1 to 100, or squares", "got 0"]),
     ("calibrate clip.y4m", FAILED, &["none of ", "shows the whole target", "of the first: ", "9 by 6"]),
+    ("calibrate a.honami b.honami --rig bars.toml", USAGE, &["one project a camera"]),
+    ("synth stage --target bars --plant walnut.mtg", USAGE, &["--target", "--plant"]),
     ("calibrate clip.y4m --rig none.toml", FAILED, &["none.toml"]),
     // Plugins and their parameters.
     ("track p.honami --with nothing", USAGE, &["no tracker \"nothing\"", "there are:", "klt"]),

@@ -67,8 +67,13 @@ impl Camera {
     pub(crate) fn picture(&self, plant: &Plant, pose: &Pose, frame: u32, t_secs: f64) -> Picture {
         let mut canvas = self.background.clone();
         canvas.plant(plant, pose);
+        self.developed(&canvas, frame, t_secs)
+    }
+
+    /// What the sensor makes of a painted frame.
+    pub(crate) fn developed(&self, canvas: &Canvas, frame: u32, t_secs: f64) -> Picture {
         let mut sensor = Sensor::new(self.seed, frame, self.light(t_secs), self.noise);
-        sensor.picture(&canvas)
+        sensor.picture(canvas)
     }
 
     /// Strength of the light: swings of 9 s and 3.7 s, clouds and thin clouds.

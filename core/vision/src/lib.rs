@@ -16,6 +16,7 @@ pub mod horn_schunck;
 pub mod klt;
 pub mod lucas_kanade;
 pub mod meanshift;
+pub mod meeting;
 pub mod ncc;
 pub mod particles;
 pub mod piv;

@@ -7,7 +7,6 @@ use std::path::{Path, PathBuf};
 
 use honami_cameras::{Calibration, CameraError, Options, Pixel, Sighting, Stereo, Target, calibrate, stereo};
 use honami_media::{Media, OpenOptions};
-use honami_store::Project;
 pub use honami_vision::board::{Board, Window};
 use honami_vision::board::{find, refined};
 
@@ -15,6 +14,7 @@ pub use self::file::{Known, Unit};
 pub use self::rig::Rig;
 use crate::error::{CamerasError, WorkbenchError};
 use crate::progress::{Flow, Progress};
+use crate::session::Session;
 
 /// Pictures of a chessboard.
 #[derive(Clone, Debug, PartialEq)]
@@ -90,12 +90,14 @@ pub fn by_board(filmed: &Filmed, progress: &dyn Progress) -> Result<Cameras, Wor
 ///
 /// # Errors
 /// [`CamerasError::File`] of a project without tracks of all targets; as [`by_board`].
-pub fn by_rig(left: &Project, right: Option<&Project>, rig: &Rig) -> Result<Cameras, WorkbenchError> {
-    let mut sides = vec![rig::seen(left, rig)?];
-    if let Some(right) = right {
-        sides.push(rig::seen(right, rig)?);
-    }
+pub fn by_rig(left: &Session, right: Option<&Session>, rig: &Rig) -> Result<Cameras, WorkbenchError> {
+    let sessions: Vec<&Session> = std::iter::once(left).chain(right).collect();
+    let mut sides: Vec<Side> =
+        sessions.iter().map(|session| rig::seen(&session.project, rig)).collect::<Result<_, _>>()?;
     rig::thinned(&mut sides);
+    for (side, session) in sides.iter_mut().zip(sessions) {
+        rig::refined(side, rig, &session.media)?;
+    }
     calibrated(&rig.target, &sides, &Options::BARS, rig.unit)
 }
 
@@ -117,19 +119,26 @@ fn calibrated(
 
 /// What each view shows to both: nothing where one of them missed the target.
 fn together(left: &Side, right: &Side) -> Result<Vec<[Sighting; 2]>, CamerasError> {
-    let (n_left, n_right) = (left.sightings.len(), right.sightings.len());
+    let (n_left, n_right) = (left.views.len(), right.views.len());
     if n_left != n_right {
         return Err(CamerasError::Pairs { left: n_left, right: n_right });
     }
-    let of = |side: &Side, view: usize| side.sightings[view].1.clone().unwrap_or_default();
+    let of = |side: &Side, view: usize| side.views[view].seen.clone().unwrap_or_default();
     Ok((0..n_left).map(|view| [of(left, view), of(right, view)]).collect())
 }
 
 /// What one camera saw.
 struct Side {
     size: [u32; 2],
-    /// Name of each picture, and the target in it, or why it is not there.
-    sightings: Vec<(String, Result<Sighting, String>)>,
+    views: Vec<View>,
+}
+
+/// One picture.
+struct View {
+    frame: u32,
+    name: String,
+    /// The target in it, or why it is not there.
+    seen: Result<Sighting, String>,
 }
 
 impl Side {
@@ -141,7 +150,7 @@ impl Side {
     ) -> Result<(Self, Option<Self>), WorkbenchError> {
         let media = opened(paths)?;
         let (n_frames, size) = (media.clip().n_frames(), [media.clip().width, media.clip().height]);
-        let mut sides = [(); 2].map(|()| Self { size, sightings: Vec::with_capacity(n_frames as usize) });
+        let mut sides = [(); 2].map(|()| Self { size, views: Vec::with_capacity(n_frames as usize) });
         for n in 0..n_frames {
             if progress.report(u64::from(n), u64::from(n_frames), "picture") == Flow::Stop {
                 return Err(WorkbenchError::Stopped);
@@ -152,8 +161,9 @@ impl Side {
             let asked = found.as_ref().map(|at| refined(luma, at, filmed.board.columns, filmed.window));
             let asked = asked.map_err(Clone::clone);
             for (side, corners) in sides.iter_mut().zip([asked, found]) {
-                let sighting = corners.map(|at| at.into_iter().map(Pixel::from).enumerate().collect());
-                side.sightings.push((name(paths, n), sighting.map_err(|why| why.to_string())));
+                let seen = corners.map(|at| at.into_iter().map(Pixel::from).enumerate().collect());
+                let seen = seen.map_err(|why| why.to_string());
+                side.views.push(View { frame: n, name: name(paths, n), seen });
             }
         }
         let [asked, fitting] = sides;
@@ -162,8 +172,8 @@ impl Side {
 
     fn calibrated(&self, target: &Target, options: &Options) -> Result<Calibrated, WorkbenchError> {
         let (mut views, mut shown, mut left_out) = (Vec::new(), Vec::new(), Vec::new());
-        for (name, sighting) in &self.sightings {
-            match sighting {
+        for View { name, seen, .. } in &self.views {
+            match seen {
                 Ok(sighting) => {
                     views.push(sighting.clone());
                     shown.push(name.clone());

@@ -1,5 +1,7 @@
 //! Clips with known truth, written to disk.
 
+mod stage;
+
 use std::path::{Path, PathBuf};
 
 use honami_exchange::{TruthRow, Writer};
@@ -7,6 +9,8 @@ use honami_media::write as movie;
 use honami_media::write::Format;
 use honami_model::picture::Range;
 use honami_synth::{Moving, Scene, Settings};
+
+pub use self::stage::{Staged, stage};
 
 use crate::error::WorkbenchError;
 use crate::progress::{Flow, Progress};
@@ -58,14 +62,7 @@ fn write(scene: &Scene, clip: &Path, progress: &dyn Progress) -> Result<Generate
     for row in rows(scene) {
         table.write(&row)?;
     }
-    let format = Format {
-        width: settings.width,
-        height: settings.height,
-        fps: settings.fps,
-        colour: true,
-        range: Range::Full,
-    };
-    let mut movie = movie::create(clip, &format)?;
+    let mut movie = movie::create(clip, &format(settings))?;
     for frame in 0..settings.n_frames {
         if progress.report(u64::from(frame), u64::from(settings.n_frames), "frame") == Flow::Stop {
             return Err(WorkbenchError::Stopped);
@@ -85,6 +82,11 @@ fn write(scene: &Scene, clip: &Path, progress: &dyn Progress) -> Result<Generate
         n_branches: scene.truth().branches.len(),
         step_px: scene.mean_step_px(),
     })
+}
+
+fn format(settings: &Settings) -> Format {
+    let Settings { width, height, fps, .. } = *settings;
+    Format { width, height, fps, colour: true, range: Range::Full }
 }
 
 /// Where the truth of a clip lies: `storm.y4m` → `storm.truth.csv`.

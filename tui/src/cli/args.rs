@@ -393,8 +393,12 @@ pub(super) enum ExportWhat {
 
 #[derive(Args, Debug)]
 pub(super) struct Synth {
-    /// Clip to write: a .y4m or .mp4 file, or a folder of PNG files. The truth goes beside it.
+    /// Clip to write: a .y4m or .mp4 file, or a folder of PNG files. The truth goes beside it. Of a --target a new folder.
     pub(super) out: PathBuf,
+    /// Film no plant but a target that is carried before two cameras, to try `calibrate` on: both clips, where the target's
+    /// points are seen, and the true cameras.
+    #[arg(long, value_name = "TARGET", conflicts_with_all = ["wind", "leaves", "plant"])]
+    pub(super) target: Option<cameras::TargetKind>,
     /// How hard it blows: mean leaf displacement of 1.5, 3.4 or 5.8 px per frame at 960x720; of a --plant gusts of 3, 8 or
     /// 18 m/s.
     #[arg(long, default_value = "calm")]

@@ -1,13 +1,17 @@
 //! `calibrate`: cameras from pictures of a chessboard, or from tracks of targets.
 
+use std::path::Path;
+
 use honami_workbench::calibrate::{self, Calibrated, Cameras, Filmed, file, rig};
 use honami_workbench::cameras::Stereo;
 use honami_workbench::cameras::camera::NUMBERS;
+use honami_workbench::session::{Session, SessionOptions};
 use serde_json::json;
 
 use super::args::Common;
 use super::args::cameras::Calibrate;
-use super::{Answer, look, report, want};
+use super::{Answer, report, there, told_options, want};
+use crate::app::opening::where_is_the_clip;
 
 /// Finds the target in all views, and the cameras that took them.
 pub(super) fn calibrate(args: &Calibrate, common: &Common) -> anyhow::Result<Answer> {
@@ -17,8 +21,8 @@ pub(super) fn calibrate(args: &Calibrate, common: &Common) -> anyhow::Result<Ans
                 "--rig takes one project a camera: LEFT.honami --right RIGHT.honami".to_owned()
             })?;
             let rig = rig::read(path)?;
-            let right = args.right.first().map(|path| look(path)).transpose()?;
-            calibrate::by_rig(&look(&args.images[0])?, right.as_ref(), &rig)?
+            let right = args.right.first().map(|path| opened(path, common)).transpose()?;
+            calibrate::by_rig(&opened(&args.images[0], common)?, right.as_ref(), &rig)?
         }
         None => calibrate::by_board(&filmed(args), &report::Bar::with(common))?,
     };
@@ -28,6 +32,12 @@ pub(super) fn calibrate(args: &Calibrate, common: &Common) -> anyhow::Result<Ans
         answer.text += &format!("\nwritten: {}", out.display());
     }
     Ok(answer)
+}
+
+fn opened(path: &Path, common: &Common) -> anyhow::Result<Session> {
+    there(path)?;
+    let options = SessionOptions { read_only: true, ..told_options(common) };
+    Session::open(path, &options).map_err(|error| where_is_the_clip(error, path))
 }
 
 fn filmed(args: &Calibrate) -> Filmed {

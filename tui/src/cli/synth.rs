@@ -7,7 +7,7 @@ use std::path::Path;
 
 use anyhow::Context as _;
 use honami_model::brief::counted;
-use honami_workbench::generate::{self, Generated};
+use honami_workbench::generate::{self, Generated, Staged};
 use honami_workbench::media;
 use honami_workbench::plant::mover::Mover;
 use honami_workbench::plant::sway::Motion;
@@ -17,10 +17,11 @@ use honami_workbench::plant::{self, Wish, film};
 use honami_workbench::plugins::{Kind, quoted};
 use honami_workbench::progress::{Flow, Progress};
 use honami_workbench::session::Session;
-use honami_workbench::synth::{Level, Settings};
+use honami_workbench::synth::{Carried, Level, Settings};
 use honami_workbench::track::PointSource;
 use serde_json::json;
 
+use super::args::cameras::TargetKind;
 use super::args::{Common, Demo, Synth, Wind};
 use super::{Answer, Outcome, groups, options, project, report, show, simulate, told_options, track};
 use crate::app::Plan;
@@ -46,6 +47,9 @@ pub(super) fn synth(args: &Synth, common: &Common) -> anyhow::Result<Answer> {
         settings.n_leaves = n_leaves;
     }
     anyhow::ensure!(!args.out.exists(), "{} is there already: choose another name", args.out.display());
+    if let Some(target) = args.target {
+        return stage(target, &settings, &args.out, common);
+    }
     if let Some(source) = &args.plant {
         return film(args, source, &settings, common);
     }
@@ -95,6 +99,23 @@ fn film(args: &Synth, source: &str, settings: &Settings, common: &Common) -> any
         "warnings": warnings,
     });
     Ok(answer)
+}
+
+/// Films a target by two cameras.
+fn stage(target: TargetKind, settings: &Settings, out: &Path, common: &Common) -> anyhow::Result<Answer> {
+    let carried = match target {
+        TargetKind::Board => Carried::Board,
+        TargetKind::Bars => Carried::Bars,
+    };
+    let made = generate::stage(carried, settings, out, &report::Bar::with(common))?;
+    let Staged { files, n_points, baseline_m } = &made;
+    let names: Vec<String> = files.iter().map(|path| path.display().to_string()).collect();
+    let text = format!(
+        "{n_points} points before two cameras that stand {baseline_m:.3} m apart: {}",
+        names.join(", ")
+    );
+    let json = json!({ "files": names, "points": n_points, "baseline_m": baseline_m });
+    Ok(Answer { json, text, done: true })
 }
 
 fn describe(made: &Generated) -> Answer {

@@ -1,11 +1,8 @@
 //! Corners to a fraction of a pixel: where every edge around them points to.
-//!
-//! W. Förstner, E. Gülch, "A fast operator for detection and precise location of distinct points", 1987: at each pixel the gradient g stands
-//! across its edge, and the edge goes through the corner c, so `Σ w g gᵀ (p - c) = 0`.
 
 use honami_model::picture::Gray;
 
-use crate::sample::patch;
+use crate::meeting::{self, Lines, meeting};
 
 /// How much of the picture around a corner is looked at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,7 +14,6 @@ pub enum Window {
     Radius(u32),
 }
 
-const STEPS: usize = 30;
 /// At rest, pixels.
 const AT_REST_PX: f64 = 1e-4;
 /// How far a window reaches, of the distance to the next corner.
@@ -34,7 +30,12 @@ pub fn refined(picture: &Gray<'_>, corners: &[[f64; 2]], columns: usize, window:
         .map(|i| {
             let cell = cell(corners, columns, i);
             let weights = Weights::new(cell, window);
-            refine(picture, corners[i], &weights).unwrap_or(corners[i])
+            let window = meeting::Window {
+                weight: |off| weights.of(off),
+                radius_px: weights.radius_px,
+                at_rest_px: weights.at_rest_px,
+            };
+            meeting(picture, corners[i], Lines::Edges, &window).unwrap_or(corners[i])
         })
         .collect()
 }
@@ -90,45 +91,4 @@ impl Weights {
         }
         (-(a * a + b * b) / (2.0 * self.spread * self.spread)).exp()
     }
-}
-
-fn refine(picture: &Gray<'_>, start: [f64; 2], weights: &Weights) -> Option<[f64; 2]> {
-    let (mut at, mut window) = (start, Vec::new());
-    for _ in 0..STEPS {
-        let next = step(picture, at, weights, &mut window)?;
-        let moved = (next[0] - at[0]).hypot(next[1] - at[1]);
-        at = next;
-        if moved < weights.at_rest_px {
-            break;
-        }
-    }
-    let far = (at[0] - start[0]).hypot(at[1] - start[1]);
-    (far <= f64::from(weights.radius_px)).then_some(at)
-}
-
-/// One step, by a window that is sampled between pixels so that it lies the same about every place.
-fn step(picture: &Gray<'_>, [x, y]: [f64; 2], weights: &Weights, window: &mut Vec<f32>) -> Option<[f64; 2]> {
-    let radius = weights.radius_px;
-    patch(picture, [x as f32, y as f32], radius as u32 + 1, window);
-    let side = 2 * radius as usize + 3;
-    let (mut xx, mut xy, mut yy, mut bx, mut by) = (0.0, 0.0, 0.0, 0.0, 0.0);
-    for v in -radius..=radius {
-        for u in -radius..=radius {
-            let off = [f64::from(u), f64::from(v)];
-            let weight = weights.of(off);
-            if weight > 0.0 {
-                let at = (v + radius + 1) as usize * side + (u + radius + 1) as usize;
-                let gx = f64::from(window[at + 1] - window[at - 1]);
-                let gy = f64::from(window[at + side] - window[at - side]);
-                let (wxx, wxy, wyy) = (weight * gx * gx, weight * gx * gy, weight * gy * gy);
-                (xx, xy, yy) = (xx + wxx, xy + wxy, yy + wyy);
-                bx += wxx * off[0] + wxy * off[1];
-                by += wxy * off[0] + wyy * off[1];
-            }
-        }
-    }
-    let determinant = xx * yy - xy * xy;
-    // One edge alone tells no corner.
-    (determinant > 1e-6 * (xx + yy).powi(2))
-        .then(|| [x + (yy * bx - xy * by) / determinant, y + (xx * by - xy * bx) / determinant])
 }

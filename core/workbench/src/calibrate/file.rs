@@ -159,9 +159,25 @@ pub fn read(path: &Path) -> Result<Known, WorkbenchError> {
 /// # Errors
 /// What writing met; another file than one of cameras is not written over.
 pub fn write(cameras: &Cameras, path: &Path) -> Result<(), WorkbenchError> {
-    // What it is stands first, so that the next time it is known to be in place of one.
-    let text = format!("{:#}\n", json(cameras)).replacen('{', "{\n  \"honami\": \"cameras\",", 1);
-    export::text(path, &text)
+    export::text(path, &headed(&json(cameras)))
+}
+
+/// The text of a file of two cameras of which nothing but what they are is known.
+pub(crate) fn of_pair(pair: &Pair, sizes: [[u32; 2]; 2], unit: Unit) -> String {
+    let [mut left, mut right] = pair.cameras.map(|camera| Value::Object(numbers(camera.numbers())));
+    let stand = &pair.right_from_left;
+    let turn: [f64; 3] = stand.rotation.scaled_axis().into();
+    let shift: [f64; 3] = stand.translation.into();
+    [left["size"], right["size"]] = sizes.map(|size| json!(size));
+    left["unit"] = json!(unit);
+    left["right"] = right;
+    left["stereo"] = json!({ "turn_rad": turn, "shift": shift, "baseline": stand.translation.norm() });
+    headed(&left)
+}
+
+/// What it is stands first, so that the next time a file is known to be in place of one.
+fn headed(json: &Value) -> String {
+    format!("{json:#}\n").replacen('{', "{\n  \"honami\": \"cameras\",", 1)
 }
 
 /// All that is known of cameras.

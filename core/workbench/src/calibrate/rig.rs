@@ -5,12 +5,15 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
+use honami_cameras::homography::homography;
 use honami_cameras::{Pixel, Sighting, Target};
+use honami_media::Media;
 use honami_model::track::{Span, TrackId};
 use honami_store::Project;
+use honami_vision::meeting::middle;
 use serde::Deserialize;
 
-use super::{Side, Unit};
+use super::{Side, Unit, View};
 use crate::error::{CamerasError, WorkbenchError};
 
 /// More views than these add little: targets that are carried about stand still from frame to frame.
@@ -27,6 +30,8 @@ pub struct Rig {
     pub names: Option<Vec<String>>,
     /// The unit of their places.
     pub unit: Option<Unit>,
+    /// Of round targets how wide they are: their middles are looked for in every picture that is used, about the tracks.
+    pub diameter: Option<f64>,
 }
 
 #[derive(Deserialize)]
@@ -35,9 +40,11 @@ struct Contents {
     unit: Option<Unit>,
     targets: Vec<[f64; 2]>,
     names: Option<Vec<String>>,
+    diameter: Option<f64>,
 }
 
-/// Reads where the targets of a rig are: `targets = [[x, y], …]`, `unit = "m"` and, where tracks have names, `names = […]`.
+/// Reads where the targets of a rig are: `targets = [[x, y], …]`, `unit = "m"` and, where tracks have names,
+/// `names = […]`; `diameter = 0.16` of round targets.
 ///
 /// # Errors
 /// [`CamerasError::File`] with what is wrong: no TOML, other keys, names that are not as many or not all different, targets that
@@ -45,7 +52,7 @@ struct Contents {
 pub fn read(path: &Path) -> Result<Rig, WorkbenchError> {
     let wrong = |why: String| CamerasError::File { path: path.to_owned(), why };
     let text = fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
-    let Contents { unit, targets, names } =
+    let Contents { unit, targets, names, diameter } =
         toml::from_str(&text).map_err(|error| wrong(error.to_string().trim_end().to_owned()))?;
     let n_targets = targets.len();
     if let Some(names) = &names
@@ -60,8 +67,11 @@ pub fn read(path: &Path) -> Result<Rig, WorkbenchError> {
     if targets.iter().flatten().any(|c| !c.is_finite()) {
         return Err(wrong("the places of targets must be finite numbers".to_owned()).into());
     }
+    if diameter.is_some_and(|wide| !(wide.is_finite() && wide > 0.0)) {
+        return Err(wrong("the diameter of targets must be above 0".to_owned()).into());
+    }
     let target = Target::new(targets, true).map_err(|error| wrong(error.to_string()))?;
-    Ok(Rig { target, names, unit })
+    Ok(Rig { target, names, unit, diameter })
 }
 
 /// What a project's tracks saw of the targets: one view for each frame, left empty where fewer than four are seen.
@@ -69,7 +79,7 @@ pub(super) fn seen(project: &Project, rig: &Rig) -> Result<Side, WorkbenchError>
     let shown = project.shown_all()?;
     let spans = followed(project, rig, &shown)?;
     let clip = &project.clip().clip;
-    let sightings = (0..clip.n_frames()).map(|frame| {
+    let views = (0..clip.n_frames()).map(|frame| {
         let at = |(target, span): (usize, &Arc<Span>)| {
             let sample = span.get(frame).filter(|sample| sample.status.is_seen())?;
             Some((target, Pixel::new(f64::from(sample.x), f64::from(sample.y))))
@@ -81,9 +91,9 @@ pub(super) fn seen(project: &Project, rig: &Rig) -> Result<Side, WorkbenchError>
         } else {
             Ok(seen)
         };
-        (format!("frame {frame}"), sighting)
+        View { frame, name: format!("frame {frame}"), seen: sighting }
     });
-    Ok(Side { size: [clip.width, clip.height], sightings: sightings.collect() })
+    Ok(Side { size: [clip.width, clip.height], views: views.collect() })
 }
 
 /// The track of each target.
@@ -115,19 +125,47 @@ fn followed<'a>(
     names.iter().map(of).collect()
 }
 
-/// Few enough of the views, evenly in time, in which any camera saw the targets.
+/// Of the moments that all cameras filmed few enough, evenly in time, in which any saw the targets.
 pub(super) fn thinned(sides: &mut [Side]) {
-    let n = sides.iter().map(|side| side.sightings.len()).max().unwrap_or(0);
-    let is_seen =
-        |view: usize| sides.iter().any(|side| side.sightings.get(view).is_some_and(|(_, seen)| seen.is_ok()));
+    let n = sides.iter().map(|side| side.views.len()).min().unwrap_or(0);
+    let is_seen = |view: usize| sides.iter().any(|side| side.views[view].seen.is_ok());
     let seen: Vec<usize> = (0..n).filter(|&view| is_seen(view)).collect();
     let n_kept = seen.len().min(MOST_VIEWS);
     let kept: BTreeSet<usize> = (0..n_kept).map(|k| seen[k * seen.len() / n_kept]).collect();
     for side in sides {
-        let mut view = 0;
-        side.sightings.retain(|_| {
-            view += 1;
-            kept.contains(&(view - 1))
-        });
+        side.views.retain(|view| kept.contains(&(view.frame as usize)));
     }
+}
+
+/// The middles of round targets in place of where tracks have them.
+pub(super) fn refined(side: &mut Side, rig: &Rig, media: &Media) -> Result<(), WorkbenchError> {
+    let Some(diameter) = rig.diameter else { return Ok(()) };
+    for View { frame, seen, .. } in &mut side.views {
+        let Ok(sighting) = seen else { continue };
+        let Some(widths) = widths(sighting, rig, diameter) else { continue };
+        let picture = media.frame(*frame)?;
+        for ((_, at), wide) in sighting.iter_mut().zip(widths) {
+            if let Some(found) = middle(&picture.planes().y, (*at).into(), wide / 2.0) {
+                *at = found.into();
+            }
+        }
+    }
+    Ok(())
+}
+
+/// How wide each target looks, where it does most, pixels; none where what was seen is no plane.
+fn widths(sighting: &Sighting, rig: &Rig, diameter: f64) -> Option<Vec<f64>> {
+    let on_plane: Vec<Pixel> = sighting.iter().map(|&(point, _)| rig.target.place(point).xy()).collect();
+    let seen: Vec<Pixel> = sighting.iter().map(|&(_, at)| at).collect();
+    let h = homography(&on_plane, &seen).ok()?;
+    let wide = |at: &Pixel| {
+        let ends = (0..16).map(|k| {
+            let (sin, cos) = (f64::from(k) * std::f64::consts::PI / 16.0).sin_cos();
+            let half = Pixel::new(cos, sin) * (diameter / 2.0);
+            let [a, b] = [at + half, at - half].map(|end| h * end.push(1.0)).map(|p| p.xy() / p.z);
+            (a - b).norm()
+        });
+        ends.fold(0.0, f64::max)
+    };
+    Some(on_plane.iter().map(wide).collect())
 }

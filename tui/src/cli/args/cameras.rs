@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use honami_workbench::calibrate::{Board, Unit, Window};
 
 /// Cameras, from pictures of a chessboard or of targets on bars: focal length, centre, distortion, and of two how they stand.
@@ -86,4 +86,13 @@ fn window(text: &str) -> Result<Window, String> {
         (_, Ok(radius @ 1..=100)) => Ok(Window::Radius(radius)),
         _ => Err(format!("wanted pixels, 1 to 100, or squares, got {text}")),
     }
+}
+
+/// What `synth` has carried before cameras.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(in crate::cli) enum TargetKind {
+    /// A chessboard of 9 by 6 inner corners, squares of 30 mm.
+    Board,
+    /// Six targets on two bars, 5 m and 1 m long.
+    Bars,
 }
