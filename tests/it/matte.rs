@@ -43,14 +43,19 @@ fn paint(rgb: &mut [[u8; 3]]) -> [usize; 2] {
     n_painted
 }
 
+/// A project of three frames.
+fn filmed(bench: &Bench) {
+    fs::create_dir(bench.path("frames")).unwrap();
+    for n in 0..3 {
+        save(bench, &format!("frames/f{n}.png"), &frame(n).0);
+    }
+    bench.json("new p.honami frames --fps 25");
+}
+
 #[test]
 fn strokes_on_a_frame_become_a_mask_in_which_features_are_found() {
     let bench = Bench::new();
-    fs::create_dir(bench.path("frames")).unwrap();
-    for n in 0..3 {
-        save(&bench, &format!("frames/f{n}.png"), &frame(n).0);
-    }
-    bench.json("new p.honami frames --fps 25");
+    filmed(&bench);
     let said = bench.json("matte p.honami --picture first.png");
     assert_eq!((&said["width"], &said["height"]), (&96.into(), &72.into()));
 
@@ -118,5 +123,75 @@ fn strokes_on_a_frame_become_a_mask_in_which_features_are_found() {
         assert_eq!(ran.code, Some(1), "{line}: {}", ran.stderr);
         assert!(words.iter().all(|word| ran.stderr.contains(word)), "{line}: {}", ran.stderr);
         assert!(!bench.path("no.png").exists());
+    }
+}
+
+/// Where features were found in the first frame.
+fn found(bench: &Bench) -> Vec<[String; 2]> {
+    bench.json("export p.honami tracks t.csv");
+    let tracks = rows(&bench.path("t.csv"));
+    let first = tracks.iter().filter(|row| row["frame"] == "0");
+    first.map(|row| ["x", "y"].map(|column| row[column].clone())).collect()
+}
+
+#[test]
+fn a_matte_is_kept_heeded_told_written_and_removed() {
+    let bench = Bench::new();
+    filmed(&bench);
+    bench.json("matte p.honami --picture first.png");
+    let mut scribbled = Still::read(&bench.path("first.png")).unwrap().rgb;
+    paint(&mut scribbled);
+    save(&bench, "scribbled.png", &scribbled);
+    let none = bench.json("matte p.honami");
+    assert_eq!(none["mattes"].as_array().map(Vec::len), Some(0));
+
+    let said =
+        bench.json("matte p.honami --scribbles scribbled.png --band 4 --mask mask.png --out alpha.png");
+    assert_eq!((&said["matte"], &said["frame"]), (&1.into(), &0.into()));
+    let kept = &bench.json("matte p.honami")["mattes"][0];
+    assert_eq!((&kept["frame"], &kept["parts"]), (&said["frame"], &said["parts"]));
+    let params = &kept["provenance"]["params"];
+    assert_eq!((&params["band"], &params["marks"]), (&4.into(), &"scribbles scribbled.png".into()));
+
+    // What is kept is what was written, to the pixel.
+    let files = ["mask.png", "alpha.png"].map(|name| Still::read(&bench.path(name)).unwrap().rgb);
+    bench.json("matte p.honami --mask again.png --out alpha_again.png --parts parts.png");
+    bench.json("export p.honami mask exported.png --frame 2");
+    let again = |name: &str| Still::read(&bench.path(name)).unwrap().rgb;
+    assert_eq!([again("again.png"), again("alpha_again.png")], files);
+    assert_eq!(again("exported.png"), files[0], "it counts in later frames, too");
+
+    // Tracking heeds it by itself, as if the mask was given, and says so.
+    let text = bench.text("track p.honami --with klt");
+    assert!(text.contains("inside the matte of frame 0"), "{text}");
+    let inside = found(&bench);
+    assert!(inside.len() >= 3, "{inside:?}");
+    assert!(bench.edit("p.honami", "undo\n").text().contains("undo"));
+    bench.json("track p.honami --with klt --detect --mask mask.png");
+    assert_eq!(found(&bench), inside);
+    assert!(bench.edit("p.honami", "undo\n").text().contains("undo"));
+    let everywhere = bench.json("track p.honami --with klt --no-mask");
+    assert!(everywhere["tracks"].as_u64() > Some(0), "{everywhere}");
+    assert_eq!(everywhere["mattes"].as_array().map(Vec::len), Some(0));
+    let log = bench.json("log p.honami");
+    let log = log["log"].as_array().unwrap();
+    let runs: Vec<usize> = log
+        .iter()
+        .filter(|line| line["what"] == "run")
+        .map(|run| run["mattes"].as_array().unwrap().len())
+        .collect();
+    assert_eq!(runs, [1, 0, 0]);
+    assert_eq!(log.iter().filter(|line| line["what"] == "matte" && line["frame"] == 0).count(), 1);
+
+    // Removing is an edit as keeping was.
+    let ran = bench.line("matte p.honami --remove --frame 2");
+    assert_eq!(ran.code, Some(2), "{}", ran.stderr);
+    assert!(ran.stderr.contains("there are those of frame 0"), "{}", ran.stderr);
+    bench.json("matte p.honami --remove");
+    assert!(bench.text("matte p.honami").contains("no matte is kept"));
+    for line in ["matte p.honami --remove", "export p.honami mask no.png", "matte p.honami --mask no.png"] {
+        let ran = bench.line(line);
+        assert_eq!(ran.code, Some(1), "{line}: {}", ran.stderr);
+        assert!(ran.stderr.contains("keeps no matte"), "{line}: {}", ran.stderr);
     }
 }

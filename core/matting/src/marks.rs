@@ -18,6 +18,9 @@ pub enum Mark {
 }
 
 impl Mark {
+    /// All marks; projects keep their numbers in this order.
+    pub const ALL: [Self; 3] = [Self::Unknown, Self::Background, Self::Foreground];
+
     /// The opacity that it stands for, where it is known.
     #[must_use]
     pub fn alpha(self) -> Option<f64> {

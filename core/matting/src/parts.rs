@@ -37,7 +37,7 @@ pub enum Part {
 }
 
 impl Part {
-    /// All parts.
+    /// All parts; projects keep their numbers in this order.
     pub const ALL: [Self; 5] = [Self::Outside, Self::Inner, Self::Boundary, Self::Trunk, Self::Kept];
 
     /// What it is called.

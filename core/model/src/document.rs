@@ -28,6 +28,17 @@ impl std::fmt::Display for RunId {
     }
 }
 
+/// Number of a matte: how much of every pixel of one frame is plant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct MatteId(pub u32);
+
+impl std::fmt::Display for MatteId {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
 impl std::fmt::Display for ClusteringId {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         self.0.fmt(f)
@@ -168,6 +179,7 @@ pub struct Document {
     pub(crate) held: BTreeMap<ClusteringId, Vec<Vec<u32>>>,
     pub(crate) root: Option<[f64; 2]>,
     pub(crate) shapes: BTreeMap<(ClusteringId, u32), Shape>,
+    pub(crate) mattes: BTreeMap<u32, MatteId>,
 }
 
 impl Document {
@@ -183,6 +195,7 @@ impl Document {
             held: BTreeMap::new(),
             root: None,
             shapes: BTreeMap::new(),
+            mattes: BTreeMap::new(),
         }
     }
 
@@ -261,6 +274,19 @@ impl Document {
     pub fn shapes(&self, clustering: ClusteringId) -> impl Iterator<Item = (u32, Shape)> {
         let all = (clustering, 0)..=(clustering, u32::MAX);
         self.shapes.range(all).map(|(&(_, node), &shape)| (node, shape))
+    }
+
+    /// The mattes that are kept, in order of their frames.
+    pub fn mattes(&self) -> impl Iterator<Item = (u32, MatteId)> {
+        self.mattes.iter().map(|(&frame, &matte)| (frame, matte))
+    }
+
+    /// The matte that counts in a frame, and whose it is: the frame's own, else that of the nearest frame before, else the
+    /// first.
+    #[must_use]
+    pub fn matte_at(&self, frame: u32) -> Option<(u32, MatteId)> {
+        let at = self.mattes.range(..=frame).next_back().or_else(|| self.mattes.first_key_value());
+        at.map(|(&of, &matte)| (of, matte))
     }
 
     fn is_seen(&self, id: TrackId, track: &Track) -> bool {

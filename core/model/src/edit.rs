@@ -6,7 +6,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::document::{ClusteringId, Document, Key, Origin, RunId, ShownClustering, ShownRun, Track};
+use crate::document::{
+    ClusteringId, Document, Key, MatteId, Origin, RunId, ShownClustering, ShownRun, Track,
+};
 use crate::judgement::Judgement;
 use crate::over::Over;
 use crate::shape::Shape;
@@ -140,6 +142,13 @@ pub enum Edit {
         /// How it is shaped.
         shape: Option<Shape>,
     },
+    /// A matte says from now on where in a frame features may be, or none does.
+    KeepMatte {
+        /// Its frame, in the clip.
+        frame: u32,
+        /// The matte.
+        matte: Option<MatteId>,
+    },
 }
 
 /// Edits that are done and undone together, and one line that says what happened.
@@ -171,7 +180,8 @@ impl Edit {
             | Self::NameGroup { .. }
             | Self::HoldGroups { .. }
             | Self::PlaceRoot { .. }
-            | Self::ShapeBone { .. } => TrackSet::default(),
+            | Self::ShapeBone { .. }
+            | Self::KeepMatte { .. } => TrackSet::default(),
         }
     }
 }
@@ -271,6 +281,7 @@ impl Document {
                 };
                 Ok(Edit::ShapeBone { clustering: *clustering, node: *node, shape: old })
             }
+            Edit::KeepMatte { frame, matte } => self.keep_matte(*frame, *matte),
         }
     }
 
@@ -390,6 +401,15 @@ impl Document {
     fn clear_key(&mut self, track: TrackId, frame: u32) -> Result<Edit, EditError> {
         let key = self.live(track)?.keys.remove(&frame).ok_or(EditError::NoKey { track, frame })?;
         Ok(Edit::SetKey { track, frame, key })
+    }
+
+    fn keep_matte(&mut self, frame: u32, matte: Option<MatteId>) -> Result<Edit, EditError> {
+        self.within(frame.into()..u64::from(frame) + 1)?;
+        let old = match matte {
+            Some(matte) => self.mattes.insert(frame, matte),
+            None => self.mattes.remove(&frame),
+        };
+        Ok(Edit::KeepMatte { frame, matte: old })
     }
 
     fn show_run(&mut self, run: RunId, tracks: &TrackSet, above: Option<u32>) -> Result<Edit, EditError> {

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use honami_model::document::{ClusteringId, RunId};
+use honami_model::document::{ClusteringId, MatteId, RunId};
 use honami_model::edit::EditError;
 use honami_model::history::EntryId;
 use honami_model::track::TrackId;
@@ -73,6 +73,9 @@ pub enum StoreError {
     /// There is no such clustering.
     #[error("there is no clustering {0} in this project")]
     NoSuchClustering(ClusteringId),
+    /// There is no such matte.
+    #[error("there is no matte {0} in this project")]
+    NoSuchMatte(MatteId),
     /// The clustering cannot be kept.
     #[error("a dendrogram of {leaves} leaves cannot group {tracks} tracks")]
     Clustering {
@@ -80,6 +83,14 @@ pub enum StoreError {
         leaves: u32,
         /// Tracks given.
         tracks: usize,
+    },
+    /// The matte cannot be kept.
+    #[error("a plane of a matte has a byte for each of {wanted} pixels, not {came}")]
+    Planes {
+        /// Pixels.
+        wanted: u64,
+        /// Bytes given.
+        came: usize,
     },
     /// There is no such entry in the history.
     #[error("there is no entry {0} in the history")]

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use honami_model::document::{ClusteringId, Document, RunId};
+use honami_model::document::{ClusteringId, Document, MatteId, RunId};
 use honami_model::edit::{Edit, Transaction, apply};
 use honami_model::history::{Entry, EntryId, History, Step};
 use honami_model::track::TrackSet;
@@ -105,13 +105,16 @@ pub(crate) fn touched(conn: &Connection, step: Step) -> Result<[TrackSet; 2], St
 pub(crate) struct FirstShown {
     pub(crate) runs: BTreeMap<RunId, EntryId>,
     pub(crate) clusterings: BTreeMap<ClusteringId, EntryId>,
+    pub(crate) mattes: BTreeMap<MatteId, EntryId>,
 }
 
 /// Searches all entries, undone ones included, for those that show results.
 pub(crate) fn first_shown(conn: &Connection) -> Result<FirstShown, StoreError> {
     // The names of the edits in JSON never change; a label or name with these words is only read in vain.
-    let mut statement =
-        conn.prepare("SELECT id, command FROM entry WHERE instr(command, '\"show-') > 0 ORDER BY id")?;
+    let mut statement = conn.prepare(
+        "SELECT id, command FROM entry
+         WHERE instr(command, '\"show-') > 0 OR instr(command, '\"keep-matte') > 0 ORDER BY id",
+    )?;
     let mut rows = statement.query([])?;
     let mut first = FirstShown::default();
     while let Some(row) = rows.next()? {
@@ -122,6 +125,7 @@ pub(crate) fn first_shown(conn: &Connection) -> Result<FirstShown, StoreError> {
                 Edit::ShowClustering { clustering: Some(shown) } => {
                     first.clusterings.entry(shown.id).or_insert(id)
                 }
+                Edit::KeepMatte { matte: Some(matte), .. } => first.mattes.entry(matte).or_insert(id),
                 _ => continue,
             };
         }

@@ -6,6 +6,7 @@ use honami_model::provenance::Provenance;
 use crate::clustering::ClusteringInfo;
 use crate::error::StoreError;
 use crate::journal;
+use crate::matte::MatteInfo;
 use crate::project::Project;
 use crate::run::RunInfo;
 
@@ -27,10 +28,12 @@ pub enum LogItem {
     Run(RunInfo),
     /// A clusterer ran.
     Clustering(ClusteringInfo),
+    /// A matte was found.
+    Matte(MatteInfo),
 }
 
 impl Project {
-    /// All edits, runs and clusterings, oldest first and causes before effects: edits in the order they were
+    /// All edits, runs, clusterings and mattes, oldest first and causes before effects: edits in the order they were
     /// made, a result after the edit it was made from and before the first that shows it, by date in between.
     ///
     /// # Errors
@@ -65,6 +68,10 @@ impl Project {
         for info in self.clusterings()? {
             let shown_by = shown.clusterings.get(&info.id);
             add_result(&info.provenance.clone(), shown_by, LogItem::Clustering(info));
+        }
+        for info in self.mattes()? {
+            let shown_by = shown.mattes.get(&info.id);
+            add_result(&info.provenance.clone(), shown_by, LogItem::Matte(info));
         }
         // In the same second a result comes after the edit it was made from and before all later ones.
         lines.sort_by(|a, b| (&a.0, a.1, a.2).cmp(&(&b.0, b.1, b.2)));

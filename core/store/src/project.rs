@@ -280,6 +280,7 @@ impl Project {
             Edit::NameGroup { clustering, .. }
             | Edit::HoldGroups { clustering, .. }
             | Edit::ShapeBone { clustering, .. } => self.check_clustering(*clustering),
+            Edit::KeepMatte { matte: Some(matte), .. } => self.matte_info(*matte).map(drop),
             _ => Ok(()),
         }
     }

@@ -14,7 +14,7 @@ const APPLICATION_ID: u32 = 0x484F_4E41;
 pub(crate) const BUSY_TIMEOUT: Duration = Duration::from_secs(20);
 
 /// Step n brings schema n to n + 1; a step is never changed once it was released.
-const MIGRATIONS: [&str; 5] = [
+const MIGRATIONS: [&str; 6] = [
     "
     CREATE TABLE state (            -- one row: what changes with every edit
         id          INTEGER PRIMARY KEY CHECK (id = 1),
@@ -96,6 +96,18 @@ const MIGRATIONS: [&str; 5] = [
 ",
     "
     ALTER TABLE run ADD COLUMN request TEXT; -- JSON of the program's that ran it: what going on with it takes
+",
+    "
+    CREATE TABLE matte (            -- of one frame; its planes are a byte a pixel, zlib
+        id          INTEGER PRIMARY KEY,
+        frame       INTEGER NOT NULL,
+        width       INTEGER NOT NULL,
+        height      INTEGER NOT NULL,
+        parts       BLOB NOT NULL,  -- 0 outside, 1 inner background, 2 boundary, 3 trunk, 4 kept
+        opacity     BLOB NOT NULL,  -- 0 background to 255 plant
+        marks       BLOB NOT NULL,  -- 0 unknown, 1 background, 2 foreground
+        provenance  TEXT NOT NULL   -- JSON
+    );
 ",
 ];
 

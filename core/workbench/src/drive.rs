@@ -19,10 +19,12 @@ use crate::error::WorkbenchError;
 use crate::progress::Progress;
 use crate::stamp::SEED;
 
+mod areas;
 mod board;
 mod resume;
 mod trial;
 
+pub use areas::Areas;
 use board::Board;
 use resume::Saved;
 use trial::Before;
@@ -55,8 +57,8 @@ pub type Numbers<'a> = &'a mut dyn FnMut(u32) -> Result<Range<u32>, WorkbenchErr
 pub struct Detect {
     /// Detect in the first frame, and again every so many frames.
     pub every: Option<u32>,
-    /// A byte a pixel of the clip, non-zero where features may be; `None`: everywhere.
-    pub mask: Option<Vec<u8>>,
+    /// Where features may be.
+    pub areas: Areas,
     /// The first frame in which features are looked for, and from which others are counted.
     pub since: u32,
     /// Tracks that are there already: new features keep their distance from these, too.
@@ -364,13 +366,14 @@ impl Ride<'_> {
     /// Keeps answers. Points of the tracker's own making become tracks where features may be found; elsewhere nobody
     /// has asked for them.
     fn take(&mut self, mut answers: Vec<Points>, numbers: Numbers<'_>) -> Result<(), WorkbenchError> {
-        let mask = self.plan.detect.as_ref().and_then(|detect| detect.mask.as_deref());
         let (width, height) = (self.media.clip().width as usize, self.media.clip().height as usize);
-        let is_wanted = |row: &PointRow| {
-            let [x, y] = [row.x, row.y].map(|c| c.round().max(0.0) as usize);
-            x < width && y < height && mask.is_none_or(|mask| mask[y * width + x] != 0)
-        };
         for answer in &mut answers {
+            let frame = u32::try_from(answer.frame).unwrap_or(0);
+            let mask = self.plan.detect.as_ref().and_then(|detect| detect.areas.at(frame));
+            let is_wanted = |row: &PointRow| {
+                let [x, y] = [row.x, row.y].map(|c| c.round().max(0.0) as usize);
+                x < width && y < height && mask.is_none_or(|mask| mask[y * width + x] != 0)
+            };
             let newborn = answer.rows.iter().filter(|row| row.status == Status::Newborn && is_wanted(row));
             // Those of frames that are tracked again after a death have theirs.
             let ids: Vec<u32> = newborn.map(|row| row.id).filter(|id| !self.born.contains_key(id)).collect();
@@ -402,7 +405,8 @@ impl Ride<'_> {
         });
         let points: Vec<Point> = self.board.seen().chain(due.iter().copied()).chain(present).collect();
         let (width, height) = (view.gray.width, view.gray.height);
-        let mask = detect.mask.as_ref().map(|data| Gray { data, width, height, stride: width as usize });
+        let mask = detect.areas.at(frame_of(view));
+        let mask = mask.map(|data| Gray { data, width, height, stride: width as usize });
         let wanted = DetectRequest {
             frame: *view,
             max_features: MAX_FEATURES,

@@ -1,6 +1,7 @@
 //! What can keep a job from its end.
 
 mod cameras;
+pub(crate) mod matte;
 mod space;
 mod typed;
 
@@ -756,6 +757,9 @@ pub enum WorkbenchError {
     /// Two views do not tell where something is.
     #[error(transparent)]
     Space(#[from] SpaceError),
+    /// What is kept of mattes.
+    #[error(transparent)]
+    Kept(#[from] matte::MatteError),
     /// A thread of the program has panicked.
     #[error("a fault of the program's own; the session's log has its report")]
     Fault,

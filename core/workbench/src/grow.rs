@@ -39,7 +39,6 @@ use crate::ear::Ear;
 use crate::error::WorkbenchError;
 use crate::progress::Progress;
 use crate::stamp::stamp;
-use crate::track::{Area, mask};
 
 /// What the work is called while it goes on.
 const WHAT: &str = "growing";
@@ -209,7 +208,7 @@ pub(crate) fn check_root([x, y]: [f64; 2], clip: &Clip) -> Result<(), WorkbenchE
 
 /// Where an image is white: bright by half at least.
 fn white(image: &File, clip: &Clip) -> Result<Vec<u8>, WorkbenchError> {
-    let pixels = mask(&Area::Mask(image.into()), clip)?.unwrap_or_default();
+    let pixels = crate::track::image(&PathBuf::from(image), clip)?;
     Ok(pixels.into_iter().map(|pixel| u8::from(pixel >= WHITE)).collect())
 }
 

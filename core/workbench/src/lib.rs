@@ -45,6 +45,7 @@ pub mod used;
 pub mod versus;
 pub mod view;
 
+pub use error::matte::MatteError;
 pub use error::{CamerasError, SpaceError, WorkbenchError};
 /// Cameras that measure.
 pub use honami_cameras as cameras;

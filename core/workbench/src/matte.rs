@@ -10,6 +10,8 @@ use honami_media::{Media, Still};
 use crate::error::WorkbenchError;
 use crate::progress::{Flow, Progress};
 
+pub mod kept;
+
 /// Where marks come from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum MarkSource {
@@ -17,6 +19,8 @@ pub enum MarkSource {
     Scribbles(PathBuf),
     /// A gray picture: black is background, white the plant, gray between unknown.
     Trimap(PathBuf),
+    /// These, one a pixel, painted over the picture where it is shown.
+    Painted(Vec<Mark>),
 }
 
 /// What is wanted.
@@ -35,12 +39,20 @@ pub struct MatteRequest {
 /// What was found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Matted {
-    /// Marked pixels: background, foreground.
-    pub n_marked: [usize; 2],
+    /// What was known before, one a pixel.
+    pub marks: Vec<Mark>,
     /// The opacities.
     pub matte: Matte,
     /// What every pixel is of.
     pub parts: Parts,
+}
+
+impl Matted {
+    /// Marked pixels: background, foreground.
+    #[must_use]
+    pub fn n_marked(&self) -> [usize; 2] {
+        [Mark::Background, Mark::Foreground].map(|mark| self.marks.iter().filter(|&&m| m == mark).count())
+    }
 }
 
 /// The colours of one frame of a clip.
@@ -80,12 +92,11 @@ pub fn run(still: &Still, request: &MatteRequest, progress: &dyn Progress) -> Re
             let trimap = Still::read(path)?;
             from_trimap(&picture, &trimap.gray(), [trimap.width, trimap.height]).map_err(of(path))?
         }
+        MarkSource::Painted(marks) => marks.clone(),
     };
     let mut go_on = |share: f64| progress.report((100.0 * share) as u64, 100, "matte") == Flow::Continue;
     let matte = matte(&picture, &marks, &request.options, &mut go_on).map_err(of(&request.path))?;
-    let n_marked =
-        [Mark::Background, Mark::Foreground].map(|mark| marks.iter().filter(|&&m| m == mark).count());
-    Ok(Matted { n_marked, parts: Parts::new(&matte, &request.parts), matte })
+    Ok(Matted { marks, parts: Parts::new(&matte, &request.parts), matte })
 }
 
 /// Writes a picture of gray values, one a pixel.

@@ -35,9 +35,19 @@ pub(crate) fn stamp(
 
 /// Says which file was read, with how it was read; nothing ran that could be named.
 pub(crate) fn imported(project: &Project, params: BTreeMap<String, Value>, sha256: String) -> Provenance {
+    own(project, "import", params, sha256)
+}
+
+/// Says what honami did itself, without a plugin, with the hash of the file that it did it to, if it was one.
+pub(crate) fn own(
+    project: &Project,
+    what: &str,
+    params: BTreeMap<String, Value>,
+    sha256: String,
+) -> Provenance {
     Provenance {
-        what: "import".to_owned(),
-        plugin_id: "import".to_owned(),
+        what: what.to_owned(),
+        plugin_id: what.to_owned(),
         plugin_version: env!("CARGO_PKG_VERSION").to_owned(),
         plugin_sha256: sha256,
         abi: (0, 0),

@@ -2,35 +2,37 @@
 
 use std::collections::BTreeSet;
 use std::ops::Range;
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
 use honami_host::{CallContext, Host, Kind, PluginInfo, Tracker, Values};
-use honami_media::{Media, OpenOptions};
+use honami_media::Media;
 use honami_model::clip::Clip;
 use honami_model::document::{RunId, ShownRun};
 use honami_model::track::{TrackId, TrackSet};
 use honami_store::{Build, Project, RunHead, RunWriter, Seam};
-use serde::{Deserialize, Serialize};
 
 use crate::drive::{self, Detect, Driven, Plan, Seed};
 use crate::error::WorkbenchError;
+use crate::matte::kept::frames;
 use crate::progress::Progress;
 use crate::rebuilt::{Difference, Found, Made};
 use crate::session::Session;
 use crate::stamp::{REBUILT, stamp};
 
+mod area;
 mod ends;
 mod frames;
 mod kept;
 mod resume;
 
+pub use area::Area;
+pub(crate) use area::image;
 pub use ends::Ends;
 use frames::Kept;
 use kept::Tracked;
 use resume::Asked;
-pub use resume::{resume, unfinished};
+pub use resume::{area_of, resume, unfinished};
 
 /// Numbers that a table of points may use: above them there must be room for those of features to come.
 pub(crate) const MAX_NUMBER: u32 = i32::MAX.unsigned_abs();
@@ -46,18 +48,6 @@ pub enum PointSource {
     Detect,
     /// These; a number that the project knows is that track.
     Given(Vec<Seed>),
-}
-
-/// Where features may be found.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub enum Area {
-    /// Everywhere.
-    #[default]
-    Whole,
-    /// Where this image is not black.
-    Mask(PathBuf),
-    /// In a rectangle: x, y, width, height in pixels.
-    Rect([f64; 4]),
 }
 
 /// What to track, with what.
@@ -88,6 +78,8 @@ pub struct TrackJob {
     resumes: Option<RunId>,
     /// Tracks that are hidden in its first frame.
     hidden: TrackSet,
+    /// Frames of the mattes that it heeds.
+    mattes: Vec<u32>,
 }
 
 /// A run that has ended; give it to [`finish`].
@@ -101,6 +93,7 @@ pub struct TrackDone {
     error: Option<WorkbenchError>,
     /// What a rebuilt tracker makes of the frames before it took over.
     beside: Option<Found>,
+    mattes: Vec<u32>,
 }
 
 /// A run beside a run: what the tracker that was rebuilt on its way makes of the frames before.
@@ -146,6 +139,8 @@ pub struct TrackOutcome {
     pub seams: Vec<Seam>,
     /// What the tracker was rebuilt to last, where it was and had done frames before.
     pub rebuilt: Option<Rebuilt>,
+    /// Frames of the kept mattes inside which features were looked for; none where they were not, or everywhere.
+    pub mattes: Vec<u32>,
     /// All of that in one line.
     pub line: String,
 }
@@ -159,9 +154,11 @@ pub fn prepare(session: &mut Session, request: &TrackRequest) -> Result<TrackJob
     check_frames(&request.frames, clip)?;
     let registry = Arc::clone(&session.registry);
     let plugin = registry.find(Kind::Tracker, &request.plugin)?;
-    let mask = mask(&request.area, clip)?;
-    if mask.as_ref().is_some_and(|pixels| pixels.iter().all(|&pixel| pixel == 0)) {
-        return Err(nowhere(&request.area, clip));
+    let area = request.area.meant(session.project.document());
+    let request = &TrackRequest { area, ..request.clone() };
+    let areas = request.area.read(&session.project, clip)?;
+    if areas.are_empty() {
+        return Err(request.area.nowhere(clip));
     }
     let (seeds, detect) = match &request.points {
         PointSource::Existing => (existing(session, &request.frames, None)?, None),
@@ -169,7 +166,7 @@ pub fn prepare(session: &mut Session, request: &TrackRequest) -> Result<TrackJob
         PointSource::Given(seeds) => (given(session, seeds)?, None),
         PointSource::Detect if plugin.offers("honami.detect/1") => {
             let present = session.project.shown_all()?;
-            (Vec::new(), Some(Detect { every: request.every, mask, present, since: request.frames.start }))
+            (Vec::new(), Some(Detect { every: request.every, areas, present, since: request.frames.start }))
         }
         PointSource::Detect => {
             return Err(WorkbenchError::CannotDetect { plugin: plugin.short_name.clone() });
@@ -206,6 +203,7 @@ fn begin(
     let mut writer = session.project.begin_run(&head)?;
     writer.keep_request(&asked.text())?;
     let max_threads = threads();
+    let mattes = if detect.is_some() { request.area.mattes(&session.project)? } else { Vec::new() };
     Ok(TrackJob {
         media: Arc::clone(&session.media),
         tracker: (tracker, made),
@@ -214,6 +212,7 @@ fn begin(
         writer,
         resumes: None,
         hidden: TrackSet::default(),
+        mattes,
     })
 }
 
@@ -259,8 +258,8 @@ impl TrackJob {
             None => kept.writer.finish().map(drop)?,
         }
         let seconds = begun.elapsed().as_secs_f64();
-        let resumes = self.resumes;
-        Ok(TrackDone { run, plugin, frames, resumes, driven, seconds, error, beside })
+        let (resumes, mattes) = (self.resumes, self.mattes);
+        Ok(TrackDone { run, plugin, frames, resumes, driven, seconds, error, beside, mattes })
     }
 }
 
@@ -269,7 +268,7 @@ impl TrackJob {
 /// # Errors
 /// What the project met.
 pub fn finish(session: &mut Session, done: TrackDone) -> Result<TrackOutcome, WorkbenchError> {
-    let TrackDone { run, plugin, frames, resumes, driven, seconds, error, beside } = done;
+    let TrackDone { run, plugin, frames, resumes, driven, seconds, error, beside, mattes } = done;
     let info = session.project.run(run)?;
     let found = info.tracks;
     let n_tracks = found.len();
@@ -292,6 +291,9 @@ pub fn finish(session: &mut Session, done: TrackDone) -> Result<TrackOutcome, Wo
         session.project.commit(shown)?;
     }
     let mut line = format!("{plugin}: {tracks}, frames {}-{last}, {ends}, {seconds:.1} s", reached.start);
+    if let Some(inside) = inside(&mattes) {
+        line += &format!("; {inside}");
+    }
     let kept = match (shown, n_tracks) {
         (true, _) => format!("{tracks} up to there kept"),
         (false, 0) => "nothing was tracked".to_owned(),
@@ -326,8 +328,16 @@ pub fn finish(session: &mut Session, done: TrackDone) -> Result<TrackOutcome, Wo
         warnings,
         seams: info.seams,
         rebuilt,
+        mattes,
         line,
     })
+}
+
+/// Where features were looked for, where mattes of these frames say so: `inside the matte of frame 0`.
+#[must_use]
+pub fn inside(mattes: &[u32]) -> Option<String> {
+    let many = if mattes.len() > 1 { "s" } else { "" };
+    (!mattes.is_empty()).then(|| format!("inside the matte{many} of {}", frames(mattes)))
 }
 
 /// Keeps what a rebuilt tracker makes of the frames before, beside the run.
@@ -391,47 +401,6 @@ fn given(session: &mut Session, seeds: &[Seed]) -> Result<Vec<Seed>, WorkbenchEr
         seeds.iter().map(|seed| seed.track).filter(|&track| document.track(track).is_none()).collect();
     session.project.claim_tracks(&new)?;
     Ok(seeds.to_vec())
-}
-
-/// A byte a pixel, non-zero where features may be.
-pub(crate) fn mask(area: &Area, clip: &Clip) -> Result<Option<Vec<u8>>, WorkbenchError> {
-    let wanted = (clip.width, clip.height);
-    match area {
-        Area::Whole => Ok(None),
-        Area::Mask(path) => {
-            let options = OpenOptions { cache_bytes: Some(0), ..OpenOptions::default() };
-            let image = honami_media::open(path, &options)?;
-            let came = (image.clip().width, image.clip().height);
-            if came != wanted {
-                return Err(WorkbenchError::MaskSize { wanted, came, path: path.clone() });
-            }
-            let n_frames = image.clip().times.len();
-            if n_frames > 1 {
-                return Err(WorkbenchError::MaskFrames { n_frames, path: path.clone() });
-            }
-            let frame = image.frame(0)?;
-            let gray = frame.planes().y;
-            Ok(Some((0..gray.height).flat_map(|y| gray.row(y)).copied().collect()))
-        }
-        Area::Rect([x, y, width, height]) => {
-            let inside = |v: u32, from: f64, size: f64| (from..from + size).contains(&f64::from(v));
-            let pixel = |k: u64| {
-                let (px, py) = (k % u64::from(wanted.0), k / u64::from(wanted.0));
-                u8::from(inside(px as u32, *x, *width) && inside(py as u32, *y, *height))
-            };
-            Ok(Some((0..u64::from(wanted.0) * u64::from(wanted.1)).map(pixel).collect()))
-        }
-    }
-}
-
-/// Why nothing is detected in an area without a pixel.
-fn nowhere(area: &Area, clip: &Clip) -> WorkbenchError {
-    let of = (clip.width, clip.height);
-    match area {
-        Area::Mask(path) => WorkbenchError::EmptyMask { path: path.clone() },
-        &Area::Rect([x, y, w, h]) => WorkbenchError::EmptyRegion { x, y, w, h, of },
-        Area::Whole => WorkbenchError::EmptyRegion { x: 0.0, y: 0.0, w: of.0.into(), h: of.1.into(), of },
-    }
 }
 
 /// How many threads a plugin may use.

@@ -202,9 +202,12 @@ pub(super) struct Track {
     /// Features from a table `id,x,y[,frame]`.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["detect", "mask", "region", "every"])]
     pub(super) points: Option<PathBuf>,
-    /// Image whose black pixels get no features.
+    /// Image whose black pixels get no features (default: the mattes that the project keeps: honami matte).
     #[arg(long, value_name = "FILE", conflicts_with = "region")]
     pub(super) mask: Option<PathBuf>,
+    /// Features everywhere, also outside the kept mattes.
+    #[arg(long, conflicts_with_all = ["mask", "region", "points"])]
+    pub(super) no_mask: bool,
     /// Rectangle in pixels outside which there are no features.
     #[arg(long, value_name = "X,Y,W,H")]
     pub(super) region: Option<Region>,
@@ -216,7 +219,7 @@ pub(super) struct Track {
     pub(super) every: Option<u32>,
     /// Go on with a run that was stopped or that failed, where it saw the features last, with its tracker as it is now
     /// (default: the newest such run that no newer one has replaced).
-    #[arg(long, value_name = "RUN", num_args = 0..=1, conflicts_with_all = ["with", "set", "detect", "points", "mask", "region", "frames", "every", "watch"])]
+    #[arg(long, value_name = "RUN", num_args = 0..=1, conflicts_with_all = ["with", "set", "detect", "points", "mask", "no_mask", "region", "frames", "every", "watch"])]
     pub(super) resume: Option<Option<u32>>,
     /// Stay when all is tracked, and track again with every rebuilt file of the plugin, until Ctrl-C.
     #[arg(long)]
@@ -319,6 +322,9 @@ pub(super) struct Export {
     /// MOTChallenge: side of the box around a point, pixels.
     #[arg(long = "box", value_name = "PX", default_value_t = BOX_PX)]
     pub(super) box_px: f64,
+    /// Mask: of which frame.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(super) frame: u32,
     #[command(flatten)]
     pub(super) movie: Movie,
 }
@@ -386,6 +392,8 @@ pub(super) enum ExportWhat {
     Verdicts,
     /// What the review of every track has taken: track,segments,keystrokes,key_frames,seconds.
     Effort,
+    /// The mask of the kept matte that counts in --frame, as .png: white where features are looked for.
+    Mask,
     /// The clip with what was measured drawn over it. Filled marks were measured, hollow ones predicted or put between, crosses
     /// are where a track was lost; key-frames have a ring.
     Movie,

@@ -13,7 +13,7 @@ use serde_json::json;
 
 use super::args::{Common, Export, ExportWhat, Import, Size};
 use super::report::Bar;
-use super::{Answer, look, movie, there, want};
+use super::{Answer, look, matte, movie, there, want};
 
 /// Reads somebody else's tracks into a project.
 pub(super) fn import(args: &Import) -> anyhow::Result<Answer> {
@@ -90,6 +90,7 @@ pub(super) fn export(args: &Export, common: &Common) -> anyhow::Result<Answer> {
         ExportWhat::Tracks => tracks(args),
         ExportWhat::Groups => groups(args),
         ExportWhat::Verdicts => of_review(args, review::tables::verdicts, "verdicts"),
+        ExportWhat::Mask => matte::export(args),
         ExportWhat::Effort => of_review(args, review::tables::efforts, "reviewed tracks"),
     }
 }

@@ -2,23 +2,38 @@
 
 use honami_model::brief::counted;
 use honami_model::provenance::Provenance;
-use honami_workbench::store::{LogItem, LogLine, Seam};
+use honami_workbench::WorkbenchError;
+use honami_workbench::store::{LogItem, LogLine, Project, Seam};
+use honami_workbench::track::{area_of, inside};
 use serde_json::json;
 
-use super::args::Project;
+use super::args;
 use super::{Answer, look};
 
 /// Prints the log, oldest first.
-pub(super) fn log(args: &Project) -> anyhow::Result<Answer> {
+pub(super) fn log(args: &args::Project) -> anyhow::Result<Answer> {
     let project = look(&args.project)?;
     let lines = project.log()?;
-    let text = lines.iter().map(line).collect::<Vec<_>>().join("\n");
+    let mattes = lines.iter().map(|line| mattes(&project, line)).collect::<Result<Vec<_>, _>>()?;
+    let both = || lines.iter().zip(&mattes);
+    let text = both().map(|(of, mattes)| line(of, inside(mattes))).collect::<Vec<_>>().join("\n");
     let text = if text.is_empty() { "nothing was done to this project yet".to_owned() } else { text };
-    let json = json!({ "revision": project.revision(), "log": lines.iter().map(entry).collect::<Vec<_>>() });
+    let json = json!({ "revision": project.revision(), "log": both().map(|(of, mattes)| entry(of, mattes)).collect::<Vec<_>>() });
     Ok(Answer { json, text, done: true })
 }
 
-fn line(line: &LogLine) -> String {
+/// Frames of the mattes that a run has heeded.
+fn mattes(project: &Project, line: &LogLine) -> Result<Vec<u32>, WorkbenchError> {
+    match &line.item {
+        LogItem::Run(run) => match area_of(project, run.id)? {
+            Some(area) => area.mattes(project),
+            None => Ok(Vec::new()),
+        },
+        _ => Ok(Vec::new()),
+    }
+}
+
+fn line(line: &LogLine, inside: Option<String>) -> String {
     let date = &line.date;
     match &line.item {
         LogItem::Edit(edit) => format!("{date}  edit {}  {} ({})", edit.id, edit.label, edit.author),
@@ -27,19 +42,24 @@ fn line(line: &LogLine) -> String {
             let state = &run.state;
             let seams: String = run.seams.iter().map(|seam| format!(", {seam}")).collect();
             format!(
-                "{date}  run {}  {}: {} frames {}..{}, {state}{seams}  {made}{}",
+                "{date}  run {}  {}: {} frames {}..{}, {state}{seams}  {made}{}{}",
                 run.id,
                 made.what,
                 run.tracks,
                 found.start,
                 found.end,
-                place(made)
+                place(made),
+                inside.map_or_else(String::new, |inside| format!("  {inside}"))
             )
         }
         LogItem::Clustering(info) => {
             let made = &info.provenance;
             let (tracks, groups) = (counted(info.n_tracks, "track"), counted(info.cut as usize, "group"));
             format!("{date}  clustering {}  {tracks} in {groups}  {made}", info.id)
+        }
+        LogItem::Matte(info) => {
+            let params = info.provenance.params.iter().map(|(id, value)| format!(" {id}={value}"));
+            format!("{date}  matte {}  of frame {}{}", info.id, info.frame, params.collect::<String>())
         }
     }
 }
@@ -53,7 +73,7 @@ fn place(made: &Provenance) -> String {
     }
 }
 
-fn entry(line: &LogLine) -> serde_json::Value {
+fn entry(line: &LogLine, mattes: &[u32]) -> serde_json::Value {
     let date = &line.date;
     match &line.item {
         LogItem::Edit(edit) => {
@@ -67,6 +87,7 @@ fn entry(line: &LogLine) -> serde_json::Value {
             "tracks": run.tracks.len(),
             "frames": [run.found.start, run.found.end],
             "started_again": run.seams.iter().map(started_again).collect::<Vec<_>>(),
+            "mattes": mattes,
             "provenance": run.head.provenance,
         }),
         LogItem::Clustering(info) => json!({
@@ -75,6 +96,13 @@ fn entry(line: &LogLine) -> serde_json::Value {
             "id": info.id,
             "tracks": info.n_tracks,
             "groups": info.cut,
+            "provenance": info.provenance,
+        }),
+        LogItem::Matte(info) => json!({
+            "date": date,
+            "what": "matte",
+            "id": info.id,
+            "frame": info.frame,
             "provenance": info.provenance,
         }),
     }

@@ -1,37 +1,48 @@
 //! `matte`: how much of every pixel is plant, and the mask of what is worth tracking.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use honami_workbench::matte::{self, MarkSource, MatteRequest, Matted};
-use honami_workbench::matting::{Options, Part, PartsWish};
+use honami_model::brief::counted;
+use honami_workbench::matte::{self, MarkSource, MatteRequest, Matted, kept};
+use honami_workbench::matting::{Matte as Opacities, Options, Part, Parts, PartsWish};
 use honami_workbench::media::{self, OpenOptions, Still};
+use honami_workbench::plugins::quoted;
 use honami_workbench::session::{Session, SessionOptions};
-use serde_json::json;
+use serde_json::{Map, Value, json};
 
-use super::args::Common;
 use super::args::matte::Matte;
-use super::{Answer, report, there, told_options, want};
+use super::args::{Common, Export};
+use super::{Answer, Usage, look, report, session, there, told_options, want};
 use crate::app::opening::where_is_the_clip;
 
-/// Finds a matte and writes what was asked for.
+/// Finds a matte and writes what was asked for; of a project it is kept, and what is kept is listed.
 pub(super) fn matte(args: &Matte, common: &Common) -> anyhow::Result<Answer> {
     let of_matte: Vec<&PathBuf> = [&args.out, &args.mask, &args.parts].into_iter().flatten().collect();
     let written: Vec<&PathBuf> = args.picture.iter().chain(of_matte.iter().copied()).collect();
-    for out in &written {
-        want(out.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")), || {
-            format!("pictures are written as .png, not as {}", out.display())
-        })?;
+    written.iter().try_for_each(|out| want_png(out))?;
+    let is_project = args.picture_of.extension().is_some_and(|e| e == "honami");
+    if args.remove {
+        want(is_project, || format!("--remove is of projects, not of {}", args.picture_of.display()))?;
+        return remove(args, common);
     }
     let marks = match (&args.scribbles, &args.trimap) {
         (Some(path), _) => Some(MarkSource::Scribbles(path.clone())),
         (None, Some(path)) => Some(MarkSource::Trimap(path.clone())),
         (None, None) => None,
     };
+    if marks.is_none() && is_project && args.picture.is_none() {
+        return if of_matte.is_empty() { list(args) } else { write_kept(args, common, &of_matte) };
+    }
     want(marks.is_some() || (args.picture.is_some() && of_matte.is_empty()), || {
         "--scribbles or --trimap says what is plant and what lies behind; --picture OUT.png writes the picture to paint on"
             .to_owned()
     })?;
-    let still = still(args, common)?;
+    let frame = args.frame.unwrap_or(0);
+    let mut session = is_project.then(|| open(&args.picture_of, marks.is_none(), common)).transpose()?;
+    let still = match &session {
+        Some(session) => matte::frame(&session.media, frame)?,
+        None => still(&args.picture_of, frame)?,
+    };
     if let Some(path) = &args.picture {
         media::write::still(path, &still.rgb, still.width, still.height)?;
     }
@@ -48,34 +59,129 @@ pub(super) fn matte(args: &Matte, common: &Common) -> anyhow::Result<Answer> {
     let bar = report::Bar::with(common);
     let found = matte::run(&still, &request, &bar)?;
     drop(bar);
-    let size = [still.width, still.height];
-    if let Some(path) = &args.out {
-        matte::write_gray(path, &found.matte.gray(), size)?;
+    write(args, &found.matte, &found.parts, &still)?;
+    let mut answer = answer(&found, &written);
+    if let Some(session) = &mut session {
+        let kept = kept::keep(&mut session.project, &[(frame, &request, &found)])?;
+        answer.json["matte"] = json!(kept.first().map(|(_, id)| id));
+        answer.json["frame"] = json!(frame);
+        answer.text += &format!(
+            "\nkept as the matte of frame {frame}: features are looked for inside it; back: echo undo | honami edit {}",
+            quoted(&args.picture_of)
+        );
     }
-    if let Some(path) = &args.mask {
-        matte::write_gray(path, &found.parts.mask(), size)?;
-    }
-    if let Some(path) = &args.parts {
-        matte::write_parts(path, &found.parts, &still)?;
-    }
-    Ok(answer(&found, &written))
+    Ok(answer)
 }
 
-/// The picture: an image as it is, or a frame.
-fn still(args: &Matte, common: &Common) -> anyhow::Result<Still> {
-    let path = &args.picture_of;
-    if Still::is_one(path) {
-        want(args.frame == 0, || format!("{} is one picture: --frame is of clips", path.display()))?;
-        return Ok(Still::read(path)?);
-    }
-    if path.extension().is_none_or(|e| e != "honami") {
-        let options = OpenOptions { cache_bytes: Some(0), ..OpenOptions::default() };
-        return Ok(matte::frame(&media::open(path, &options)?, args.frame)?);
+/// Writes the mask that counts in a frame of a project.
+pub(super) fn export(args: &Export) -> anyhow::Result<Answer> {
+    want_png(&args.out)?;
+    let (of, matte) = kept::at(&look(&args.project)?, args.frame)?;
+    let parts = kept::parts(&matte)?;
+    matte::write_gray(&args.out, &parts.mask(), [parts.width, parts.height])?;
+    let n_kept = parts.n_pixels(Part::Kept);
+    let text = format!(
+        "{}: the mask of frame {of}, {} of {}x{} kept",
+        args.out.display(),
+        counted(n_kept, "pixel"),
+        parts.width,
+        parts.height
+    );
+    let json = json!({ "file": args.out, "frame": of, "width": parts.width, "height": parts.height, "kept": n_kept });
+    Ok(Answer { json, text, done: true })
+}
+
+fn want_png(out: &Path) -> Result<(), Usage> {
+    want(out.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")), || {
+        format!("pictures are written as .png, not as {}", out.display())
+    })
+}
+
+fn remove(args: &Matte, common: &Common) -> anyhow::Result<Answer> {
+    let mut session = open(&args.picture_of, false, common)?;
+    let frames = kept::remove(&mut session.project, args.frame)?;
+    let text = format!(
+        "{} of {} kept no longer; back: echo undo | honami edit {}",
+        if frames.len() == 1 { "the matte" } else { "the mattes" },
+        kept::frames(&frames),
+        quoted(&args.picture_of)
+    );
+    Ok(Answer { json: json!({ "removed": frames }), text, done: true })
+}
+
+/// What a project keeps.
+fn list(args: &Matte) -> anyhow::Result<Answer> {
+    let all = kept::all(&look(&args.picture_of)?)?;
+    let all: Vec<_> =
+        all.into_iter().filter(|one| args.frame.is_none_or(|frame| frame == one.frame)).collect();
+    let line = |one: &kept::Counting| {
+        let n_pixels = one.parts.parts.len().max(1) as f64;
+        let share = |part: &Part| {
+            format!("{} {:.1} %", part.word(), 100.0 * one.parts.n_pixels(*part) as f64 / n_pixels)
+        };
+        let shares: Vec<String> = Part::ALL.iter().rev().map(share).collect();
+        let marks = one.provenance.params.get("marks").map_or_else(String::new, |marks| format!("  {marks}"));
+        format!("frame {}  {}{marks}  {}", one.frame, shares.join(", "), one.provenance.date)
+    };
+    let text = match &all[..] {
+        [] => "no matte is kept: features are looked for everywhere".to_owned(),
+        all => all.iter().map(line).collect::<Vec<_>>().join("\n"),
+    };
+    let entry = |one: &kept::Counting| {
+        json!({
+            "matte": one.id,
+            "frame": one.frame,
+            "width": one.parts.width,
+            "height": one.parts.height,
+            "parts": counts(&one.parts),
+            "provenance": one.provenance,
+        })
+    };
+    Ok(Answer { json: json!({ "mattes": all.iter().map(entry).collect::<Vec<_>>() }), text, done: true })
+}
+
+/// Writes pictures of the matte that counts in a frame.
+fn write_kept(args: &Matte, common: &Common, written: &[&PathBuf]) -> anyhow::Result<Answer> {
+    let session = open(&args.picture_of, true, common)?;
+    let (frame, kept) = kept::at(&session.project, args.frame.unwrap_or(0))?;
+    let parts = kept::parts(&kept)?;
+    write(args, &kept::matte(&kept), &parts, &matte::frame(&session.media, frame)?)?;
+    let json = json!({ "frame": frame, "parts": counts(&parts), "files": written });
+    Ok(Answer { json, text: format!("of the matte of frame {frame}:\n{}", listed(written)), done: true })
+}
+
+/// Opens a project with its clip.
+fn open(path: &Path, read_only: bool, common: &Common) -> anyhow::Result<Session> {
+    if !read_only {
+        return session(path, common);
     }
     there(path)?;
-    let options = SessionOptions { read_only: true, ..told_options(common) };
-    let session = Session::open(path, &options).map_err(|error| where_is_the_clip(error, path))?;
-    Ok(matte::frame(&session.media, args.frame)?)
+    let options = SessionOptions { read_only, ..told_options(common) };
+    Session::open(path, &options).map_err(|error| where_is_the_clip(error, path))
+}
+
+/// The picture: an image as it is, or a frame of a clip.
+fn still(path: &Path, frame: u32) -> anyhow::Result<Still> {
+    if Still::is_one(path) {
+        want(frame == 0, || format!("{} is one picture: --frame is of clips", path.display()))?;
+        return Ok(Still::read(path)?);
+    }
+    let options = OpenOptions { cache_bytes: Some(0), ..OpenOptions::default() };
+    Ok(matte::frame(&media::open(path, &options)?, frame)?)
+}
+
+fn write(args: &Matte, opacities: &Opacities, parts: &Parts, still: &Still) -> anyhow::Result<()> {
+    let size = [still.width, still.height];
+    if let Some(path) = &args.out {
+        matte::write_gray(path, &opacities.gray(), size)?;
+    }
+    if let Some(path) = &args.mask {
+        matte::write_gray(path, &parts.mask(), size)?;
+    }
+    if let Some(path) = &args.parts {
+        matte::write_parts(path, parts, still)?;
+    }
+    Ok(())
 }
 
 fn listed(written: &[&PathBuf]) -> String {
@@ -85,16 +191,16 @@ fn listed(written: &[&PathBuf]) -> String {
 fn answer(found: &Matted, written: &[&PathBuf]) -> Answer {
     let (width, height) = (found.matte.width, found.matte.height);
     let n_pixels = f64::from(width) * f64::from(height);
-    let [background, foreground] = found.n_marked;
+    let [background, foreground] = found.n_marked();
     let mean = found.matte.alpha.iter().map(|&alpha| f64::from(alpha)).sum::<f64>() / n_pixels;
-    let shares = Part::ALL.map(|part| (part.word(), found.parts.n_pixels(part)));
     let mut text = format!(
         "{width}x{height}: {:.1} % plant, from {foreground} pixels of plant and {background} of background; {} steps",
         100.0 * mean,
         found.matte.n_steps
     );
-    for (word, n) in shares {
-        text += &format!("\n{word:<16} {:>5.1} %", 100.0 * n as f64 / n_pixels);
+    for part in Part::ALL {
+        text +=
+            &format!("\n{:<16} {:>5.1} %", part.word(), 100.0 * found.parts.n_pixels(part) as f64 / n_pixels);
     }
     if found.parts.n_pixels(Part::Kept) == 0 {
         text += "\nNothing is kept: a smaller --band keeps more";
@@ -102,16 +208,19 @@ fn answer(found: &Matted, written: &[&PathBuf]) -> Answer {
     if !written.is_empty() {
         text += &format!("\n{}", listed(written));
     }
-    let parts: serde_json::Map<_, _> =
-        shares.iter().map(|(word, n)| (word.replace(' ', "_"), json!(n))).collect();
     let json = json!({
         "width": width,
         "height": height,
         "alpha_mean": mean,
         "marked": { "background": background, "foreground": foreground },
-        "parts": parts,
+        "parts": counts(&found.parts),
         "steps": found.matte.n_steps,
         "files": written,
     });
     Answer { json, text, done: true }
+}
+
+/// Pixels of every part.
+fn counts(parts: &Parts) -> Map<String, Value> {
+    Part::ALL.iter().map(|part| (part.word().replace(' ', "_"), json!(parts.n_pixels(*part)))).collect()
 }

@@ -62,7 +62,7 @@ pub(super) fn request(session: &Session, points: PointSource) -> TrackRequest {
         points,
         frames: 0..session.media.clip().n_frames(),
         every: None,
-        area: Area::Whole,
+        area: Area::Usual,
     }
 }
 
@@ -111,8 +111,11 @@ fn points(args: &Track, session: &Session) -> anyhow::Result<PointSource> {
         return Ok(PointSource::Given(read_points(path)?));
     }
     // Whoever says where or how often to detect wants detection; a project without a track has nothing else.
-    let detect =
-        args.detect.is_some() || args.mask.is_some() || args.region.is_some() || args.every.is_some();
+    let detect = args.detect.is_some()
+        || args.no_mask
+        || args.mask.is_some()
+        || args.region.is_some()
+        || args.every.is_some();
     let none_yet = session.project.document().tracks().next().is_none();
     if detect || none_yet { Ok(PointSource::Detect) } else { Ok(PointSource::Existing) }
 }
@@ -121,7 +124,8 @@ fn area(args: &Track) -> Area {
     match (&args.mask, args.region) {
         (Some(path), _) => Area::Mask(path.clone()),
         (None, Some(Region { x, y, width, height })) => Area::Rect([x, y, width, height]),
-        (None, None) => Area::Whole,
+        (None, None) if args.no_mask => Area::Whole,
+        (None, None) => Area::Usual,
     }
 }
 
@@ -163,6 +167,7 @@ pub(super) fn describe(outcome: &TrackOutcome, project: &Path) -> Answer {
         "stopped": outcome.stopped,
         "seconds": outcome.seconds,
         "tracker_seconds": outcome.tracker_secs,
+        "mattes": outcome.mattes,
         "warnings": outcome.warnings,
         "started_again": outcome.seams.iter().map(log::started_again).collect::<Vec<_>>(),
         "rebuilt": outcome.rebuilt.as_ref().map(|rebuilt| json!({

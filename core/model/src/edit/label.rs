@@ -2,7 +2,7 @@
 
 use super::{Edit, Transaction};
 use crate::correct::Refused;
-use crate::document::{ClusteringId, Key, RunId, ShownClustering};
+use crate::document::{ClusteringId, Key, MatteId, RunId, ShownClustering};
 use crate::judgement::Judgement;
 use crate::track::{Sample, TrackId, TrackSet};
 
@@ -125,6 +125,21 @@ impl Transaction {
         Self::new(label, vec![Edit::NameGroup { clustering, node, name }])
     }
 
+    /// Mattes are kept, each with the frame that it is of.
+    #[must_use]
+    pub fn keep_mattes(mattes: &[(u32, MatteId)]) -> Self {
+        let frames: Vec<u32> = mattes.iter().map(|(frame, _)| *frame).collect();
+        let keep = |&(frame, matte): &(u32, MatteId)| Edit::KeepMatte { frame, matte: Some(matte) };
+        Self::new(format!("{} kept", of_mattes(&frames)), mattes.iter().map(keep).collect())
+    }
+
+    /// The mattes of these frames are kept no longer.
+    #[must_use]
+    pub fn remove_mattes(frames: &[u32]) -> Self {
+        let remove = |&frame: &u32| Edit::KeepMatte { frame, matte: None };
+        Self::new(format!("{} removed", of_mattes(frames)), frames.iter().map(remove).collect())
+    }
+
     /// The tracks whose samples this transaction may change.
     #[must_use]
     pub fn touched(&self) -> TrackSet {
@@ -138,4 +153,12 @@ fn named(what: &str, name: Option<&str>) -> String {
 
 fn groups(k: u32) -> String {
     if k == 1 { "1 group".to_owned() } else { format!("{k} groups") }
+}
+
+/// `matte of frame 12`, `mattes of 5 frames`.
+fn of_mattes(frames: &[u32]) -> String {
+    match frames {
+        [frame] => format!("matte of frame {frame}"),
+        frames => format!("mattes of {} frames", frames.len()),
+    }
 }

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 
 use super::{Edit, EditError, Transaction, apply};
-use crate::document::{ClusteringId, Document, Key, Made, Origin, RunId, ShownClustering};
+use crate::document::{ClusteringId, Document, Key, Made, MatteId, Origin, RunId, ShownClustering};
 use crate::judgement::{Effort, Judgement, Verdict};
 use crate::over::{Laid, Over};
 use crate::shape::Shape;
@@ -69,6 +69,8 @@ fn any_edit() -> impl Strategy<Value = Edit> {
             node,
             shape
         }),
+        (0..N_FRAMES + 1, prop::option::of((0_u32..3).prop_map(MatteId)))
+            .prop_map(|(frame, matte)| Edit::KeepMatte { frame, matte }),
     ]
 }
 

@@ -67,7 +67,7 @@ fn what_is_no_project_is_told_apart() {
         (other, "not a honami project"),
         (bench.folder.path().to_owned(), "not a honami project"),
         (bench.folder.path().join("gone.honami"), "cannot open the project"),
-        (newer, "schema 9, this honami knows up to 5; update honami"),
+        (newer, "schema 9, this honami knows up to 6; update honami"),
         (damaged, "damaged"),
         (rootless, "damaged"),
     ];
@@ -289,6 +289,7 @@ fn the_log_tells_everything_with_its_provenance() {
             LogItem::Edit(entry) => format!("{} {}", entry.id, entry.label),
             LogItem::Run(run) => format!("run {} {} {}", run.id, run.state, run.head.provenance.plugin_id),
             LogItem::Clustering(made) => format!("clustering {} of {}", made.id, made.n_tracks),
+            LogItem::Matte(made) => format!("matte {} of {}", made.id, made.frame),
         })
         .collect();
     assert_eq!(
@@ -348,6 +349,7 @@ fn the_log_tells_causes_before_effects() {
             LogItem::Edit(entry) => format!("e{}", entry.id),
             LogItem::Run(run) => format!("r{}", run.id),
             LogItem::Clustering(made) => format!("c{}", made.id),
+            LogItem::Matte(made) => format!("m{}", made.id),
         });
         assert_eq!(words.collect::<Vec<_>>().join(" "), want, "{name}");
     }
@@ -360,7 +362,7 @@ fn a_seat_is_kept_without_an_edit_and_a_project_of_before_gets_one() {
     // As the first schema was.
     let conn = Connection::open(bench.path()).unwrap();
     conn.execute_batch(
-        "DROP TABLE seam; DROP TABLE seat; ALTER TABLE run DROP COLUMN request; PRAGMA user_version = 1",
+        "DROP TABLE matte; DROP TABLE seam; DROP TABLE seat; ALTER TABLE run DROP COLUMN request; PRAGMA user_version = 1",
     )
     .unwrap();
     drop(conn);

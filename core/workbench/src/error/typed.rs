@@ -23,6 +23,7 @@ impl WorkbenchError {
                 | Self::Groups { .. }
                 | Self::NoSuchTracks
                 | Self::Matte { source: honami_matting::MattingError::Option { .. }, .. }
+                | Self::Kept(super::matte::MatteError::NoneOf { .. })
                 | Self::EmptyRegion { .. }
                 | Self::FarRoot { .. }
                 | Self::Unit { .. }

@@ -11,7 +11,7 @@ use honami_model::track::{Span, Status, TrackId, TrackSet};
 use honami_store::{Project, RunInfo, RunState, Seam, StoreError};
 use serde::{Deserialize, Serialize};
 
-use super::{Area, PointSource, TrackJob, TrackRequest, begin, mask};
+use super::{Area, PointSource, TrackJob, TrackRequest, begin};
 use crate::drive::{Detect, Seed, check_seeds, is_inside};
 use crate::error::WorkbenchError;
 use crate::session::Session;
@@ -60,6 +60,14 @@ impl Asked {
     fn seeds(&self) -> impl Iterator<Item = Seed> {
         self.seeds.iter().map(|&(frame, track, x, y)| Seed { frame, track: TrackId(track), x, y })
     }
+}
+
+/// Where a run has looked for features; `None` where it has not, or where that was not kept.
+///
+/// # Errors
+/// What the project met.
+pub fn area_of(project: &Project, run: RunId) -> Result<Option<Area>, WorkbenchError> {
+    Ok(Asked::read(project, run)?.filter(|asked| asked.found_from.is_some()).map(|asked| asked.area))
 }
 
 /// The newest run that has ended early, that no other goes on with, and whose tracks newer ones have not replaced; `None`
@@ -111,8 +119,8 @@ pub fn resume(session: &mut Session, run: RunId) -> Result<TrackJob, WorkbenchEr
     let seeds: Vec<Seed> = last.iter().copied().chain(later).collect();
     let detect = match asked.found_from {
         Some(since) => {
-            let mask = mask(&asked.area, session.media.clip())?;
-            Some(Detect { every: asked.every, mask, present: session.project.shown_all()?, since })
+            let areas = asked.area.read(&session.project, session.media.clip())?;
+            Some(Detect { every: asked.every, areas, present: session.project.shown_all()?, since })
         }
         None => None,
     };

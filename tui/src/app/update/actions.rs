@@ -324,7 +324,7 @@ fn run(state: &mut State) -> Vec<Effect> {
         (Features::Found, _) => PointSource::Detect,
     };
     state.corrected = None;
-    let (frames, every, area) = (form.frames(), form.every(), Area::Whole);
+    let (frames, every, area) = (form.frames(), form.every(), Area::Usual);
     vec![Effect::Track(TrackRequest { plugin, params, points, frames, every, area })]
 }
 

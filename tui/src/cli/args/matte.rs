@@ -10,7 +10,8 @@ use honami_workbench::matting::{Options, PartsWish};
 /// Closed-form matting (Levin et al. 2008), at the picture's own size: `--picture` writes the frame of a clip; paint white on
 /// the plant and black on what lies behind it, with a hard brush; `--scribbles` reads that. The mask that `--mask` writes
 /// leaves out the boundary of the plant, the background that it encloses and its trunk (Zeng 2015): `honami track --mask`
-/// and `honami grow --envelope` read it. docs/mattes.md has more.
+/// and `honami grow --envelope` read it. Of a project's frame the matte is kept: features are looked for inside it from
+/// then on, until `--remove`; without marks the kept mattes are listed, or written. docs/mattes.md has more.
 #[derive(Args, Debug)]
 pub(in crate::cli) struct Matte {
     /// An image (its own colours), a clip, or a project file (.honami).
@@ -33,9 +34,12 @@ pub(in crate::cli) struct Matte {
     /// Write the picture itself, to paint on.
     #[arg(long, value_name = "PNG")]
     pub(in crate::cli) picture: Option<PathBuf>,
-    /// Which frame of a clip.
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    pub(in crate::cli) frame: u32,
+    /// Which frame of a clip (default: 0; all with --remove).
+    #[arg(long, value_name = "N")]
+    pub(in crate::cli) frame: Option<u32>,
+    /// Keep no matte of a project any longer, or not that of --frame.
+    #[arg(long, conflicts_with_all = ["scribbles", "trimap", "out", "mask", "parts", "picture"])]
+    pub(in crate::cli) remove: bool,
     /// Plant no farther than this from background is boundary, pixels.
     #[arg(long, value_name = "PX", default_value_t = PartsWish::default().boundary_px,
         value_parser = clap::value_parser!(u32).range(..=1000))]
