@@ -33,6 +33,7 @@ mod retrack;
 mod rigs;
 mod schema;
 mod sdk;
+mod sensors;
 mod settings;
 mod shaped;
 mod simulated;

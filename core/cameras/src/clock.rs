@@ -168,8 +168,10 @@ impl Signal<'_> {
         (together.mine.len() >= FEWEST && span.1 - span.0 >= least_s).then_some(together)
     }
 
-    /// Value and slope between samples: the cubic whose slopes at samples are those of the parabolas through their neighbours.
-    fn at(&self, t: f64) -> Option<(f64, f64)> {
+    /// Value and slope between samples, of two at least: the cubic whose slopes at samples are those of the parabolas through their
+    /// neighbours. `None` before the first and after the last.
+    #[must_use]
+    pub fn at(&self, t: f64) -> Option<(f64, f64)> {
         let (times, values) = (self.times_s, self.values);
         let n = times.len();
         if !(times[0]..=times[n - 1]).contains(&t) {

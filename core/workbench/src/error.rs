@@ -2,6 +2,7 @@
 
 mod cameras;
 pub(crate) mod matte;
+mod sensors;
 mod space;
 mod typed;
 
@@ -13,6 +14,7 @@ use honami_model::document::RunId;
 use honami_model::track::TrackId;
 
 pub use cameras::CamerasError;
+pub use sensors::SensorsError;
 pub use space::SpaceError;
 
 /// Why a use-case failed: what was wanted, what came, what to do, in one line.
@@ -760,6 +762,9 @@ pub enum WorkbenchError {
     /// What is kept of mattes.
     #[error(transparent)]
     Kept(#[from] matte::MatteError),
+    /// Tracks and sensors say nothing together.
+    #[error(transparent)]
+    Sensors(#[from] SensorsError),
     /// A thread of the program has panicked.
     #[error("a fault of the program's own; the session's log has its report")]
     Fault,

@@ -31,6 +31,7 @@ pub mod retrack;
 pub mod review;
 mod scarce;
 pub mod script;
+pub mod sensors;
 pub mod session;
 pub mod shape;
 pub mod simulate;
@@ -46,7 +47,7 @@ pub mod versus;
 pub mod view;
 
 pub use error::matte::MatteError;
-pub use error::{CamerasError, SpaceError, WorkbenchError};
+pub use error::{CamerasError, SensorsError, SpaceError, WorkbenchError};
 /// Cameras that measure.
 pub use honami_cameras as cameras;
 /// What plugins must bear.

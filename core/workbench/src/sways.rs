@@ -1,6 +1,6 @@
 //! How fast and how long things swing that were recorded elsewhere, or that `simulate` has written: from tables of series.
 
-mod table;
+pub(crate) mod table;
 #[cfg(test)]
 mod tests;
 

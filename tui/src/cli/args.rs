@@ -4,6 +4,7 @@ pub(super) mod cameras;
 pub(super) mod grow;
 pub(super) mod matte;
 pub(super) mod plant;
+pub(super) mod sensors;
 pub(super) mod space;
 pub(super) mod spectrum;
 pub(super) mod view;
@@ -279,6 +280,8 @@ pub(super) struct Compare {
     /// True frame rate of the clip.
     #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = frames_per_second)]
     pub(super) fps: Option<f64>,
+    #[command(flatten)]
+    pub(super) beside: sensors::Sensors,
 }
 
 #[derive(Args, Debug)]

@@ -17,11 +17,15 @@ use super::args::{Common, Compare};
 use super::{Answer, report, told_options, track, want};
 
 mod entry;
+mod sensors;
 mod svg;
 mod tables;
 
 /// Runs every tracker on the same points and prints one row for each.
 pub(super) fn compare(args: &Compare, common: &Common) -> anyhow::Result<Answer> {
+    if let Some(path) = &args.beside.sensors {
+        return sensors::sensors(args, path);
+    }
     let opened = open(args, common)?;
     let folder = args.svg.as_deref().and_then(Path::parent).filter(|folder| !folder.as_os_str().is_empty());
     if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {

@@ -31,6 +31,7 @@ impl WorkbenchError {
                 | Self::Cameras(CamerasError::Pairs { .. })
                 | Self::NoVertices
                 | Self::TooFast { .. }
+                | Self::Sensors(crate::error::SensorsError::Height(_))
                 | Self::Piece(_)
                 | Self::Structure(
                     Grown::Shift(_)

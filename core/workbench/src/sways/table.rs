@@ -16,7 +16,7 @@ const EVEN: f64 = 0.05;
 /// And all of them together from the rate that was given.
 const SAME_RATE: f64 = 0.01;
 /// Heads of a column of times.
-const TIMES: [&str; 7] = ["time_s", "t_s", "time", "t", "seconds", "time (s)", "time [s]"];
+pub(crate) const TIMES: [&str; 7] = ["time_s", "t_s", "time", "t", "seconds", "time (s)", "time [s]"];
 
 /// What a table is, by its first line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -177,7 +177,7 @@ fn parsed(text: &str) -> Result<Columns, String> {
 }
 
 /// Cells of a line: between semicolons, else commas, else white space.
-fn cells(line: &str) -> impl Iterator<Item = &str> {
+pub(crate) fn cells(line: &str) -> impl Iterator<Item = &str> {
     let line = line.trim();
     let (separator, is_blank) = match line {
         _ if line.contains(';') => (';', false),
@@ -191,7 +191,7 @@ fn cells(line: &str) -> impl Iterator<Item = &str> {
 }
 
 /// A finite number, whose decimal mark may be a comma where columns are not parted by it.
-fn number(cell: &str) -> Option<f64> {
+pub(crate) fn number(cell: &str) -> Option<f64> {
     cell.replace(',', ".").parse().ok().filter(|value: &f64| value.is_finite())
 }
 
