@@ -1,9 +1,10 @@
-//! Two cameras before one plant: `honami sync`.
+//! Two cameras before one plant: `honami sync`, `honami triangulate` and what is exported of it.
 
 use std::fmt::Write as _;
 use std::fs;
 
-use honami_tests::Bench;
+use honami_tests::{Bench, rows};
+use serde_json::json;
 
 const SIZE: [u32; 2] = [160, 120];
 const FOCAL_PX: f64 = 180.0;
@@ -17,9 +18,9 @@ const N_LEAVES: usize = 8;
 
 /// Where a leaf is, metres: they sway together, each a little otherwise.
 fn leaf(k: usize, t: f64) -> [f64; 3] {
-    let push = |since: f64, hz: f64| match since {
-        _ if since < 0.0 => 0.0,
-        _ => (-0.5 * since).exp() * (std::f64::consts::TAU * hz * since).sin(),
+    // Gusts: what sways begins and ends softly.
+    let push = |since: f64, hz: f64| {
+        (-4.0 * (since - 0.6).powi(2)).exp() * (std::f64::consts::TAU * hz * since).sin()
     };
     let own = 0.1 * k as f64;
     let x = push(t - 0.4 + 0.02 * own, 1.3) + 0.7 * push(t - 2.2, 1.3 + 0.1 * own);
@@ -112,4 +113,132 @@ fn clocks_are_compared_by_a_lamp_and_by_movement() {
     // The other way round the sign turns.
     let back = bench.json("sync right.y4m left.y4m --flash all");
     assert!((back["offset_s"].as_f64().unwrap() + OFFSET_S).abs() < 8e-4, "{back}");
+}
+
+/// The file of both cameras, in metres; `unit` is what it says of that.
+fn cameras(bench: &Bench, unit: Option<&str>) {
+    let camera =
+        json!({ "fx": FOCAL_PX, "fy": FOCAL_PX, "cx": SIZE[0] / 2, "cy": SIZE[1] / 2, "size": SIZE });
+    // What is in the right camera's axes is turned, then shifted: where the left camera stands.
+    let shift = in_right([0.0; 3]);
+    let mut file = camera.clone();
+    file["right"] = camera;
+    file["stereo"] = json!({ "turn_rad": [0.0, TURN_RAD, 0.0], "shift": shift });
+    if let Some(unit) = unit {
+        file["unit"] = json!(unit);
+    }
+    fs::write(bench.path("cameras.json"), file.to_string()).unwrap();
+}
+
+/// How far exported places are from the truth at most, metres, and how many there are.
+fn off(bench: &Bench, leaf_of: impl Fn(usize) -> usize) -> (f64, usize) {
+    bench.json("export left.honami space t.csv");
+    let rows = rows(&bench.path("t.csv"));
+    let far = |row: &honami_tests::Row| {
+        let number = |column: &str| row[column].parse::<f64>().unwrap();
+        let truth = leaf(leaf_of(number("track") as usize), number("time_s"));
+        let place = ["x_m", "y_m", "z_m"].map(number);
+        truth.iter().zip(place).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+    };
+    (rows.iter().map(far).fold(0.0, f64::max), rows.len())
+}
+
+#[test]
+fn tracks_of_two_views_become_tracks_in_space() {
+    let bench = filmed();
+    cameras(&bench, Some("m"));
+    let line = format!("triangulate left.honami right.honami --cameras cameras.json --offset {OFFSET_S}");
+    // By motion alone: all leaves find themselves, though the other project counts them backwards.
+    let said = bench.json(&line);
+    let pairs = said["pairs"].as_array().unwrap();
+    assert_eq!(pairs.len(), N_LEAVES, "{said}");
+    for pair in pairs {
+        let [left, right] = ["left", "right"].map(|side| pair[side].as_u64().unwrap() as usize);
+        assert_eq!(left + right, N_LEAVES - 1, "{pair}");
+        assert_eq!(pair["by"], "motion");
+    }
+    let (worst, n) = off(&bench, |track| track);
+    assert!(worst < 1e-3 && n == said["fixes"].as_u64().unwrap() as usize, "{worst}, {n}");
+    assert!(n > N_LEAVES * 90, "{n}");
+    // Without the offset leaves are elsewhere, and it is said.
+    let said =
+        bench.text("triangulate left.honami right.honami --cameras cameras.json --farthest 9 --match motion");
+    assert!(said.contains("begin at the same moment") && said.contains("--offset"), "{said}");
+    assert!(off(&bench, |track| track).0 > 0.02);
+    // By the lamp, in millimetres that are said to be so: all is a thousandth.
+    bench.json(&format!("{} --flash all --unit mm", line.split(" --offset").next().unwrap()));
+    bench.json("export left.honami space t.csv");
+    let z: f64 = rows(&bench.path("t.csv"))[0]["z_m"].parse().unwrap();
+    assert!((0.001..0.003).contains(&z), "{z}");
+
+    // A clock that is not known well makes places less certain, most of those that move fast.
+    let sharp = bench.json(&line);
+    let vague = bench.json(&format!("{line} --offset-error 0.01"));
+    let across = |said: &serde_json::Value| said["error_across_m"].as_f64().unwrap();
+    assert!(across(&vague) > 5.0 * across(&sharp), "{vague}, {sharp}");
+
+    // Names count for more than motion; two that are named by mistake are doubtful.
+    for (project, track) in [("left", 0), ("right", 0)] {
+        assert_eq!(bench.edit(&format!("{project}.honami"), &format!("name {track} tip\n")).code, Some(0));
+    }
+    let said = bench.json(&format!("{line} --match names"));
+    assert_eq!((&said["pairs"][0]["by"], &said["unmatched"]["left"]), (&json!("name"), &json!(N_LEAVES - 1)));
+    assert!(bench.text(&format!("{line} --match names")).contains("doubtful: 0 and 0 have one name"));
+}
+
+#[test]
+fn tracks_in_space_are_kept_and_undone_and_go_stale() {
+    let bench = filmed();
+    cameras(&bench, None);
+    let line = format!("triangulate left.honami right.honami --cameras cameras.json --offset {OFFSET_S}");
+    let ran = bench.line(&line);
+    assert_eq!(ran.code, Some(2), "{ran:?}");
+    assert!(ran.stderr.contains("--unit mm"), "{}", ran.stderr);
+    bench.json(&format!("{line} --unit m"));
+    let log = bench.log("left.honami", "space");
+    let [made] = &log[..] else { panic!("{log:?}") };
+    assert_eq!((&made["tracks"], &made["provenance"]["what"]), (&json!(N_LEAVES), &json!("triangulate")));
+    assert_eq!(made["provenance"]["params"]["offset_s"], json!(OFFSET_S));
+    assert!(bench.text("log left.honami").contains("8 tracks in space shown"));
+
+    let stale = || bench.json("export left.honami space t.csv")["stale"].as_array().unwrap().len();
+    assert_eq!(stale(), 0);
+    assert_eq!(bench.edit("left.honami", "key 3 5 10 10\n").code, Some(0));
+    assert_eq!(stale(), 1);
+    assert_eq!(bench.edit("right.honami", "key 3 5 10 10\n").code, Some(0));
+    assert_eq!(stale(), 2);
+    let said = bench.text("export left.honami space t.csv");
+    assert!(said.contains("stale: 1 of its 8 tracks changed") && said.contains("right.honami"), "{said}");
+    for _ in 0..2 {
+        assert_eq!(bench.edit("left.honami", "undo\n").code, Some(0));
+    }
+    let ran = bench.line("export left.honami space t.csv");
+    assert_eq!(ran.code, Some(1));
+    assert!(
+        ran.stderr.contains("no tracks in space") && ran.stderr.contains("honami triangulate"),
+        "{}",
+        ran.stderr
+    );
+
+    // Pictures that the cameras did not take, one camera alone, and tracks that are far from any line.
+    let text = fs::read_to_string(bench.path("cameras.json")).unwrap();
+    fs::write(bench.path("other.json"), text.replace("[160,120]", "[320,240]")).unwrap();
+    fs::write(bench.path("one.json"), r#"{"fx": 9, "fy": 9, "cx": 1, "cy": 1, "size": [160, 120]}"#).unwrap();
+    for (more, words) in [
+        ("--cameras other.json --unit m", ["of 160x120 pixels", "took pictures of 320x240"]),
+        ("--cameras one.json --unit m", ["one camera alone", "one.json"]),
+        ("--cameras missing.json --unit m", ["missing.json", "No such file"]),
+        (
+            "--cameras cameras.json --unit m --offset 0.9 --farthest 0.01",
+            ["none of 8 left tracks is", "--farthest"],
+        ),
+        (
+            "--cameras cameras.json --unit m --match names",
+            ["none of 8 left tracks", "names that are the same"],
+        ),
+    ] {
+        let ran = bench.line(&format!("triangulate left.honami right.honami {more}"));
+        assert_eq!(ran.code, Some(1), "{more}: {ran:?}");
+        assert!(words.iter().all(|word| ran.stderr.contains(word)), "{more}: {}", ran.stderr);
+    }
 }

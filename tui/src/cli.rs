@@ -28,6 +28,7 @@ mod spectrum;
 mod sync;
 mod synth;
 mod track;
+mod triangulate;
 mod view;
 mod watch;
 
@@ -207,6 +208,7 @@ fn run(command: Command, common: &Common) -> anyhow::Result<Outcome> {
         Command::Components(args) => components::components(&args)?,
         Command::Matte(args) => matte::matte(&args, common)?,
         Command::Sync(args) => sync::sync(&args, common)?,
+        Command::Triangulate(args) => triangulate::triangulate(&args, common)?,
         Command::Spectrum(args) => spectrum::spectrum(&args)?,
         Command::Simulate(args) => simulate::simulate(&args, common)?,
         Command::Export(args) => exchange::export(&args, common)?,

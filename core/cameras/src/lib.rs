@@ -18,6 +18,7 @@ pub mod planar;
 mod pose;
 pub mod stereo;
 mod target;
+pub mod together;
 pub mod triangulate;
 mod zhang;
 

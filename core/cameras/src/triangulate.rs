@@ -24,6 +24,15 @@ impl Fix {
     pub fn errors(&self) -> [f64; 3] {
         std::array::from_fn(|k| self.covariance[(k, k)].max(0.0).sqrt())
     }
+
+    /// Standard errors along the line of sight from a place, and in a direction across it.
+    #[must_use]
+    pub fn along_and_across(&self, from: &Place) -> [f64; 2] {
+        let total = self.covariance.trace();
+        let sight = (self.place - from).try_normalize(0.0).unwrap_or_else(Vector3::z);
+        let along = (sight.transpose() * self.covariance * sight)[0];
+        [along, (total - along) / 2.0].map(|variance| variance.max(0.0).sqrt())
+    }
 }
 
 /// A camera, how it stands (`camera_from_world`), and the pixel in which it sees the place.

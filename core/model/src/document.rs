@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::judgement::Judgement;
 use crate::over::Over;
 use crate::shape::Shape;
+use crate::space::SpaceId;
 use crate::track::{Sample, Status, TrackId, TrackSet};
 
 /// Number of a run: one use of a tracker. Runs never change once they have ended.
@@ -180,6 +181,7 @@ pub struct Document {
     pub(crate) root: Option<[f64; 2]>,
     pub(crate) shapes: BTreeMap<(ClusteringId, u32), Shape>,
     pub(crate) mattes: BTreeMap<u32, MatteId>,
+    pub(crate) space: Option<SpaceId>,
 }
 
 impl Document {
@@ -196,6 +198,7 @@ impl Document {
             root: None,
             shapes: BTreeMap::new(),
             mattes: BTreeMap::new(),
+            space: None,
         }
     }
 
@@ -242,6 +245,12 @@ impl Document {
     #[must_use]
     pub fn clustering(&self) -> Option<ShownClustering> {
         self.clustering
+    }
+
+    /// The tracks in space that are shown.
+    #[must_use]
+    pub fn space(&self) -> Option<SpaceId> {
+        self.space
     }
 
     /// What a person calls a group: a node of a clustering's dendrogram, numbered as in its merges, so that

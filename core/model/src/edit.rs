@@ -12,6 +12,7 @@ use crate::document::{
 use crate::judgement::Judgement;
 use crate::over::Over;
 use crate::shape::Shape;
+use crate::space::SpaceId;
 use crate::track::{TrackId, TrackSet};
 
 pub use error::EditError;
@@ -149,6 +150,11 @@ pub enum Edit {
         /// The matte.
         matte: Option<MatteId>,
     },
+    /// Tracks in space are shown, or none.
+    ShowSpace {
+        /// Which of them.
+        space: Option<SpaceId>,
+    },
 }
 
 /// Edits that are done and undone together, and one line that says what happened.
@@ -181,7 +187,8 @@ impl Edit {
             | Self::HoldGroups { .. }
             | Self::PlaceRoot { .. }
             | Self::ShapeBone { .. }
-            | Self::KeepMatte { .. } => TrackSet::default(),
+            | Self::KeepMatte { .. }
+            | Self::ShowSpace { .. } => TrackSet::default(),
         }
     }
 }
@@ -252,13 +259,8 @@ impl Document {
                 Ok(Edit::SetCut { k: std::mem::replace(&mut shown.k, *k) })
             }
             Edit::NameGroup { clustering, node, name } => {
-                check_name(name.as_deref())?;
-                let at = (*clustering, *node);
-                let old = match name {
-                    Some(name) => self.group_names.insert(at, name.clone()),
-                    None => self.group_names.remove(&at),
-                };
-                Ok(Edit::NameGroup { clustering: *clustering, node: *node, name: old })
+                let name = self.name_group((*clustering, *node), name.as_ref())?;
+                Ok(Edit::NameGroup { clustering: *clustering, node: *node, name })
             }
             Edit::HoldGroups { clustering, groups } => {
                 check_groups(groups)?;
@@ -282,6 +284,9 @@ impl Document {
                 Ok(Edit::ShapeBone { clustering: *clustering, node: *node, shape: old })
             }
             Edit::KeepMatte { frame, matte } => self.keep_matte(*frame, *matte),
+            Edit::ShowSpace { space } => {
+                Ok(Edit::ShowSpace { space: std::mem::replace(&mut self.space, *space) })
+            }
         }
     }
 
@@ -291,6 +296,18 @@ impl Document {
             Some(known) if known.deleted => Err(EditError::Deleted(track)),
             Some(known) => Ok(known),
         }
+    }
+
+    fn name_group(
+        &mut self,
+        at: (ClusteringId, u32),
+        name: Option<&String>,
+    ) -> Result<Option<String>, EditError> {
+        check_name(name.map(String::as_str))?;
+        Ok(match name {
+            Some(name) => self.group_names.insert(at, name.clone()),
+            None => self.group_names.remove(&at),
+        })
     }
 
     fn add_track(&mut self, track: TrackId) -> Result<Edit, EditError> {

@@ -21,6 +21,7 @@ pub mod provenance;
 pub mod regroup;
 pub mod shape;
 pub mod skeleton;
+pub mod space;
 pub mod track;
 pub mod turn;
 pub mod unfinished;

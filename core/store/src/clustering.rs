@@ -44,7 +44,7 @@ pub struct ClusteringInfo {
     pub provenance: Provenance,
 }
 
-/// Why a clustering no longer speaks of what is shown.
+/// Why a clustering, or tracks in space, no longer speak of what is shown.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Stale {
     /// The tracks it used that have changed since.
@@ -155,9 +155,15 @@ impl Project {
     /// [`StoreError::NoSuchClustering`], or what SQLite met.
     pub fn is_stale(&self, id: ClusteringId) -> Result<Option<Stale>, StoreError> {
         let Clustering { provenance, tracks, .. } = self.clustering(id)?;
-        let since = EntryId(provenance.input_revision);
+        self.changed_since(EntryId(provenance.input_revision), &tracks.into_iter().collect())
+    }
+
+    /// Which of these tracks have changed since a revision, on the way through the undo tree to now; `None`: none has.
+    ///
+    /// # Errors
+    /// [`StoreError::NoSuchEntry`], or what SQLite met.
+    pub fn changed_since(&self, since: EntryId, used: &TrackSet) -> Result<Option<Stale>, StoreError> {
         let path = self.history().path(since, self.revision()).ok_or(StoreError::NoSuchEntry(since))?;
-        let used: TrackSet = tracks.iter().copied().collect();
         let mut changed = Vec::new();
         for step in path {
             for tracks in journal::touched(&self.conn, step)? {
@@ -165,7 +171,7 @@ impl Project {
             }
         }
         let changed: TrackSet = changed.into_iter().collect();
-        Ok((!changed.is_empty()).then_some(Stale { changed, n_tracks: tracks.len(), since }))
+        Ok((!changed.is_empty()).then_some(Stale { changed, n_tracks: used.len(), since }))
     }
 
     pub(crate) fn check_clustering(&self, id: ClusteringId) -> Result<(), StoreError> {
@@ -188,7 +194,10 @@ fn clustering_of_row(row: &Row<'_>) -> Result<Clustering, StoreError> {
     })
 }
 
-fn from_json<T: serde::de::DeserializeOwned>(row: &Row<'_>, column: usize) -> Result<T, StoreError> {
+pub(crate) fn from_json<T: serde::de::DeserializeOwned>(
+    row: &Row<'_>,
+    column: usize,
+) -> Result<T, StoreError> {
     let json = row.get_ref(column)?.as_str().map_err(StoreError::corrupt)?;
     serde_json::from_str(json).map_err(StoreError::corrupt)
 }

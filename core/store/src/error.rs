@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use honami_model::document::{ClusteringId, MatteId, RunId};
 use honami_model::edit::EditError;
 use honami_model::history::EntryId;
+use honami_model::space::SpaceId;
 use honami_model::track::TrackId;
 
 use crate::lock::Holder;
@@ -70,6 +71,9 @@ pub enum StoreError {
         /// The first such track.
         track: TrackId,
     },
+    /// There are no such tracks in space.
+    #[error("there are no tracks in space of the number {0} in this project")]
+    NoSuchSpace(SpaceId),
     /// There is no such clustering.
     #[error("there is no clustering {0} in this project")]
     NoSuchClustering(ClusteringId),

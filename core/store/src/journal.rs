@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use honami_model::document::{ClusteringId, Document, MatteId, RunId};
 use honami_model::edit::{Edit, Transaction, apply};
 use honami_model::history::{Entry, EntryId, History, Step};
+use honami_model::space::SpaceId;
 use honami_model::track::TrackSet;
 use rusqlite::{Connection, OptionalExtension, TransactionBehavior, params};
 
@@ -106,6 +107,7 @@ pub(crate) struct FirstShown {
     pub(crate) runs: BTreeMap<RunId, EntryId>,
     pub(crate) clusterings: BTreeMap<ClusteringId, EntryId>,
     pub(crate) mattes: BTreeMap<MatteId, EntryId>,
+    pub(crate) spaces: BTreeMap<SpaceId, EntryId>,
 }
 
 /// Searches all entries, undone ones included, for those that show results.
@@ -126,6 +128,7 @@ pub(crate) fn first_shown(conn: &Connection) -> Result<FirstShown, StoreError> {
                     first.clusterings.entry(shown.id).or_insert(id)
                 }
                 Edit::KeepMatte { matte: Some(matte), .. } => first.mattes.entry(matte).or_insert(id),
+                Edit::ShowSpace { space: Some(space) } => first.spaces.entry(space).or_insert(id),
                 _ => continue,
             };
         }

@@ -17,6 +17,7 @@ mod project;
 mod run;
 mod schema;
 mod shown;
+mod space;
 #[cfg(test)]
 mod testing;
 
@@ -28,6 +29,7 @@ pub use matte::{KeptMatte, MatteInfo};
 pub use media::ClipRecord;
 pub use project::{Access, Project};
 pub use run::{Build, RunHead, RunInfo, RunState, RunWriter, Seam};
+pub use space::{Space, SpaceInfo};
 
 /// The time now, UTC to the second, RFC 3339: the form of every date in a project.
 #[must_use]

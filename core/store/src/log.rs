@@ -9,6 +9,7 @@ use crate::journal;
 use crate::matte::MatteInfo;
 use crate::project::Project;
 use crate::run::RunInfo;
+use crate::space::SpaceInfo;
 
 /// One line of the log.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,10 +31,12 @@ pub enum LogItem {
     Clustering(ClusteringInfo),
     /// A matte was found.
     Matte(MatteInfo),
+    /// Two views became tracks in space.
+    Space(SpaceInfo),
 }
 
 impl Project {
-    /// All edits, runs, clusterings and mattes, oldest first and causes before effects: edits in the order they were
+    /// All edits, runs, clusterings, mattes and tracks in space, oldest first and causes before effects: edits in the order they were
     /// made, a result after the edit it was made from and before the first that shows it, by date in between.
     ///
     /// # Errors
@@ -72,6 +75,10 @@ impl Project {
         for info in self.mattes()? {
             let shown_by = shown.mattes.get(&info.id);
             add_result(&info.provenance.clone(), shown_by, LogItem::Matte(info));
+        }
+        for info in self.spaces()? {
+            let shown_by = shown.spaces.get(&info.id);
+            add_result(&info.provenance.clone(), shown_by, LogItem::Space(info));
         }
         // In the same second a result comes after the edit it was made from and before all later ones.
         lines.sort_by(|a, b| (&a.0, a.1, a.2).cmp(&(&b.0, b.1, b.2)));

@@ -277,6 +277,7 @@ impl Project {
         match edit {
             Edit::ShowRun { run, tracks, .. } => self.check_run(*run, tracks),
             Edit::ShowClustering { clustering: Some(shown) } => self.check_clustering(shown.id),
+            Edit::ShowSpace { space: Some(id) } => self.check_space(*id),
             Edit::NameGroup { clustering, .. }
             | Edit::HoldGroups { clustering, .. }
             | Edit::ShapeBone { clustering, .. } => self.check_clustering(*clustering),

@@ -14,7 +14,7 @@ const APPLICATION_ID: u32 = 0x484F_4E41;
 pub(crate) const BUSY_TIMEOUT: Duration = Duration::from_secs(20);
 
 /// Step n brings schema n to n + 1; a step is never changed once it was released.
-const MIGRATIONS: [&str; 6] = [
+const MIGRATIONS: [&str; 7] = [
     "
     CREATE TABLE state (            -- one row: what changes with every edit
         id          INTEGER PRIMARY KEY CHECK (id = 1),
@@ -106,6 +106,14 @@ const MIGRATIONS: [&str; 6] = [
         parts       BLOB NOT NULL,  -- 0 outside, 1 inner background, 2 boundary, 3 trunk, 4 kept
         opacity     BLOB NOT NULL,  -- 0 background to 255 plant
         marks       BLOB NOT NULL,  -- 0 unknown, 1 background, 2 foreground
+        provenance  TEXT NOT NULL   -- JSON
+    );
+",
+    "
+    CREATE TABLE space (            -- tracks in space: what two cameras see of one feature
+        id          INTEGER PRIMARY KEY,
+        tracks      TEXT NOT NULL,  -- left track, right track, number of fixes of each, JSON
+        fixes       BLOB NOT NULL,  -- frame u32, place 3 f64 and its errors 3 f32, metres, residual f32, pixels
         provenance  TEXT NOT NULL   -- JSON
     );
 ",

@@ -7,11 +7,12 @@ use std::sync::Arc;
 
 use honami_exchange::foreign::{self, ForeignError, ForeignTrack, Format, Loss, Outgoing};
 use honami_exchange::origin::Origin;
-use honami_exchange::{AtomicFile, GroupRow, TrackRow, TrackTable, Writer, is_begun_alike};
+use honami_exchange::{AtomicFile, GroupRow, SpaceRow, TrackRow, TrackTable, Writer, is_begun_alike};
 use honami_model::track::{Span, TrackId, TrackSet};
 use honami_store::Project;
 
 use crate::error::WorkbenchError;
+use crate::space::{self, InSpace};
 
 /// Side of the box that stands for a point in MOTChallenge files, pixels.
 pub const BOX_PX: f64 = 9.0;
@@ -136,6 +137,35 @@ fn own(project: &Project, mut table: TrackTable, tracks: &[ForeignTrack]) -> Res
         }
     }
     Ok(table.finish()?)
+}
+
+/// What was written of tracks in space.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct InSpaceWritten {
+    /// Tracks.
+    pub n_tracks: usize,
+    /// Their fixes.
+    pub n_fixes: usize,
+    /// Why they no longer speak of what the projects show, a line each.
+    pub stale: Vec<String>,
+}
+
+/// Writes the shown tracks in space as a table.
+///
+/// # Errors
+/// [`SpaceError::NoSpace`](crate::SpaceError::NoSpace), and what the project or the disk met.
+pub fn space(project: &Project, out: &Path) -> Result<InSpaceWritten, WorkbenchError> {
+    let InSpace { tracks, times, stale, .. } = space::shown(project)?;
+    let mut table = Writer::create(out)?;
+    for track in &tracks {
+        for &fix in &track.fixes {
+            let time_s = times.get(fix.frame).unwrap_or_default();
+            table.write(&SpaceRow { track: track.track, time_s, fix })?;
+        }
+    }
+    table.finish()?;
+    let n_fixes = tracks.iter().map(|track| track.fixes.len()).sum();
+    Ok(InSpaceWritten { n_tracks: tracks.len(), n_fixes, stale })
 }
 
 /// Writes the group of every track of the shown clustering; returns their number.

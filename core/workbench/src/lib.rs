@@ -35,6 +35,7 @@ pub mod sensors;
 pub mod session;
 pub mod shape;
 pub mod simulate;
+pub mod space;
 pub mod spectra;
 mod stamp;
 pub mod sways;

@@ -94,6 +94,8 @@ pub(super) enum Command {
     Matte(matte::Matte),
     /// How far the clocks of two clips are apart, with a standard error.
     Sync(space::Sync),
+    /// Where tracks of two views are in space, metres: kept in the left project as tracks in space.
+    Triangulate(space::Triangulate),
     /// Frequencies of tracks and groups, in Hz from the frame times.
     Spectrum(spectrum::Spectrum),
     /// What moves together: where, along which line and how fast, by bi-orthogonal decomposition of the tracks.
@@ -391,6 +393,9 @@ pub(super) enum ExportWhat {
     Tracks,
     /// The group of every track, numbered as on the screen: track,group,name.
     Groups,
+    /// Tracks in space: track,frame,time_s,x_m,y_m,z_m,ex_m,ey_m,ez_m,residual_px; metres in the left camera's axes, x right,
+    /// y down, z forward, with standard errors.
+    Space,
     /// What reviewers have found: track,first_frame,end_frame,verdict,stands,reasons,reviewer,time,keystrokes,key_frames,seconds.
     Verdicts,
     /// What the review of every track has taken: track,segments,keystrokes,key_frames,seconds.

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use honami_model::brief::counted;
 use honami_workbench::WorkbenchError;
-use honami_workbench::export::{self, ExportRequest};
+use honami_workbench::export::{self, ExportRequest, InSpaceWritten};
 use honami_workbench::foreign::Format;
 use honami_workbench::import::{self, ImportRequest};
 use honami_workbench::review;
@@ -89,6 +89,7 @@ pub(super) fn export(args: &Export, common: &Common) -> anyhow::Result<Answer> {
         ExportWhat::Movie => movie::movie(args, common),
         ExportWhat::Tracks => tracks(args),
         ExportWhat::Groups => groups(args),
+        ExportWhat::Space => space(args),
         ExportWhat::Verdicts => of_review(args, review::tables::verdicts, "verdicts"),
         ExportWhat::Mask => matte::export(args),
         ExportWhat::Effort => of_review(args, review::tables::efforts, "reviewed tracks"),
@@ -147,6 +148,17 @@ fn tracks(args: &Export) -> anyhow::Result<Answer> {
         "samples": written.n_samples,
         "not_kept": losses,
     });
+    Ok(Answer { json, text, done: true })
+}
+
+fn space(args: &Export) -> anyhow::Result<Answer> {
+    let is_csv = args.out.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
+    want(is_csv, || format!("tracks in space are written as .csv, not as {}", args.out.display()))?;
+    let InSpaceWritten { n_tracks, n_fixes, stale } = export::space(&look(&args.project)?, &args.out)?;
+    let (tracks, places) = (counted(n_tracks, "track"), counted(n_fixes, "place"));
+    let mut text = format!("{}: {tracks} in space, {places}", args.out.display());
+    stale.iter().for_each(|why| text += &format!("\n{why}; honami triangulate finds them anew"));
+    let json = json!({ "file": args.out, "tracks": n_tracks, "fixes": n_fixes, "stale": stale });
     Ok(Answer { json, text, done: true })
 }
 

@@ -61,6 +61,10 @@ fn line(line: &LogLine, inside: Option<String>) -> String {
             let params = info.provenance.params.iter().map(|(id, value)| format!(" {id}={value}"));
             format!("{date}  matte {}  of frame {}{}", info.id, info.frame, params.collect::<String>())
         }
+        LogItem::Space(info) => {
+            let tracks = counted(info.n_tracks, "track");
+            format!("{date}  {tracks} in space {}  {}", info.id, info.provenance)
+        }
     }
 }
 
@@ -103,6 +107,14 @@ fn entry(line: &LogLine, mattes: &[u32]) -> serde_json::Value {
             "what": "matte",
             "id": info.id,
             "frame": info.frame,
+            "provenance": info.provenance,
+        }),
+        LogItem::Space(info) => json!({
+            "date": date,
+            "what": "space",
+            "id": info.id,
+            "tracks": info.n_tracks,
+            "fixes": info.n_fixes,
             "provenance": info.provenance,
         }),
     }

@@ -1,9 +1,11 @@
 //! Transactions with their line: what happened, in the user's words, with numbers.
 
 use super::{Edit, Transaction};
+use crate::brief::counted;
 use crate::correct::Refused;
 use crate::document::{ClusteringId, Key, MatteId, RunId, ShownClustering};
 use crate::judgement::Judgement;
+use crate::space::SpaceId;
 use crate::track::{Sample, TrackId, TrackSet};
 
 impl Transaction {
@@ -138,6 +140,15 @@ impl Transaction {
     pub fn remove_mattes(frames: &[u32]) -> Self {
         let remove = |&frame: &u32| Edit::KeepMatte { frame, matte: None };
         Self::new(format!("{} removed", of_mattes(frames)), frames.iter().map(remove).collect())
+    }
+
+    /// So many tracks in space are shown.
+    #[must_use]
+    pub fn show_space(id: SpaceId, n_tracks: usize) -> Self {
+        Self::new(
+            format!("{} in space shown", counted(n_tracks, "track")),
+            vec![Edit::ShowSpace { space: Some(id) }],
+        )
     }
 
     /// The tracks whose samples this transaction may change.

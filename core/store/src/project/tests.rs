@@ -67,7 +67,7 @@ fn what_is_no_project_is_told_apart() {
         (other, "not a honami project"),
         (bench.folder.path().to_owned(), "not a honami project"),
         (bench.folder.path().join("gone.honami"), "cannot open the project"),
-        (newer, "schema 9, this honami knows up to 6; update honami"),
+        (newer, "schema 9, this honami knows up to 7; update honami"),
         (damaged, "damaged"),
         (rootless, "damaged"),
     ];
@@ -290,6 +290,7 @@ fn the_log_tells_everything_with_its_provenance() {
             LogItem::Run(run) => format!("run {} {} {}", run.id, run.state, run.head.provenance.plugin_id),
             LogItem::Clustering(made) => format!("clustering {} of {}", made.id, made.n_tracks),
             LogItem::Matte(made) => format!("matte {} of {}", made.id, made.frame),
+            LogItem::Space(made) => format!("space {} of {}", made.id, made.n_tracks),
         })
         .collect();
     assert_eq!(
@@ -350,6 +351,7 @@ fn the_log_tells_causes_before_effects() {
             LogItem::Run(run) => format!("r{}", run.id),
             LogItem::Clustering(made) => format!("c{}", made.id),
             LogItem::Matte(made) => format!("m{}", made.id),
+            LogItem::Space(made) => format!("s{}", made.id),
         });
         assert_eq!(words.collect::<Vec<_>>().join(" "), want, "{name}");
     }
@@ -362,7 +364,7 @@ fn a_seat_is_kept_without_an_edit_and_a_project_of_before_gets_one() {
     // As the first schema was.
     let conn = Connection::open(bench.path()).unwrap();
     conn.execute_batch(
-        "DROP TABLE matte; DROP TABLE seam; DROP TABLE seat; ALTER TABLE run DROP COLUMN request; PRAGMA user_version = 1",
+        "DROP TABLE space; DROP TABLE matte; DROP TABLE seam; DROP TABLE seat; ALTER TABLE run DROP COLUMN request; PRAGMA user_version = 1",
     )
     .unwrap();
     drop(conn);

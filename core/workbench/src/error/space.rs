@@ -27,8 +27,55 @@ pub enum SpaceError {
         source: CameraError,
     },
     /// A project has no tracks to compare.
-    #[error("no tracks: honami track finds some, --flash does without: {}", path.display())]
+    #[error("no tracks: honami track finds some: {}", path.display())]
     NoTracks {
+        /// The project.
+        path: PathBuf,
+    },
+    /// Cameras in a unit that nobody knows.
+    #[error("{}: lengths have no unit; --unit mm says which, or calibrate with one, as --square 25mm", cameras.display())]
+    NoUnit {
+        /// The file of cameras.
+        cameras: PathBuf,
+    },
+    /// A clip that the camera did not take.
+    #[error(
+        "{} is of {}x{} pixels, its camera in {} took pictures of {}x{}: calibrate with pictures of the clip's size",
+        path.display(), came[0], came[1], cameras.display(), wanted[0], wanted[1]
+    )]
+    Size {
+        /// The project.
+        path: PathBuf,
+        /// Width and height of its clip.
+        came: [u32; 2],
+        /// Those of the camera's pictures.
+        wanted: [u32; 2],
+        /// The file of cameras.
+        cameras: PathBuf,
+    },
+    /// Cameras that do not fit what was seen.
+    #[error("{source}: {}", path.display())]
+    Cameras {
+        /// The file of cameras.
+        path: PathBuf,
+        /// Why.
+        source: CameraError,
+    },
+    /// No two tracks are one feature.
+    #[error(
+        "none of {} left tracks is one of {} right ones: names that are the same in both say so, as does movement no farther than \
+         {farthest_px} px from epipolar lines (--farthest) in 8 frames at least, by clocks that are not off (honami sync)",
+        n[0], n[1]
+    )]
+    NoPairs {
+        /// Tracks of either side.
+        n: [usize; 2],
+        /// How far from its line a track may be, pixels.
+        farthest_px: f64,
+    },
+    /// No tracks in space.
+    #[error("no tracks in space are shown: honami triangulate finds them: {}", path.display())]
+    NoSpace {
         /// The project.
         path: PathBuf,
     },
@@ -49,6 +96,6 @@ impl SpaceError {
     /// Whether other options or numbers are wanted than were typed.
     #[must_use]
     pub fn is_as_typed(&self) -> bool {
-        matches!(self, Self::NoPixel { .. })
+        matches!(self, Self::NoPixel { .. } | Self::NoUnit { .. })
     }
 }
