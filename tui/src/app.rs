@@ -34,6 +34,7 @@ pub mod motion;
 mod offering;
 pub mod opening;
 mod pace;
+pub mod painting;
 pub mod panel;
 mod pictures;
 pub mod plotted;

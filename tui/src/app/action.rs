@@ -19,6 +19,8 @@ pub enum Context {
     Slide,
     /// Drawing a track while the clip plays.
     Sketch,
+    /// Painting what is plant and what lies behind it.
+    Paint,
     /// Setting the parameters of a plugin.
     Form,
     /// Choosing from a list by typing a part of its name.
@@ -39,13 +41,14 @@ pub enum Context {
 
 impl Context {
     /// All of them.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::Review,
         Self::Place,
         Self::Shape,
         Self::Move,
         Self::Slide,
         Self::Sketch,
+        Self::Paint,
         Self::Form,
         Self::Menu,
         Self::Dial,
@@ -66,6 +69,7 @@ impl Context {
             Self::Move => "move",
             Self::Slide => "slide",
             Self::Sketch => "sketch",
+            Self::Paint => "paint",
             Self::Form => "form",
             Self::Menu => "menu",
             Self::Dial => "dial",
@@ -122,21 +126,21 @@ macro_rules! table {
 
 table! {
     // Moving about: hjkl and the arrows.
-    Left "left" ["h" "Left"] [Review "" Place "1 px" Move "1 px" Form "change" Dial "turn" Slide "1 frame" Sketch "steer" Shape "plane" Forest "round"]
+    Left "left" ["h" "Left"] [Review "" Place "1 px" Move "1 px" Form "change" Dial "turn" Slide "1 frame" Sketch "steer" Shape "plane" Forest "round" Paint "go"]
         "left: the previous frame, one pixel, or a smaller value; at a bone, its plane 5° back; at a forest, go round it"
-    Down "down" ["j" "Down"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "narrower" History "" Start "" Sketch "steer" Shape "lean" Forest "height"]
+    Down "down" ["j" "Down"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "narrower" History "" Start "" Sketch "steer" Shape "lean" Forest "height" Paint "go"]
         "down: the next track, one pixel, or the next row; in the queue, the prints and the skeleton, their next row; at a bone, it leans 5° clockwise; at a forest, go lower"
-    Up "up" ["k" "Up"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "wider" History "" Start "" Sketch "steer" Shape "lean" Forest "height"]
+    Up "up" ["k" "Up"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "wider" History "" Start "" Sketch "steer" Shape "lean" Forest "height" Paint "go"]
         "up: the previous track, one pixel, or the previous row; in the queue, the prints and the skeleton, the row before; at a bone, it leans 5° counterclockwise; at a forest, go higher"
-    Right "right" ["l" "Right"] [Review "" Place "1 px" Move "1 px" Form "change" Dial "turn" Slide "1 frame" Sketch "steer" Shape "plane" Forest "round"]
+    Right "right" ["l" "Right"] [Review "" Place "1 px" Move "1 px" Form "change" Dial "turn" Slide "1 frame" Sketch "steer" Shape "plane" Forest "round" Paint "go"]
         "right: the next frame, one pixel, or a larger value; at a bone, its plane 5° on; at a forest, go round it"
-    FineLeft "fine-left" ["H" "Shift-Left"] [Place ".25" Move ".25" Form "" Slide ".25" Sketch "" Shape ".5°" Forest "veer"] "a quarter of a pixel left, or a tenth of a value's range down; at a bone, its plane half a degree back; at a forest, its wind turns 15° counterclockwise from above"
-    FineDown "fine-down" ["J" "Shift-Down"] [Place ".25" Move ".25" Sketch "" Shape ".5°"] "a quarter of a pixel down; at a bone, it leans half a degree clockwise"
-    FineUp "fine-up" ["K" "Shift-Up"] [Place ".25" Move ".25" Sketch "" Shape ".5°"] "a quarter of a pixel up; at a bone, it leans half a degree counterclockwise"
-    FineRight "fine-right" ["L" "Shift-Right"] [Place ".25" Move ".25" Form "" Slide ".25" Sketch "" Shape ".5°" Forest "veer"] "a quarter of a pixel right, or a tenth of a value's range up; at a bone, its plane half a degree on; at a forest, its wind turns 15° clockwise from above"
-    Accept "accept" ["Enter"] [Place "place" Move "keep" Form "run" Menu "choose" Prompt "done" Review "accept" Dial "keep" History "go there" Slide "keep" Start "open" Sketch "keep" Shape "keep"]
+    FineLeft "fine-left" ["H" "Shift-Left"] [Place ".25" Move ".25" Form "" Slide ".25" Sketch "" Shape ".5°" Forest "veer" Paint "1 px"] "a quarter of a pixel left, or a tenth of a value's range down; at a bone, its plane half a degree back; at a forest, its wind turns 15° counterclockwise from above"
+    FineDown "fine-down" ["J" "Shift-Down"] [Place ".25" Move ".25" Sketch "" Shape ".5°" Paint "1 px"] "a quarter of a pixel down; at a bone, it leans half a degree clockwise"
+    FineUp "fine-up" ["K" "Shift-Up"] [Place ".25" Move ".25" Sketch "" Shape ".5°" Paint "1 px"] "a quarter of a pixel up; at a bone, it leans half a degree counterclockwise"
+    FineRight "fine-right" ["L" "Shift-Right"] [Place ".25" Move ".25" Form "" Slide ".25" Sketch "" Shape ".5°" Forest "veer" Paint "1 px"] "a quarter of a pixel right, or a tenth of a value's range up; at a bone, its plane half a degree on; at a forest, its wind turns 15° clockwise from above"
+    Accept "accept" ["Enter"] [Place "place" Move "keep" Form "run" Menu "choose" Prompt "done" Review "accept" Dial "keep" History "go there" Slide "keep" Start "open" Sketch "keep" Shape "keep" Paint "find, keep"]
         "accept: keep, place, run or go; reviewing: in the prints, go to the line's frame; else the open item; in the skeleton, shape the bone; else open the track's, or make a key-frame"
-    Back "back" ["Esc" "Ctrl-c"] [Place "back" Move "back" Form "back" Menu "back" Prompt "back" Label "back" Review "" Dial "back" History "back" Slide "back" Start "" Sketch "back" Shape "back" Forest ""]
+    Back "back" ["Esc" "Ctrl-c"] [Place "back" Move "back" Form "back" Menu "back" Prompt "back" Label "back" Review "" Dial "back" History "back" Slide "back" Start "" Sketch "back" Shape "back" Forest "" Paint "back"]
         "back: leave what is open, undone; while reviewing, stop the clip, the job or what grows, see the skeleton from the front, give up the range, then the picks, then the two runs"
     // Time.
     PlayPause "play" ["space"] [Review "play" Sketch "" Shape "play" Forest "play"] "play or pause; 200 space: at 200 %, from now on"
@@ -170,6 +174,8 @@ table! {
     MoveSample "move-sample" ["m"] [Review "move"] "move the sample here; it becomes a key-frame"
     CorrectTime "correct-time" ["T"] [Review ""] "slide the sample here along its path: what is right in space but not in time"
     Sketch "sketch" ["s"] [Review ""] "draw the selected track by mouse or arrows while the clip plays, or frame by frame"
+    Paint "paint" ["e p"] [Review ""] "paint on this frame what is plant and what lies behind it: features are looked for in the matte that is found of it"
+    Pen "pen" ["D"] [Paint "pen"] "put the pen down where it is, so that keys paint, or lift it"
     WalkForward "walk" [")"] [Move ""] "walk one sample on along the path, while the picture stays"
     WalkBack "walk-back" ["("] [Move ""] "walk one sample back along the path, while the picture stays"
     Pin "pin" ["*"] [Review "" Move "end here"] "make the sample here, or walked to while moving, a key-frame as it is; a correction ends there"
@@ -191,7 +197,7 @@ table! {
     TakeB "take-b" ["e B"] [Review "take B"] "keep what B of the two runs found: in the range, else in the disagreement that is open, else all of it; key-frames stay"
     NameTrack "name-track" ["e n"] [Review ""] "name the selected track"
     ClearKey "clear-key-frame" ["X" "d k"] [Review ""] "clear the key-frame here (u brings it back)"
-    Erase "erase" ["Backspace"] [Menu "" Prompt "" Sketch "take back"] "take back a typed letter, or the stroke drawn last"
+    Erase "erase" ["Backspace"] [Menu "" Prompt "" Sketch "take back" Paint "take back"] "take back a typed letter, or the stroke drawn or painted last"
     EraseLine "erase-line" ["Ctrl-u"] [Menu "" Prompt ""] "empty the line that is being typed"
     RetrackBoth "retrack-both" ["t t"] [Review "re-track"] "track again from the key-frames on both sides, and blend"
     RetrackForward "retrack-forward" ["t f"] [Review ""] "track again from the key-frame here or before, up to the next"
@@ -202,8 +208,8 @@ table! {
     WaitOn "wait-on" ["W"] [Review ""] "wait for a plugin that gives no sign of life"
     EndPlugin "end-plugin" ["I"] [Review ""] "end the process of a plugin that gives no sign of life; another goes on where it was"
     RunClusterer "cluster" ["c"] [Review "cluster"] "group the tracks by their movement"
-    MoreGroups "more-groups" ["+" "="] [Review "" Dial "gain" Sketch "step" Shape "gain" Forest "wind"] "one group more; at the dial, more gain; while drawing, a step twice as large; at a bone, it swings a tenth more; at a forest, a wind a quarter stronger"
-    FewerGroups "fewer-groups" ["-"] [Review "" Dial "gain" Sketch "step" Shape "gain" Forest "wind"] "one group fewer; at the dial, less gain; while drawing, a step half as large; at a bone, it swings a tenth less; at a forest, a wind that much weaker"
+    MoreGroups "more-groups" ["+" "="] [Review "" Dial "gain" Sketch "step" Shape "gain" Forest "wind" Paint "width"] "one group more; at the dial, more gain; while drawing, a step twice as large; while painting, a brush a pixel wider; at a bone, it swings a tenth more; at a forest, a wind a quarter stronger"
+    FewerGroups "fewer-groups" ["-"] [Review "" Dial "gain" Sketch "step" Shape "gain" Forest "wind" Paint "width"] "one group fewer; at the dial, less gain; while drawing, a step half as large; while painting, a brush a pixel narrower; at a bone, it swings a tenth less; at a forest, a wind that much weaker"
     MergeGroups "merge-groups" ["G m"] [Review ""] "merge the selected track's group with another: they stay one wherever the cut is"
     SplitGroup "split-group" ["G s"] [Review ""] "split the selected track's group in two, as it was merged"
     TakeIntoGroup "take-into-group" ["G t"] [Review ""] "take the picked tracks, else the selected one, into another group"
@@ -221,12 +227,12 @@ table! {
     Undo "undo" ["u"] [Review ""] "undo: take the last edit back"
     Redo "redo" ["Ctrl-r"] [Review ""] "redo: do again what was undone"
     // Looking.
-    ZoomIn "zoom-in" ["z"] [Review "" Place "" Move "" Slide "" Sketch "" Shape "" Forest "zoom"] "look closer, at the selected track or the cursor"
-    ZoomOut "zoom-out" ["Z"] [Review "" Place "" Move "" Slide "" Sketch "" Shape "" Forest "zoom"] "look from farther away"
-    PanLeft "pan-left" ["Ctrl-Left"] [Review "" Place "" Move "" Shape ""] "look a quarter of the view further left; a tenth of a pixel while placing or moving"
-    PanDown "pan-down" ["Ctrl-Down"] [Review "" Place "" Move "" Shape ""] "look a quarter of the view further down; a tenth of a pixel while placing or moving"
-    PanUp "pan-up" ["Ctrl-Up"] [Review "" Place "" Move "" Shape ""] "look a quarter of the view further up; a tenth of a pixel while placing or moving"
-    PanRight "pan-right" ["Ctrl-Right"] [Review "" Place "" Move "" Shape ""] "look a quarter of the view further right; a tenth of a pixel while placing or moving"
+    ZoomIn "zoom-in" ["z"] [Review "" Place "" Move "" Slide "" Sketch "" Shape "" Forest "zoom" Paint ""] "look closer, at the selected track or the cursor"
+    ZoomOut "zoom-out" ["Z"] [Review "" Place "" Move "" Slide "" Sketch "" Shape "" Forest "zoom" Paint ""] "look from farther away"
+    PanLeft "pan-left" ["Ctrl-Left"] [Review "" Place "" Move "" Shape "" Paint ""] "look a quarter of the view further left; a tenth of a pixel while placing or moving"
+    PanDown "pan-down" ["Ctrl-Down"] [Review "" Place "" Move "" Shape "" Paint ""] "look a quarter of the view further down; a tenth of a pixel while placing or moving"
+    PanUp "pan-up" ["Ctrl-Up"] [Review "" Place "" Move "" Shape "" Paint ""] "look a quarter of the view further up; a tenth of a pixel while placing or moving"
+    PanRight "pan-right" ["Ctrl-Right"] [Review "" Place "" Move "" Shape "" Paint ""] "look a quarter of the view further right; a tenth of a pixel while placing or moving"
     Centre "centre" ["C"] [Review ""] "bring the selected track to the middle"
     Follow "follow" ["f"] [Review ""] "keep the selected track in the middle, or not"
     MotionColours "motion" ["v v"] [Review ""] "show motion in colours: hue is direction, strength is speed; or not"
@@ -238,7 +244,7 @@ table! {
     VersusFlick "flick-runs" ["F"] [Review "flick"] "of two runs beside each other show A, B, or both"
     VersusRuns "choose-runs" ["v a"] [Review ""] "choose the two runs that are shown beside each other"
     Marks "marks" ["M"] [Review ""] "mark all tracks in the picture, or only the selected one"
-    Column "next-panel" ["Tab"] [Review "" Move "model"] "show the next panel beside the picture, after the last none; while moving, offer the next correction: its error is that at key-frames left out"
+    Column "next-panel" ["Tab"] [Review "" Move "model" Paint "brush"] "show the next panel beside the picture, after the last none; while moving, offer the next correction: its error is that at key-frames left out; while painting, the next brush"
     PanelQueue "panel-queue" ["P q"] [Review ""] "show or hide the queue of doubtful segments"
     PanelTracks "panel-tracks" ["P t"] [Review ""] "show or hide the tracks"
     PanelGroups "panel-groups" ["P g"] [Review ""] "show or hide the groups"
@@ -256,13 +262,13 @@ table! {
     NextTheme "next-theme" ["v t"] [Review ""] "change the colours: the next theme"
     Mouse "mouse" ["v m"] [Review ""] "leave the mouse to the terminal, for selecting text, or take it back"
     History "history" ["U" "P u"] [Review "" History ""] "show the undo tree; j and k choose an edit there, Enter goes to it"
-    Palette "palette" [":"] [Review "" Place "" Move "" Form "" Dial "" History "" Slide "" Sketch "" Shape "" Forest ""] "find any action by name, key or what it does"
-    Help "help" ["?"] [Review "help" Place "" Move "" Form "help" Dial "help" History "help" Slide "" Sketch "help" Shape "help" Forest "help"] "list what works here; Enter does it"
+    Palette "palette" [":"] [Review "" Place "" Move "" Form "" Dial "" History "" Slide "" Sketch "" Shape "" Forest "" Paint ""] "find any action by name, key or what it does"
+    Help "help" ["?"] [Review "help" Place "" Move "" Form "help" Dial "help" History "help" Slide "" Sketch "help" Shape "help" Forest "help" Paint "help"] "list what works here; Enter does it"
     Tutorial "tutorial" ["g ?"] [Review ""] "five minutes on a generated clip: what to press, one step at a time"
-    Redraw "redraw" ["Ctrl-l"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label "" History "" Slide "" Start "" Sketch "" Shape "" Forest ""] "paint the screen anew"
-    Suspend "suspend" ["Ctrl-z"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label "" History "" Slide "" Start "" Sketch "" Shape "" Forest ""] "stop honami until `fg`"
-    Quit "quit" ["q"] [Review "leave" Place "" Move "" Form "" Dial "" History "" Slide "" Start "leave" Sketch "" Shape "" Forest "leave"] "back; while reviewing and at a forest, leave honami"
-    Leave "leave" ["Q"] [Review "" Place "" Move "" Form "" Dial "" History "" Slide "" Start "" Sketch "" Shape "" Forest ""] "leave honami (everything is kept; what is open is asked about first)"
+    Redraw "redraw" ["Ctrl-l"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label "" History "" Slide "" Start "" Sketch "" Shape "" Forest "" Paint ""] "paint the screen anew"
+    Suspend "suspend" ["Ctrl-z"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label "" History "" Slide "" Start "" Sketch "" Shape "" Forest "" Paint ""] "stop honami until `fg`"
+    Quit "quit" ["q"] [Review "leave" Place "" Move "" Form "" Dial "" History "" Slide "" Start "leave" Sketch "" Shape "" Forest "leave" Paint ""] "back; while reviewing and at a forest, leave honami"
+    Leave "leave" ["Q"] [Review "" Place "" Move "" Form "" Dial "" History "" Slide "" Start "" Sketch "" Shape "" Forest "" Paint ""] "leave honami (everything is kept; what is open is asked about first)"
 }
 
 impl Action {

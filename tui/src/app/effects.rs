@@ -1,5 +1,6 @@
 //! The only door to the world: what the state wants done is done here, and what comes of it becomes facts.
 
+mod mattes;
 mod plugins;
 mod window;
 
@@ -68,6 +69,8 @@ pub(super) struct World {
     rebuilding: Option<Rebuilding>,
     /// Works corrections out; `None` where there is no thread for it.
     offering: Option<Offering>,
+    /// The matte that was found last, and not kept yet.
+    found: Option<mattes::Found>,
     /// The viewer's window, where it is open.
     viewing: Option<Viewing>,
 }
@@ -98,6 +101,7 @@ impl World {
             studied: None,
             rebuilding,
             offering,
+            found: None,
             viewing: None,
         }
     }
@@ -233,10 +237,10 @@ impl World {
                 self.running.iter().for_each(|(running, _)| running.answer(patience));
                 Ok(Vec::new())
             }
-            Effect::StopJob => {
-                self.running.iter().for_each(|(running, _)| running.stop());
-                Ok(Vec::new())
-            }
+            Effect::StopJob => Ok(self.stop_job()),
+            Effect::LookAtMatte(frame) => self.look_at_matte(frame),
+            Effect::FindMatte(frame, n, plane) => self.find_matte((frame, n), &plane, now),
+            Effect::KeepMatte(frame, hint) => self.keep_matte(frame, hint),
             Effect::SaveLog(text) => self.save_log(&text),
             Effect::OpenWindow => Ok(self.open_window()),
             Effect::ShowWindow => Ok(self.show_window()),
@@ -265,6 +269,11 @@ impl World {
                 [failed(&error), Fact::Refused].into_iter().chain(recovery).collect()
             }
         }
+    }
+
+    fn stop_job(&self) -> Vec<Fact> {
+        self.running.iter().for_each(|(running, _)| running.stop());
+        Vec::new()
     }
 
     fn commit(&mut self, transaction: Transaction, hint: Hint) -> Facts {
@@ -569,6 +578,7 @@ impl World {
                 }
                 done => (cluster::finish(&mut self.session, done?)?.line, false),
             },
+            Some(Done::Matte(job, found)) => return self.found_matte(*job, *found),
             None => {
                 let fault = "stopped by a fault of its own; the session's log has its report";
                 (format!("{} {fault}", job.plugin), true)

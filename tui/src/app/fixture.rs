@@ -14,6 +14,7 @@ use honami_model::hierarchy::{Dendrogram, Merge};
 use honami_model::history::{Entry, EntryId};
 use honami_model::over::{Laid, Over};
 use honami_model::track::{Quality, Sample, Source, Span, Status, TrackId};
+use honami_workbench::matting::{Part, Parts};
 use honami_workbench::offer::{Errors, Wish};
 use honami_workbench::plugins::{Hosting, Level, Param, Prospect};
 use honami_workbench::review::{Evidence, Kind, Review, Subject};
@@ -363,4 +364,13 @@ pub(super) fn shot(state: &State, area: Rect) -> Shot {
     let pixels =
         (0..rows).flat_map(|y| (0..columns).map(move |x| [(x / 8 * 8) as u8, (y / 8 * 16) as u8, 40]));
     Shot { frame: state.frame, lens, pixels: pixels.collect() }
+}
+
+/// The matte of the frame is found, of so many strokes: stripes of all parts.
+pub(super) fn matted(state: &mut State, n_strokes: usize) {
+    let (width, height) = (state.clip.width, state.clip.height);
+    let part = |pixel: u32| Part::ALL[(pixel % width * Part::ALL.len() as u32 / width) as usize];
+    let parts = Parts { width, height, parts: (0..width * height).map(part).collect() };
+    let line = "20.0 % of the picture is kept".to_owned();
+    update(state, Msg::Fact(Fact::Matted((state.frame, n_strokes), Arc::new(parts), line)));
 }

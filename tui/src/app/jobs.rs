@@ -9,6 +9,8 @@ use std::time::{Duration, Instant};
 
 use honami_workbench::WorkbenchError;
 use honami_workbench::cluster::{ClusterDone, ClusterJob};
+use honami_workbench::matte::{self, MatteRequest, Matted};
+use honami_workbench::media::Still;
 use honami_workbench::progress::{Flow, Level, Patience, Progress, Silence};
 use honami_workbench::retrack::{RetrackJob, Retracked};
 use honami_workbench::track::{TrackDone, TrackJob};
@@ -25,6 +27,16 @@ pub(super) enum Work {
     Track(Box<TrackJob>),
     Retrack(Box<RetrackJob>),
     Cluster(Box<ClusterJob>),
+    Matte(Box<MatteJob>),
+}
+
+/// The matte of a frame that is to be found.
+pub(super) struct MatteJob {
+    pub(super) frame: u32,
+    /// Of so many strokes.
+    pub(super) n_strokes: usize,
+    pub(super) still: Still,
+    pub(super) request: MatteRequest,
 }
 
 /// What a job has come to.
@@ -32,6 +44,7 @@ pub(super) enum Done {
     Track(Box<Result<TrackDone, WorkbenchError>>),
     Retrack(Box<Result<Retracked, WorkbenchError>>),
     Cluster(Box<Result<ClusterDone, WorkbenchError>>),
+    Matte(Box<MatteJob>, Box<Result<Matted, WorkbenchError>>),
 }
 
 /// How far a job is.
@@ -144,6 +157,10 @@ impl Running {
             Work::Track(job) => Done::Track(Box::new(job.run(progress))),
             Work::Retrack(job) => Done::Retrack(Box::new(job.run(progress))),
             Work::Cluster(job) => Done::Cluster(Box::new(job.run(progress))),
+            Work::Matte(job) => {
+                let found = matte::run(&job.still, &job.request, progress);
+                Done::Matte(job, Box::new(found))
+            }
         })
     }
 

@@ -20,6 +20,7 @@ use super::keymap::KeyMap;
 use super::lesson::Lesson;
 use super::menu::Menu;
 use super::motion::Motion;
+use super::painting::Painting;
 use super::panel::Panel;
 use super::plotted::Plotted;
 use super::prints::Prints;
@@ -179,6 +180,8 @@ pub enum Mode {
     Move(Box<Moving>),
     /// Drawing the selected track.
     Sketch(Box<Sketching>),
+    /// Painting what is plant and what lies behind it.
+    Paint(Box<Painting>),
     /// Setting the parameters of a plugin.
     Form(Box<Form>),
     /// Choosing from a list.
@@ -215,6 +218,7 @@ impl Mode {
                 Tool::Slide(_) => Context::Slide,
             },
             Self::Sketch(_) => Context::Sketch,
+            Self::Paint(_) => Context::Paint,
             Self::Form(form) if form.typed.is_some() => Context::Prompt,
             Self::Form(_) => Context::Form,
             Self::Menu(_) => Context::Menu,

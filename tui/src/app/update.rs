@@ -11,6 +11,7 @@ mod motion;
 mod mouse;
 mod moving;
 mod offers;
+mod paint;
 mod pick;
 mod queue;
 mod ranges;
@@ -46,6 +47,7 @@ use super::files::Lead;
 use super::keymap::Found;
 use super::lesson;
 use super::menu::{Choice, Menu};
+use super::painting::Plane;
 use super::state::{Mode, Notice, State};
 use super::typing::{self, TYPED_MAX, append};
 use crate::term::input::{Mouse, MouseKind};
@@ -132,6 +134,12 @@ pub enum Effect {
     Entrants(Option<RunId>),
     /// Run a clusterer.
     Cluster(ClusterRequest),
+    /// Tell what the project keeps of the matte of this frame.
+    LookAtMatte(u32),
+    /// Find the matte of a frame, of so many strokes, by these marks.
+    FindMatte(u32, usize, Plane),
+    /// Keep the matte that was found of this frame, and say what may be done next.
+    KeepMatte(u32, Hint),
     /// Go on with this run, or with the newest that has ended early.
     Resume(Option<RunId>),
     /// Let the plugin of this id start again.
@@ -277,6 +285,7 @@ fn on_text(state: &mut State, text: &str) {
         | Mode::Shape(_)
         | Mode::Move(_)
         | Mode::Sketch(_)
+        | Mode::Paint(_)
         | Mode::Dial(_)
         | Mode::History { .. } => {
             for c in chars {
@@ -359,6 +368,8 @@ mod groups_tests;
 mod keys_tests;
 #[cfg(test)]
 mod offers_tests;
+#[cfg(test)]
+mod paint_tests;
 #[cfg(test)]
 mod queue_tests;
 #[cfg(test)]

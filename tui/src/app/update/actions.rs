@@ -5,7 +5,8 @@ use std::path::PathBuf;
 
 use super::{
     Action, Effect, Mode, State, choose, complain, edit, groups, history, look, motion, mouse, moving,
-    open_menu, pick, queue, ranges, recovery, say, shaping, skeleton, sketch, time, tracks, versus, window,
+    open_menu, paint, pick, queue, ranges, recovery, say, shaping, skeleton, sketch, time, tracks, versus,
+    window,
 };
 use honami_model::judgement::Verdict;
 use honami_model::track::{Status, TrackSet};
@@ -126,6 +127,7 @@ fn look_about(state: &mut State, action: Action) -> Vec<Effect> {
         Action::Front => shaping::front(state),
         Action::Marks => state.marks_all = !state.marks_all,
         Action::Column if matches!(state.mode, Mode::Move(_)) => moving::next_model(state),
+        Action::Column if matches!(state.mode, Mode::Paint(_)) => paint::next_brush(state),
         Action::Column => state.panel = Panel::after(state.panel),
         Action::PanelQueue => show_panel(state, Panel::Queue),
         Action::PanelTracks => show_panel(state, Panel::Tracks),
@@ -167,6 +169,7 @@ fn more(state: &mut State, by: i64) -> Vec<Effect> {
     match state.mode {
         Mode::Dial(_) => motion::gain(state, by),
         Mode::Sketch(_) => sketch::scale_step(state, by),
+        Mode::Paint(_) => paint::widen(state, by),
         Mode::Shape(_) => shaping::gain(state, by),
         _ => return edit::cut(state, by),
     }
@@ -187,6 +190,8 @@ fn correct(state: &mut State, action: Action) -> Vec<Effect> {
     match action {
         Action::MoveSample => return moving::begin(state),
         Action::Sketch => return sketch::begin(state),
+        Action::Paint => return paint::begin(state),
+        Action::Pen => paint::pen(state),
         Action::CorrectTime => return moving::begin_slide(state),
         Action::WalkForward => moving::walk(state, count(state)),
         Action::WalkBack => moving::walk(state, -count(state)),
@@ -247,6 +252,7 @@ fn steer(state: &mut State, dx: f32, dy: f32, px: f32) -> Vec<Effect> {
         Mode::Shape(_) => shaping::steer(state, [dx, dy].map(f64::from), px.into()),
         Mode::Move(_) => moving::nudge(state, by),
         Mode::Sketch(_) => sketch::steer(state, by),
+        Mode::Paint(_) => paint::steer(state, [dx, dy].map(|d| d * n as f32), px < 1.0),
         Mode::Form(form) if columns != 0 => form.change(columns, px < 1.0),
         Mode::Form(form) => form.step(rows),
         Mode::Menu(menu) => menu.step(rows),
@@ -269,6 +275,7 @@ fn accept(state: &mut State) -> Vec<Effect> {
         Mode::Shape(_) => shaping::keep(state),
         Mode::Move(_) => moving::keep(state),
         Mode::Sketch(_) => sketch::keep(state),
+        Mode::Paint(_) => paint::accept(state),
         Mode::Menu(_) => choose(state),
         Mode::Dial(_) => {
             state.mode = Mode::Review;
@@ -333,6 +340,7 @@ fn leave(state: &mut State) -> Vec<Effect> {
     let open = match &state.mode {
         Mode::Move(moving) if moving.has_moved() => "a move is not kept: Enter keeps",
         Mode::Sketch(sketching) if !sketching.strokes.is_empty() => "a sketch is not kept: Enter keeps",
+        Mode::Paint(painting) if !painting.strokes.is_empty() => "what is painted is not kept: Enter keeps",
         Mode::Shape(shaping) if shaping.shape != state.skeleton.hand.shape(shaping.bone.node) => {
             "a bone's shape is not kept: Enter keeps"
         }
@@ -376,6 +384,7 @@ fn back(state: &mut State) -> Vec<Effect> {
         Mode::Menu(menu) => state.mode = std::mem::replace(&mut menu.below, Mode::Review),
         Mode::History { .. } => history::close(state),
         Mode::Sketch(_) => sketch::back(state),
+        Mode::Paint(_) => return paint::back(state),
         _ => state.mode = Mode::Review,
     }
     Vec::new()
@@ -387,6 +396,7 @@ fn erase(state: &mut State, action: Action) -> Vec<Effect> {
         Mode::Prompt(typed) | Mode::Name(typed) | Mode::GroupName(typed) => typing::take_back(typed, action),
         Mode::Form(form) => form.typed.iter_mut().for_each(|typed| typing::take_back(typed, action)),
         Mode::Sketch(_) => sketch::take_back(state),
+        Mode::Paint(_) => paint::take_back(state),
         Mode::Review
         | Mode::Place(_)
         | Mode::Root(_)

@@ -9,13 +9,14 @@ use crate::app::fixture::{self, press, send};
 use crate::app::keymap::{Binding, KeyMap, shown};
 
 /// How keys come to be read in a place. The start screen and forests have tests of their own.
-const REACH: [(Context, &str); 12] = [
+const REACH: [(Context, &str); 13] = [
     (Context::Review, ""),
     (Context::Place, "a"),
     (Context::Shape, "grown G b"),
     (Context::Move, "m l"),
     (Context::Slide, "T"),
     (Context::Sketch, "s"),
+    (Context::Paint, "e p"),
     (Context::Form, "t r"),
     (Context::Menu, ":"),
     (Context::Prompt, "g f"),
@@ -46,6 +47,7 @@ fn prepared(context: Context, action: Action) -> &'static str {
         (Context::Review, Action::Back) => "space",
         (Context::Move, Action::Pin) => ")",
         (Context::Sketch, Action::Erase) => ".",
+        (Context::Paint, Action::Erase) => "D",
         _ => "",
     }
 }

@@ -6,10 +6,11 @@ use std::time::Duration;
 use honami_model::correct::Layers;
 use honami_model::document::RunId;
 use honami_model::history::{Entry, EntryId};
+use honami_workbench::matting::{Mark, Parts};
 use honami_workbench::review::Told;
 
 use super::{
-    Mode, State, actions, logged, motion, moving, offers, queue, skeleton, sketch, tell, time, versus,
+    Mode, State, actions, logged, motion, moving, offers, paint, queue, skeleton, sketch, tell, time, versus,
 };
 use crate::app::correcting::Answer;
 use crate::app::dense::FieldOf;
@@ -86,6 +87,10 @@ pub enum Fact {
     Entrants(Option<RunId>, Vec<Entrant>),
     /// What became of comparing these two runs.
     Compared([RunId; 2], Result<Arc<Compared>, String>),
+    /// The project keeps this matte of this frame: its marks, its parts.
+    Matte(u32, Arc<Vec<Mark>>, Arc<Parts>),
+    /// The matte of this frame was found, of so many strokes; with the line that says so.
+    Matted((u32, usize), Arc<Parts>, String),
     /// What became of growing the skeleton of this revision.
     Grown(u64, Result<Arc<Bones>, String>),
     /// This was heard of the viewer's window.
@@ -149,6 +154,8 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
         Fact::Versus(runs) => versus::on_runs(state, runs.map(|runs| *runs)),
         Fact::Entrants(first, entrants) => versus::on_entrants(state, first, entrants),
         Fact::Compared(runs, compared) => versus::on_compared(state, runs, compared),
+        Fact::Matte(frame, marks, parts) => paint::on_kept(state, frame, marks, parts),
+        Fact::Matted(of, parts, line) => paint::on_found(state, of, parts, line),
         Fact::Grown(revision, grown) => skeleton::on_grown(state, revision, grown),
         // They ask for effects.
         Fact::Window(_) => {}

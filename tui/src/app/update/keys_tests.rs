@@ -22,6 +22,7 @@ fn in_place(context: Context) -> State {
         Context::Move => press("g f 4 0 Enter m"),
         Context::Slide => press("g f 4 0 Enter T"),
         Context::Sketch => press("g f 4 0 Enter s ."),
+        Context::Paint => press("e p"),
         Context::Form => press("t r j"),
         Context::Menu => press("/ 1"),
         Context::Prompt => press("g f 4"),

@@ -13,6 +13,7 @@ pub(super) fn zoom(state: &mut State, by: i64) {
     let focus = match state.mode {
         Mode::Place(at) | Mode::Root(at) => Some(at),
         Mode::Move(ref moving) => Some(moving.to()),
+        Mode::Paint(ref painting) => Some(painting.at),
         _ => state.selected_at(),
     };
     if let Some(focus) = focus.filter(|_| by > 0) {

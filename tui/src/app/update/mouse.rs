@@ -1,6 +1,6 @@
 //! The mouse: selects, places, scrubs; whatever it does, keys do too.
 
-use super::{Effect, Mode, State, history, look, moving, queue, sketch, time, versus};
+use super::{Effect, Mode, State, history, look, moving, paint, queue, sketch, time, versus};
 use crate::app::layout::{Layout, Lens, bar, frame_at};
 use crate::app::skeleton::Skeletal;
 use crate::app::view::column::{self, Pick};
@@ -27,7 +27,8 @@ pub(super) fn on_mouse(state: &mut State, mouse: Mouse) -> Vec<Effect> {
                 | Mode::Root(_)
                 | Mode::Shape(_)
                 | Mode::Move(_)
-                | Mode::Sketch(_) => {
+                | Mode::Sketch(_)
+                | Mode::Paint(_) => {
                     if let Some(point) = lens.point_of(mouse.column, mouse.row) {
                         look::zoom_at(state, -by, point);
                     }
@@ -58,6 +59,9 @@ pub(super) fn on_mouse(state: &mut State, mouse: Mouse) -> Vec<Effect> {
         }
         MouseKind::Press(0) if matches!(state.mode, Mode::Sketch(_)) => sketch::press(state, &lens, cell),
         MouseKind::Drag(0) if matches!(state.mode, Mode::Sketch(_)) => sketch::drag(state, &lens, cell),
+        MouseKind::Press(0) | MouseKind::Drag(0) if matches!(state.mode, Mode::Paint(_)) => {
+            paint::touch(state, &lens, cell, mouse.kind == MouseKind::Press(0));
+        }
         MouseKind::Press(0) | MouseKind::Drag(0) => {
             if let Some(point) = lens.point_of(mouse.column, mouse.row) {
                 match &mut state.mode {

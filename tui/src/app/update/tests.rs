@@ -72,6 +72,11 @@ pub(super) fn line(state: &State, effects: &[Effect]) -> String {
             words
         }
         Mode::Sketch(sketching) => format!("sketch {}", sketching.strokes.len()),
+        Mode::Paint(painting) => {
+            let [x, y] = painting.at;
+            let n = painting.strokes.len();
+            format!("paint {} {} at {x} {y} strokes {n}", painting.word(), painting.radius_px)
+        }
         Mode::Form(form) => format!("form {:?} row {} typed {:?}", form.task, form.at, form.typed),
         Mode::Menu(menu) => {
             format!("menu {:?} of {}", menu.chosen().map(|r| r.label.as_str()), menu.rows().len())

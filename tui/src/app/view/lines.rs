@@ -1,5 +1,7 @@
 //! The lines round the picture: title, track, time, hints, and what happened.
 
+mod paint;
+
 use std::ops::{Range, RangeInclusive};
 
 use ratatui::layout::Rect;
@@ -38,6 +40,9 @@ fn facts(state: &State, nth: usize) -> Vec<(u8, String)> {
     }
     if let Mode::Shape(_) = state.mode {
         return ways_of_shaping(state);
+    }
+    if let Mode::Paint(painting) = &state.mode {
+        return paint::ways(state, painting);
     }
     let counted = |n: usize, one: &str| if n == 1 { format!("1 {one}") } else { format!("{n} {one}s") };
     let mut facts = vec![(0, counted(state.tracks.len(), "track"))];
@@ -345,6 +350,7 @@ pub(super) fn hints(state: &State, area: Rect, frame: &mut Frame) {
         Mode::Label(typed) => format!("letters of a track {typed}▏"),
         Mode::Move(moving) => moving_words(moving, state.frame),
         Mode::Sketch(sketching) => sketching_words(sketching, state.frame),
+        Mode::Paint(painting) => paint::words(painting),
         _ => {
             let t_s = state.clip.times.get(state.frame).unwrap_or_default();
             let mut words = format!("{}/{}  {t_s:.2} s", state.frame, state.last_frame());
@@ -382,7 +388,9 @@ pub(super) fn hints(state: &State, area: Rect, frame: &mut Frame) {
 /// As many of its parts as have room, where something is open beside the hint that keeps it; of what is being typed
 /// its end.
 fn narrowed(left: String, context: Context, columns: u16) -> String {
-    let kept = if matches!(context, Context::Place | Context::Move | Context::Slide | Context::Shape) {
+    let kept = if context == Context::Paint {
+        "  ⏎ find, keep  ? help"
+    } else if matches!(context, Context::Place | Context::Move | Context::Slide | Context::Shape) {
         "  ⏎ keep"
     } else {
         ""
@@ -491,7 +499,9 @@ fn hint_line(state: &State, room: usize) -> Line<'static> {
         .collect();
     // What is open can be kept, and what is marked worked on: that must be seen on the narrowest screen.
     hints.sort_by_key(|(_, word)| match word.as_str() {
-        "keep" | "go on" => 0,
+        "keep" | "find, keep" | "go on" => 0,
+        "pen" | "brush" => 1,
+        "back" if context == Context::Paint => 2,
         "model" if context == Context::Move => 1,
         "back" if matches!(context, Context::Move | Context::Shape) => 2,
         "shape" | "end" | "lost" | "occluded" | "take away" | "average" => 1,

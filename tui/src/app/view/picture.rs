@@ -2,6 +2,7 @@
 
 mod ghost;
 pub(super) mod motion;
+mod paint;
 mod path;
 mod skeleton;
 mod sketch;
@@ -154,6 +155,10 @@ impl<'a> Canvas<'a> {
         if Skeletal::azimuth(state) != 0 {
             canvas.clear();
             canvas.skeleton(state, shot.frame);
+            return canvas;
+        }
+        if let Mode::Paint(painting) = &state.mode {
+            canvas.painting(painting);
             return canvas;
         }
         // Marks belong to the frame that is shown, which may be a moment behind.

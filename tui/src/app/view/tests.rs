@@ -187,6 +187,16 @@ fn screens_of_corrections() {
     check("ghost_80x24", (80, 24), "z z m 3 0 l 4 j . . 2 ( *", |_| {});
     check("sketch_80x24", (80, 24), "z s 4 l . 3 l k . 3 l k . 2 l . + +", |_| {});
     check("sketch_mono_40x12", (40, 12), "s 4 l . 8 l 3 k 3 . 8 l .", |state| state.mono = true);
+    let painted = "e p D 9 l D Tab 9 j D 9 l D";
+    check("paint_80x24", (80, 24), painted, |_| {});
+    check("paint_mono_40x12", (40, 12), painted, |state| state.mono = true);
+    for (name, mono) in [("paint_found_80x24", false), ("paint_found_mono_80x24", true)] {
+        check(name, (80, 24), "Tab Tab", |state| {
+            state.mono = mono;
+            fixture::press(state, painted);
+            fixture::matted(state, 2);
+        });
+    }
     check("range_120x40", (120, 40), "P t y j y r 1 9 l", |_| {});
     // The one that does best is offered, and still being worked out.
     check("offers_80x24", (80, 24), "", |state| {
