@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::fs;
 
-use honami_tests::{Bench, rows};
+use honami_tests::{Bench, python_with, root, rows};
 use serde_json::json;
 
 const SIZE: [u32; 2] = [160, 120];
@@ -241,4 +241,30 @@ fn tracks_in_space_are_kept_and_undone_and_go_stale() {
         assert_eq!(ran.code, Some(1), "{more}: {ran:?}");
         assert!(words.iter().all(|word| ran.stderr.contains(word)), "{more}: {}", ran.stderr);
     }
+}
+
+/// Two other programs read the same places from a C3D file, where they are installed, with frames in which a leaf is not seen.
+#[test]
+fn other_programs_read_the_same_places() {
+    let bench = filmed();
+    cameras(&bench, Some("m"));
+    assert_eq!(bench.edit("left.honami", "mark lost 2 20 29\nname 4 tip of it\n").code, Some(0));
+    bench.json(&format!("triangulate left.honami right.honami --cameras cameras.json --offset {OFFSET_S}"));
+    let said = bench.json("export left.honami space t.c3d");
+    assert_eq!((&said["tracks"], &said["not_kept"]), (&json!(N_LEAVES), &json!([])));
+    let table = bench.json("export left.honami space t.csv");
+    assert_eq!(said["fixes"], table["fixes"]);
+    let bytes = fs::read(bench.path("t.c3d")).unwrap();
+    assert_eq!(bytes[..2], [2, 0x50]);
+    // Written over itself, and over nothing else.
+    bench.json("export left.honami space t.c3d");
+    let ran = bench.line("export left.honami space t.csv.c3d");
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    fs::write(bench.path("dear.c3d"), "dear diary").unwrap();
+    assert_eq!(bench.line("export left.honami space dear.c3d").code, Some(1));
+    let Some(python) = python_with("ezc3d, c3d") else { return };
+    let script = root().join("tests/peers/c3d_readers.py");
+    let files = ["t.c3d", "t.csv"].map(|name| bench.path(name));
+    let output = std::process::Command::new(python).arg(script).args(files).output().unwrap();
+    assert!(output.status.success(), "{output:?}");
 }

@@ -1,5 +1,5 @@
-//! Other programs that tests hold honami against, in the target folder: OpenSees, bvhio, pygltflib, trimesh and USD for Python,
-//! glTF's validator for node.
+//! Other programs that tests hold honami against, in the target folder: OpenSees, bvhio, c3d, ezc3d, pygltflib, trimesh and USD
+//! for Python, glTF's validator for node.
 
 use std::ffi::OsString;
 use std::fs;
@@ -11,8 +11,9 @@ use crate::shell::{Step, target_dir};
 use crate::system;
 
 /// What Python is to have, and what it imports.
-const PACKAGES: [&str; 6] = ["openseespy", "bvhio", "numpy", "pygltflib", "trimesh", "usd-core"];
-const IMPORTS: &str = "import openseespy.opensees, bvhio, numpy, pygltflib, trimesh, pxr";
+const PACKAGES: [&str; 8] =
+    ["openseespy", "bvhio", "c3d", "ezc3d", "numpy", "pygltflib", "trimesh", "usd-core"];
+const IMPORTS: &str = "import openseespy.opensees, bvhio, c3d, ezc3d, numpy, pygltflib, trimesh, pxr";
 const VALIDATOR: &str = "gltf-validator";
 
 /// What tests must be told to find them.

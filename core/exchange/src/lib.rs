@@ -19,6 +19,7 @@
 //! ```
 
 pub mod atomic;
+pub mod c3d;
 pub mod flo;
 pub mod foreign;
 pub mod glb;

@@ -5,13 +5,14 @@ use std::io::Write as _;
 use std::path::Path;
 use std::sync::Arc;
 
+use honami_exchange::c3d::{self, Points};
 use honami_exchange::foreign::{self, ForeignError, ForeignTrack, Format, Loss, Outgoing};
 use honami_exchange::origin::Origin;
 use honami_exchange::{AtomicFile, GroupRow, SpaceRow, TrackRow, TrackTable, Writer, is_begun_alike};
 use honami_model::track::{Span, TrackId, TrackSet};
 use honami_store::Project;
 
-use crate::error::WorkbenchError;
+use crate::error::{SpaceError, WorkbenchError};
 use crate::space::{self, InSpace};
 
 /// Side of the box that stands for a point in MOTChallenge files, pixels.
@@ -148,24 +149,48 @@ pub struct InSpaceWritten {
     pub n_fixes: usize,
     /// Why they no longer speak of what the projects show, a line each.
     pub stale: Vec<String>,
+    /// What the format could not keep, a line each.
+    pub losses: Vec<String>,
 }
 
-/// Writes the shown tracks in space as a table.
+/// Writes the shown tracks in space, as a table (.csv) or for programs of motion capture (.c3d).
 ///
 /// # Errors
-/// [`SpaceError::NoSpace`](crate::SpaceError::NoSpace), and what the project or the disk met.
+/// [`SpaceError::NoSpace`], [`SpaceError::C3d`], and what the project or the disk met.
 pub fn space(project: &Project, out: &Path) -> Result<InSpaceWritten, WorkbenchError> {
-    let InSpace { tracks, times, stale, .. } = space::shown(project)?;
+    let shown = space::shown(project)?;
+    let is_c3d = out.extension().is_some_and(|e| e.eq_ignore_ascii_case("c3d"));
+    let losses = if is_c3d { space_c3d(&shown, out)? } else { space_table(&shown, out)? };
+    let n_fixes = shown.tracks.iter().map(|track| track.fixes.len()).sum();
+    Ok(InSpaceWritten { n_tracks: shown.tracks.len(), n_fixes, stale: shown.stale, losses })
+}
+
+fn space_table(shown: &InSpace, out: &Path) -> Result<Vec<String>, WorkbenchError> {
     let mut table = Writer::create(out)?;
-    for track in &tracks {
+    for track in &shown.tracks {
         for &fix in &track.fixes {
-            let time_s = times.get(fix.frame).unwrap_or_default();
+            let time_s = shown.times.get(fix.frame).unwrap_or_default();
             table.write(&SpaceRow { track: track.track, time_s, fix })?;
         }
     }
     table.finish()?;
-    let n_fixes = tracks.iter().map(|track| track.fixes.len()).sum();
-    Ok(InSpaceWritten { n_tracks: tracks.len(), n_fixes, stale })
+    Ok(Vec::new())
+}
+
+fn space_c3d(shown: &InSpace, out: &Path) -> Result<Vec<String>, WorkbenchError> {
+    let named = shown.tracks.iter().zip(&shown.names);
+    let points = named.map(|(track, name)| {
+        let label = name.clone().unwrap_or_else(|| format!("T{}", track.track));
+        (label, track.fixes.as_slice())
+    });
+    // A single frame has no rate, and readers want one.
+    let fps = shown.times.nominal_fps().unwrap_or(1.0);
+    c3d::write(out, &Points { points: points.collect(), fps }).map_err(SpaceError::from)?;
+    let uneven = shown
+        .times
+        .is_variable()
+        .then(|| format!("times of frames: they are taken to be 1/{fps:.4} s apart"));
+    Ok(uneven.into_iter().collect())
 }
 
 /// Writes the group of every track of the shown clustering; returns their number.

@@ -306,7 +306,7 @@ pub(super) struct Export {
     pub(super) project: PathBuf,
     /// What to write.
     pub(super) what: ExportWhat,
-    /// File to write; its ending names the format: .csv, .parquet, .npz, .txt (MOTChallenge); of a movie .mp4 (by ffmpeg),
+    /// File to write; its ending names the format: .csv, .parquet, .npz, .txt (MOTChallenge); of tracks in space .csv, .c3d; of a movie .mp4 (by ffmpeg),
     /// .y4m, or a new folder for PNG images.
     pub(super) out: PathBuf,
     /// csv, parquet, cvat, deeplabcut, dltdv, trackmate, tapvid or mot.
@@ -394,7 +394,7 @@ pub(super) enum ExportWhat {
     /// The group of every track, numbered as on the screen: track,group,name.
     Groups,
     /// Tracks in space: track,frame,time_s,x_m,y_m,z_m,ex_m,ey_m,ez_m,residual_px; metres in the left camera's axes, x right,
-    /// y down, z forward, with standard errors.
+    /// y down, z forward, with standard errors; or .c3d, for programs of motion capture: millimetres.
     Space,
     /// What reviewers have found: track,first_frame,end_frame,verdict,stands,reasons,reviewer,time,keystrokes,key_frames,seconds.
     Verdicts,

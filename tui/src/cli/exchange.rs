@@ -152,13 +152,23 @@ fn tracks(args: &Export) -> anyhow::Result<Answer> {
 }
 
 fn space(args: &Export) -> anyhow::Result<Answer> {
-    let is_csv = args.out.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
-    want(is_csv, || format!("tracks in space are written as .csv, not as {}", args.out.display()))?;
-    let InSpaceWritten { n_tracks, n_fixes, stale } = export::space(&look(&args.project)?, &args.out)?;
+    let is_one = |of: &str| args.out.extension().is_some_and(|e| e.eq_ignore_ascii_case(of));
+    want(is_one("csv") || is_one("c3d"), || {
+        format!("tracks in space are written as .csv or .c3d, not as {}", args.out.display())
+    })?;
+    let InSpaceWritten { n_tracks, n_fixes, stale, losses } =
+        export::space(&look(&args.project)?, &args.out)?;
     let (tracks, places) = (counted(n_tracks, "track"), counted(n_fixes, "place"));
     let mut text = format!("{}: {tracks} in space, {places}", args.out.display());
     stale.iter().for_each(|why| text += &format!("\n{why}; honami triangulate finds them anew"));
-    let json = json!({ "file": args.out, "tracks": n_tracks, "fixes": n_fixes, "stale": stale });
+    losses.iter().for_each(|loss| text += &format!("\nnot kept: {loss}"));
+    let json = json!({
+        "file": args.out,
+        "tracks": n_tracks,
+        "fixes": n_fixes,
+        "stale": stale,
+        "not_kept": losses,
+    });
     Ok(Answer { json, text, done: true })
 }
 

@@ -46,9 +46,12 @@ pub(super) fn sync(args: &Sync, common: &Common) -> anyhow::Result<Answer> {
     Ok(Answer { json, text, done: true })
 }
 
-/// `+ 0.4137 s ± 0.0002 s`.
+/// `+ 0.4137 s ± 0.0002 s`; what was given without an error has none.
 pub(super) fn signed(Offset { seconds, error_s, .. }: &Offset) -> String {
     let sign = if *seconds < 0.0 { '-' } else { '+' };
+    if *error_s <= 0.0 {
+        return format!("{sign} {:.4} s", seconds.abs());
+    }
     // Two digits of the error, between milliseconds and microseconds.
     let digits = (1.0 - error_s.max(1e-6).log10().floor()).clamp(3.0, 6.0) as usize;
     format!("{sign} {:.digits$} s ± {error_s:.digits$} s", seconds.abs())

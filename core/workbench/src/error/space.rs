@@ -79,6 +79,9 @@ pub enum SpaceError {
         /// The project.
         path: PathBuf,
     },
+    /// No C3D file.
+    #[error(transparent)]
+    C3d(#[from] honami_exchange::c3d::C3dError),
     /// A region in which nothing can be seen.
     #[error("no pixel of the clip, {}x{}, lies in the region {},{},{},{}: {}", size[0], size[1], region[0], region[1],
         region[2], region[3], path.display())]
