@@ -31,6 +31,7 @@ mod rebuilt;
 mod replay;
 mod retrack;
 mod rigs;
+mod scaled;
 mod schema;
 mod sdk;
 mod sensors;

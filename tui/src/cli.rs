@@ -22,6 +22,7 @@ mod project;
 mod replay;
 mod report;
 mod review;
+mod scale;
 mod shape;
 mod simulate;
 mod spectrum;
@@ -198,6 +199,7 @@ fn run(command: Command, common: &Common) -> anyhow::Result<Outcome> {
         Command::Track(args) => track::track(&args, common)?,
         Command::Cluster(args) => groups::cluster(&args, common)?,
         Command::Grow(args) => grow::grow(&args, common)?,
+        Command::Scale(args) => scale::scale(&args)?,
         Command::Shape(args) => shape::shape(&args)?,
         Command::View(args) => return view::view(&args, common),
         Command::Edit(args) => {

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::judgement::Judgement;
 use crate::over::Over;
+use crate::scale::ScaleBar;
 use crate::shape::Shape;
 use crate::space::SpaceId;
 use crate::track::{Sample, Status, TrackId, TrackSet};
@@ -179,6 +180,7 @@ pub struct Document {
     pub(crate) group_names: BTreeMap<(ClusteringId, u32), String>,
     pub(crate) held: BTreeMap<ClusteringId, Vec<Vec<u32>>>,
     pub(crate) root: Option<[f64; 2]>,
+    pub(crate) scale: Option<ScaleBar>,
     pub(crate) shapes: BTreeMap<(ClusteringId, u32), Shape>,
     pub(crate) mattes: BTreeMap<u32, MatteId>,
     pub(crate) space: Option<SpaceId>,
@@ -196,6 +198,7 @@ impl Document {
             group_names: BTreeMap::new(),
             held: BTreeMap::new(),
             root: None,
+            scale: None,
             shapes: BTreeMap::new(),
             mattes: BTreeMap::new(),
             space: None,
@@ -283,6 +286,12 @@ impl Document {
     pub fn shapes(&self, clustering: ClusteringId) -> impl Iterator<Item = (u32, Shape)> {
         let all = (clustering, 0)..=(clustering, u32::MAX);
         self.shapes.range(all).map(|(&(_, node), &shape)| (node, shape))
+    }
+
+    /// What says how many metres a pixel is, if a person has said it.
+    #[must_use]
+    pub fn scale(&self) -> Option<ScaleBar> {
+        self.scale
     }
 
     /// The mattes that are kept, in order of their frames.

@@ -11,6 +11,7 @@ use crate::document::{
 };
 use crate::judgement::Judgement;
 use crate::over::Over;
+use crate::scale::ScaleBar;
 use crate::shape::Shape;
 use crate::space::SpaceId;
 use crate::track::{TrackId, TrackSet};
@@ -134,6 +135,11 @@ pub enum Edit {
         /// Pixels (right, down), finite.
         root: Option<[f64; 2]>,
     },
+    /// A person says how long something in the picture is, or takes that back.
+    SetScale {
+        /// The bar, which measures; its frame is in the clip.
+        bar: Option<ScaleBar>,
+    },
     /// A person shapes a bone, or leaves it as it grows.
     ShapeBone {
         /// The clustering whose groups the skeleton is of.
@@ -186,6 +192,7 @@ impl Edit {
             | Self::NameGroup { .. }
             | Self::HoldGroups { .. }
             | Self::PlaceRoot { .. }
+            | Self::SetScale { .. }
             | Self::ShapeBone { .. }
             | Self::KeepMatte { .. }
             | Self::ShowSpace { .. } => TrackSet::default(),
@@ -274,6 +281,7 @@ impl Document {
                 check_root(*root)?;
                 Ok(Edit::PlaceRoot { root: std::mem::replace(&mut self.root, *root) })
             }
+            Edit::SetScale { bar } => self.set_scale(*bar),
             Edit::ShapeBone { clustering, node, shape } => {
                 shape.as_ref().map_or(Ok(()), Shape::check)?;
                 let at = (*clustering, *node);
@@ -418,6 +426,14 @@ impl Document {
     fn clear_key(&mut self, track: TrackId, frame: u32) -> Result<Edit, EditError> {
         let key = self.live(track)?.keys.remove(&frame).ok_or(EditError::NoKey { track, frame })?;
         Ok(Edit::SetKey { track, frame, key })
+    }
+
+    fn set_scale(&mut self, bar: Option<ScaleBar>) -> Result<Edit, EditError> {
+        if let Some(bar) = &bar {
+            bar.check()?;
+            self.within(bar.frame.into()..u64::from(bar.frame) + 1)?;
+        }
+        Ok(Edit::SetScale { bar: std::mem::replace(&mut self.scale, bar) })
     }
 
     fn keep_matte(&mut self, frame: u32, matte: Option<MatteId>) -> Result<Edit, EditError> {

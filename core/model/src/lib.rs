@@ -19,6 +19,7 @@ pub mod picture;
 pub mod plant;
 pub mod provenance;
 pub mod regroup;
+pub mod scale;
 pub mod shape;
 pub mod skeleton;
 pub mod space;

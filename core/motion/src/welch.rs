@@ -203,6 +203,11 @@ impl Density {
         self.per_hz.iter().sum::<f64>() * self.step_hz
     }
 
+    /// Makes it that of the series in another unit, of which one of its own has so many.
+    pub fn scale(&mut self, times: f64) {
+        self.per_hz.iter_mut().for_each(|value| *value *= times * times);
+    }
+
     /// The sum of the densities of two series with the same pieces, as of the x and y of what moves: of two that have no
     /// more to do with one another its freedom is as much again, of one straight motion it is not.
     ///

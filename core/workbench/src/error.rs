@@ -762,6 +762,9 @@ pub enum WorkbenchError {
     /// What is kept of mattes.
     #[error(transparent)]
     Kept(#[from] matte::MatteError),
+    /// Something is no scale bar.
+    #[error(transparent)]
+    Scale(#[from] crate::scale::ScaleError),
     /// Tracks and sensors say nothing together.
     #[error(transparent)]
     Sensors(#[from] SensorsError),

@@ -29,6 +29,7 @@ pub mod rebuilt;
 pub mod regroup;
 pub mod retrack;
 pub mod review;
+pub mod scale;
 mod scarce;
 pub mod script;
 pub mod sensors;

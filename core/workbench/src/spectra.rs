@@ -16,6 +16,7 @@ pub use honami_motion::spectrum::Peak;
 
 use crate::densities::{self, Density, HalfPower, Pieces};
 use crate::error::WorkbenchError;
+use crate::scale::ScaleBar;
 use crate::sways::{self, Swing, Within};
 
 /// How many times the noise around it the power of a peak of one track must be: foliage has broad peaks.
@@ -64,7 +65,7 @@ pub struct Line {
     /// The share of the power about the strongest that is common to several tracks, 0 to 1 (see
     /// [`Analyser::coherence`]).
     pub coherence: Option<f64>,
-    /// Power of x and y together over frequency, px²/Hz: of several tracks the median. `None` where frames are unevenly timed, or
+    /// Power of x and y together over frequency, px²/Hz, or m²/Hz where there is a scale: of several tracks the median. `None` where frames are unevenly timed, or
     /// nothing was seen as long as a piece without a break.
     pub density: Option<Density>,
 }
@@ -91,6 +92,8 @@ pub struct Spectra {
     pub fps: Option<f64>,
     /// Length of the pieces that densities are of, seconds, where there are any.
     pub piece_s: Option<f64>,
+    /// What says how many metres a pixel is: densities are of metres then, of pixels without.
+    pub scale: Option<ScaleBar>,
     /// All tracks together, then groups, then tracks.
     pub lines: Vec<Line>,
     /// Tracks that were seen too briefly to say anything of, in fewer than 8 of the frames that were looked at.
@@ -104,7 +107,13 @@ pub struct Spectra {
 pub fn of_project(project: &Project, wanted: Wanted) -> Result<Spectra, WorkbenchError> {
     let tracks = project.shown_all()?;
     let group_of = project.grouping()?.map(|grouping| grouping.group_of).unwrap_or_default();
-    of(&project.clip().clip.times, &tracks, &group_of, wanted)
+    let mut found = of(&project.clip().clip.times, &tracks, &group_of, wanted)?;
+    if let Some(bar) = project.document().scale() {
+        let densities = found.lines.iter_mut().filter_map(|line| line.density.as_mut());
+        densities.for_each(|density| density.scale(bar.m_per_px()));
+        found.scale = Some(bar);
+    }
+    Ok(found)
 }
 
 /// Spectra of a table of tracks; its own times count, so every frame of the table needs one.
@@ -212,6 +221,7 @@ fn of(
         start_s: times.as_slice()[0],
         fps: first.even_fps,
         piece_s: welch.as_ref().map(Welch::piece_s),
+        scale: None,
         brief,
         lines,
     })

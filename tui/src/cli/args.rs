@@ -4,6 +4,7 @@ pub(super) mod cameras;
 pub(super) mod grow;
 pub(super) mod matte;
 pub(super) mod plant;
+pub(super) mod scale;
 pub(super) mod sensors;
 pub(super) mod space;
 pub(super) mod spectrum;
@@ -96,6 +97,8 @@ pub(super) enum Command {
     Sync(space::Sync),
     /// Where tracks of two views are in space, metres: kept in the left project as tracks in space.
     Triangulate(space::Triangulate),
+    /// How many metres a pixel is, by something in the picture whose length is known; without places, says it.
+    Scale(scale::Scale),
     /// Frequencies of tracks and groups, in Hz from the frame times.
     Spectrum(spectrum::Spectrum),
     /// What moves together: where, along which line and how fast, by bi-orthogonal decomposition of the tracks.

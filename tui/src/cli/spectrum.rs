@@ -148,7 +148,8 @@ fn curves_of<'a>(spectra: &'a Spectra, args: &Spectrum) -> Option<Curves<'a>> {
     let is_track = |line: &&Line| args.track.is_none() && matches!(line.subject, Subject::Track(_));
     let (more, told): (Vec<&Line>, Vec<&Line>) = spectra.lines.iter().partition(is_track);
     let [told, more] = [told, more].map(|lines| lines.into_iter().filter_map(curve).collect());
-    Some(Curves { unit: "px", window: args.window, piece_s: spectra.piece_s?, told, more })
+    let unit = if spectra.scale.is_some() { "m" } else { "px" };
+    Some(Curves { unit, window: args.window, piece_s: spectra.piece_s?, told, more })
 }
 
 fn entry(line: &Line, start_s: f64, fps: f64) -> serde_json::Value {

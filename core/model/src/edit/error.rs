@@ -5,9 +5,12 @@ use crate::shape::ShapeError;
 use crate::track::TrackId;
 
 /// Why an edit cannot be done.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EditError {
+    /// A scale bar measures nothing.
+    #[error(transparent)]
+    Bar(#[from] crate::scale::BarError),
     /// The document knows no such track.
     #[error("there is no track {0}")]
     NoSuchTrack(TrackId),

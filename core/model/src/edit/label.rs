@@ -1,10 +1,12 @@
 //! Transactions with their line: what happened, in the user's words, with numbers.
 
 use super::{Edit, Transaction};
+use crate::brief::Brief;
 use crate::brief::counted;
 use crate::correct::Refused;
 use crate::document::{ClusteringId, Key, MatteId, RunId, ShownClustering};
 use crate::judgement::Judgement;
+use crate::scale::ScaleBar;
 use crate::space::SpaceId;
 use crate::track::{Sample, TrackId, TrackSet};
 
@@ -125,6 +127,16 @@ impl Transaction {
     pub fn name_group(clustering: ClusteringId, node: u32, name: Option<String>) -> Self {
         let label = named("group", name.as_deref());
         Self::new(label, vec![Edit::NameGroup { clustering, node, name }])
+    }
+
+    /// A scale bar says what a pixel is, or none does.
+    #[must_use]
+    pub fn set_scale(bar: Option<ScaleBar>) -> Self {
+        let label = match &bar {
+            Some(bar) => format!("scale: {} m are {:.1} px", Brief(bar.length_m), bar.length_px()),
+            None => "scale removed".to_owned(),
+        };
+        Self::new(label, vec![Edit::SetScale { bar }])
     }
 
     /// Mattes are kept, each with the frame that it is of.

@@ -6,6 +6,7 @@ use super::{Edit, EditError, Transaction, apply};
 use crate::document::{ClusteringId, Document, Key, Made, MatteId, Origin, RunId, ShownClustering};
 use crate::judgement::{Effort, Judgement, Verdict};
 use crate::over::{Laid, Over};
+use crate::scale::ScaleBar;
 use crate::shape::Shape;
 use crate::track::{Quality, Sample, Source, Status, TrackId, TrackSet};
 
@@ -64,6 +65,15 @@ fn any_edit() -> impl Strategy<Value = Edit> {
         (1_u32..3, prop::collection::vec(prop::collection::vec(0_u32..9, 0..3), 0..3))
             .prop_map(|(id, groups)| Edit::HoldGroups { clustering: ClusteringId(id), groups }),
         prop::option::of([any_number(), any_number()]).prop_map(|root| Edit::PlaceRoot { root }),
+        prop::option::of((0..N_FRAMES + 1, any_number(), any_number())).prop_map(|bar| Edit::SetScale {
+            bar: bar.map(|(frame, x, length_m)| ScaleBar {
+                frame,
+                ends: [[0.0, 1.0], [x, 9.0]],
+                length_m,
+                length_error_m: 0.0,
+                end_error_px: 0.5,
+            }),
+        }),
         (1_u32..3, 0_u32..5, prop::option::of(any_shape())).prop_map(|(id, node, shape)| Edit::ShapeBone {
             clustering: ClusteringId(id),
             node,

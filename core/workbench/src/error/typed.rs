@@ -33,6 +33,7 @@ impl WorkbenchError {
                 | Self::TooFast { .. }
                 | Self::Sensors(crate::error::SensorsError::Height(_))
                 | Self::Piece(_)
+                | Self::Scale(_)
                 | Self::Structure(
                     Grown::Shift(_)
                         | Grown::Copies
