@@ -98,6 +98,14 @@ fn bars_that_were_tracked_give_the_cameras_that_filmed_them() {
     let found =
         bench.json("calibrate left.honami --right right.honami --rig bars/bars.toml --out found.json");
     are_as_filmed(&bench, &found, "bars", 1.0, 0.01);
+    // With numbers that are known, from one file or from two, only how they stand is looked for.
+    let line = "calibrate left.honami --right right.honami --rig bars/bars.toml --known";
+    let known = bench.json(&format!("{line} bars/cameras.json"));
+    are_as_filmed(&bench, &known, "bars", 1.0, 0.002);
+    assert_eq!(known["fx"], 640.0);
+    let each = bench.json(&format!("{line} found.json bars/cameras.json"));
+    is_near(&each, "fx", 640.0, 6.4);
+    assert_eq!(each["right"]["fx"], each["stereo"]["right"]["fx"]);
     // By names, in another order; and what is wrong with a rig.
     let rig = std::fs::read_to_string(bench.path("bars/bars.toml")).unwrap();
     let turned = rig.replace("[0.0, 0.0], [-2.5, 0.0]", "[-2.5, 0.0], [0.0, 0.0]");

@@ -5,7 +5,11 @@ pub mod rig;
 
 use std::path::{Path, PathBuf};
 
-use honami_cameras::{Calibration, CameraError, Options, Pixel, Sighting, Stereo, Target, calibrate, stereo};
+use honami_cameras::camera::NUMBERS;
+use honami_cameras::stereo::stand;
+use honami_cameras::{
+    Calibration, Camera, CameraError, Options, Pixel, Sighting, Stereo, Target, calibrate, stereo,
+};
 use honami_media::{Media, OpenOptions};
 pub use honami_vision::board::{Board, Window};
 use honami_vision::board::{find, refined};
@@ -86,11 +90,18 @@ pub fn by_board(filmed: &Filmed, progress: &dyn Progress) -> Result<Cameras, Wor
 /// other was. Frames in which fewer than four targets are seen are left out.
 ///
 /// Each camera has one focal length, its axis through the middle of the picture and no distortion: a handful of targets tells no
-/// more (thesis, eq. 2.1).
+/// more (thesis, eq. 2.1). Of two cameras whose numbers are `known` (with the sizes of their pictures), these are kept, and only
+/// how they stand is looked for.
 ///
 /// # Errors
-/// [`CamerasError::File`] of a project without tracks of all targets; as [`by_board`].
-pub fn by_rig(left: &Session, right: Option<&Session>, rig: &Rig) -> Result<Cameras, WorkbenchError> {
+/// [`CamerasError::File`] of a project without tracks of all targets; [`CamerasError::Size`] of one whose pictures are not of the
+/// known camera; as [`by_board`].
+pub fn by_rig(
+    left: &Session,
+    right: Option<&Session>,
+    rig: &Rig,
+    known: Option<[(Camera, [u32; 2]); 2]>,
+) -> Result<Cameras, WorkbenchError> {
     let sessions: Vec<&Session> = std::iter::once(left).chain(right).collect();
     let mut sides: Vec<Side> =
         sessions.iter().map(|session| rig::seen(&session.project, rig)).collect::<Result<_, _>>()?;
@@ -98,7 +109,36 @@ pub fn by_rig(left: &Session, right: Option<&Session>, rig: &Rig) -> Result<Came
     for (side, session) in sides.iter_mut().zip(sessions) {
         rig::refined(side, rig, &session.media)?;
     }
-    calibrated(&rig.target, &sides, &Options::BARS, rig.unit)
+    match (known, sides.as_slice()) {
+        (Some(known), [left, right]) => placed(rig, left, right, known),
+        _ => calibrated(&rig.target, &sides, &Options::BARS, rig.unit),
+    }
+}
+
+/// How two cameras stand whose numbers are known.
+fn placed(
+    rig: &Rig,
+    left: &Side,
+    right: &Side,
+    known: [(Camera, [u32; 2]); 2],
+) -> Result<Cameras, WorkbenchError> {
+    for (side, (_, wanted)) in [left, right].into_iter().zip(known) {
+        if side.size != wanted {
+            return Err(CamerasError::Size { wanted, came: side.size }.into());
+        }
+    }
+    let cameras = known.map(|(camera, _)| camera);
+    let both = stand(&rig.target, &together(left, right)?, cameras, Options::BARS.loss)
+        .map_err(CamerasError::Camera)?;
+    let [left, right] = [(left, cameras[0]), (right, cameras[1])].map(|(side, camera)| {
+        let (shown, left_out) = side.parted();
+        let errors = [0.0; NUMBERS.len()];
+        let (rms_px, sigma_px) = (both.rms_px, both.sigma_px);
+        let calibration = Calibration { camera, errors, rms_px, sigma_px, views: Vec::new() };
+        let shown = shown.into_iter().map(|(name, _)| name).collect();
+        Calibrated { calibration, size: side.size, shown, left_out }
+    });
+    Ok(Cameras { left, right: Some((right, both)), unit: rig.unit, by_squares: None })
 }
 
 /// Both cameras, or the one, from what they saw.
@@ -170,17 +210,21 @@ impl Side {
         Ok((asked, (filmed.window != Window::Squares).then_some(fitting)))
     }
 
-    fn calibrated(&self, target: &Target, options: &Options) -> Result<Calibrated, WorkbenchError> {
-        let (mut views, mut shown, mut left_out) = (Vec::new(), Vec::new(), Vec::new());
+    /// Views that show the target, and the others with why they do not, by name.
+    fn parted(&self) -> (Vec<(String, Sighting)>, Vec<(String, String)>) {
+        let (mut shown, mut left_out) = (Vec::new(), Vec::new());
         for View { name, seen, .. } in &self.views {
             match seen {
-                Ok(sighting) => {
-                    views.push(sighting.clone());
-                    shown.push(name.clone());
-                }
+                Ok(sighting) => shown.push((name.clone(), sighting.clone())),
                 Err(why) => left_out.push((name.clone(), why.clone())),
             }
         }
+        (shown, left_out)
+    }
+
+    fn calibrated(&self, target: &Target, options: &Options) -> Result<Calibrated, WorkbenchError> {
+        let (seen, left_out) = self.parted();
+        let (shown, views): (Vec<String>, Vec<Sighting>) = seen.into_iter().unzip();
         if let (true, Some((_, why))) = (views.is_empty(), left_out.first()) {
             return Err(CamerasError::NotShown { n_pictures: left_out.len(), why: why.clone() }.into());
         }

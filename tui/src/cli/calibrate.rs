@@ -1,16 +1,16 @@
 //! `calibrate`: cameras from pictures of a chessboard, or from tracks of targets.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use honami_workbench::calibrate::{self, Calibrated, Cameras, Filmed, file, rig};
-use honami_workbench::cameras::Stereo;
 use honami_workbench::cameras::camera::NUMBERS;
+use honami_workbench::cameras::{Camera, Stereo};
 use honami_workbench::session::{Session, SessionOptions};
 use serde_json::json;
 
 use super::args::Common;
 use super::args::cameras::Calibrate;
-use super::{Answer, report, there, told_options, want};
+use super::{Answer, Usage, report, there, told_options, want};
 use crate::app::opening::where_is_the_clip;
 
 /// Finds the target in all views, and the cameras that took them.
@@ -22,7 +22,7 @@ pub(super) fn calibrate(args: &Calibrate, common: &Common) -> anyhow::Result<Ans
             })?;
             let rig = rig::read(path)?;
             let right = args.right.first().map(|path| opened(path, common)).transpose()?;
-            calibrate::by_rig(&opened(&args.images[0], common)?, right.as_ref(), &rig)?
+            calibrate::by_rig(&opened(&args.images[0], common)?, right.as_ref(), &rig, known(&args.known)?)?
         }
         None => calibrate::by_board(&filmed(args), &report::Bar::with(common))?,
     };
@@ -32,6 +32,19 @@ pub(super) fn calibrate(args: &Calibrate, common: &Common) -> anyhow::Result<Ans
         answer.text += &format!("\nwritten: {}", out.display());
     }
     Ok(answer)
+}
+
+/// Both cameras, of one file or of one each.
+fn known(paths: &[PathBuf]) -> anyhow::Result<Option<[(Camera, [u32; 2]); 2]>> {
+    let each: Vec<Vec<(Camera, [u32; 2])>> =
+        paths.iter().map(|path| file::read_each(path)).collect::<Result<_, _>>()?;
+    match each.as_slice() {
+        [] => Ok(None),
+        [left, right] => Ok(Some([left[0], right[0]])),
+        [both] if both.len() == 2 => Ok(Some([both[0], both[1]])),
+        _ => Err(Usage("--known takes a file of two cameras, or two files: LEFT.json RIGHT.json".to_owned())
+            .into()),
+    }
 }
 
 fn opened(path: &Path, common: &Common) -> anyhow::Result<Session> {

@@ -124,27 +124,48 @@ struct Together {
     sigma_px: Option<f64>,
 }
 
+/// Reads the left camera of a file and, where it has two, the right one: their numbers and the sizes of their pictures.
+///
+/// # Errors
+/// [`CamerasError::File`] where the file has no camera, or its numbers are not sound.
+pub fn read_each(path: &Path) -> Result<Vec<(Camera, [u32; 2])>, WorkbenchError> {
+    let Contents { left, right, stereo, .. } = contents(path)?;
+    let (left_too, right_too) = stereo.map_or((None, None), |stereo| (stereo.left, stereo.right));
+    let of = |alone: One, both: Option<Numbers>| (both.unwrap_or(alone.numbers).camera(), alone.size);
+    let each: Vec<_> =
+        std::iter::once(of(left, left_too)).chain(right.map(|right| of(right, right_too))).collect();
+    if each.iter().all(|(camera, _)| camera.is_sound()) { Ok(each) } else { Err(unsound(path).into()) }
+}
+
+fn contents(path: &Path) -> Result<Contents, CamerasError> {
+    let wrong = |why: String| CamerasError::File { path: path.to_owned(), why };
+    let text = fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
+    serde_json::from_str(&text).map_err(|error| {
+        wrong(format!("not a file of cameras, such as `honami calibrate --out` writes: {error}"))
+    })
+}
+
+fn unsound(path: &Path) -> CamerasError {
+    let why = "focal lengths must be above 0, all numbers finite, and the cameras not in one place";
+    CamerasError::File { path: path.to_owned(), why: why.to_owned() }
+}
+
 /// Reads two cameras and how they stand.
 ///
 /// # Errors
 /// [`CamerasError::File`] where the file is none of two cameras, or their numbers are not sound.
 pub fn read(path: &Path) -> Result<Known, WorkbenchError> {
-    let wrong = |why: String| CamerasError::File { path: path.to_owned(), why };
-    let text = fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
-    let read: Contents = serde_json::from_str(&text).map_err(|error| {
-        wrong(format!("not a file of cameras, such as `honami calibrate --right … --out` writes: {error}"))
-    })?;
+    let read = contents(path)?;
     let (Some(right), Some(stereo)) = (read.right, read.stereo) else {
         let why = "one camera alone; wanted are two and how they stand: `honami calibrate LEFT… --right RIGHT… --out`";
-        return Err(wrong(why.to_owned()).into());
+        return Err(CamerasError::File { path: path.to_owned(), why: why.to_owned() }.into());
     };
     let cameras =
         [stereo.left.unwrap_or(read.left.numbers).camera(), stereo.right.unwrap_or(right.numbers).camera()];
     let right_from_left = Pose::new(stereo.turn_rad.into(), stereo.shift.into());
     let stands = |v: &Vector3<f64>| v.iter().all(|c| c.is_finite()) && v.norm() > 0.0;
     if !cameras.iter().all(Camera::is_sound) || !stands(&right_from_left.translation) {
-        let why = "focal lengths must be above 0, all numbers finite, and the cameras not in one place";
-        return Err(wrong(why.to_owned()).into());
+        return Err(unsound(path).into());
     }
     Ok(Known {
         pair: Pair { cameras, right_from_left },

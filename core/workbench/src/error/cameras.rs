@@ -37,6 +37,14 @@ pub enum CamerasError {
         /// Pictures of the right one.
         right: usize,
     },
+    /// Pictures of another camera.
+    #[error("the camera's pictures have {}x{} pixels, the clip {}x{}: calibrate it as it films", wanted[0], wanted[1], came[0], came[1])]
+    Size {
+        /// The camera's.
+        wanted: [u32; 2],
+        /// The clip's.
+        came: [u32; 2],
+    },
     /// A file that has no cameras, or no target.
     #[error("{path}: {why}")]
     File {

@@ -32,6 +32,9 @@ pub(in crate::cli) struct Calibrate {
     /// Targets on bars or another plane, as this file places them: the projects' tracks are what the cameras saw of them.
     #[arg(long, value_name = "TOML", conflicts_with_all = ["board", "square", "window"])]
     pub(in crate::cli) rig: Option<PathBuf>,
+    /// With `--rig`, both cameras' own numbers are known, from files that `--out` wrote: only how they stand is looked for.
+    #[arg(long, value_name = "JSON", num_args = 1..=2, requires = "rig", requires = "right")]
+    pub(in crate::cli) known: Vec<PathBuf>,
     /// Write the cameras, for `honami triangulate` and other programs.
     #[arg(long, value_name = "JSON")]
     pub(in crate::cli) out: Option<PathBuf>,
