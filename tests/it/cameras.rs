@@ -66,6 +66,16 @@ fn are_as_filmed(bench: &Bench, found: &Value, folder: &str, metres: f64, share:
     }
 }
 
+/// Every number of a camera within five of its told errors of the true one.
+#[track_caller]
+fn is_honest(found: &Value, truth: &Value) {
+    for name in ["fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3"] {
+        let [got, error, want] =
+            [&found[name], &found["errors"][name], &truth[name]].map(|v| v.as_f64().unwrap());
+        assert!((got - want).abs() < 5.0 * error, "{name}: {got} ± {error} for {want}");
+    }
+}
+
 #[test]
 fn a_board_that_was_filmed_gives_the_cameras_that_filmed_it() {
     let bench = Bench::new();
@@ -73,6 +83,15 @@ fn a_board_that_was_filmed_gives_the_cameras_that_filmed_it() {
     let line = "calibrate board/left.y4m --right board/right.y4m --square 30mm --window squares";
     let found = bench.json(line);
     are_as_filmed(&bench, &found, "board", 1e-3, 1e-3);
+    let truth: Value =
+        serde_json::from_str(&std::fs::read_to_string(bench.path("board/cameras.json")).unwrap()).unwrap();
+    is_honest(&found, &truth);
+    is_honest(&found["right"], &truth["right"]);
+    let pair = |json: &Value, key: &str, k: usize| json["stereo"][key][k].as_f64().unwrap();
+    for k in 0..3 {
+        let off = pair(&found, "turn_rad", k) - pair(&truth, "turn_rad", k);
+        assert!(off.abs() < 5.0 * pair(&found, "turn_error_rad", k), "turn {k}: {off}");
+    }
     assert_eq!(found["unit"], "mm");
     assert_eq!(found["views"].as_array().unwrap().len(), 20);
 }

@@ -84,7 +84,7 @@ pub fn calibrate(
     let mut best: Result<Fitted<Bundle<'_>>, CameraError> = Err(CameraError::Behind);
     for fitted in tried {
         best = match (best, fitted) {
-            (Ok(best), Ok(fitted)) => Ok(if fitted.rms_px() < best.rms_px() { fitted } else { best }),
+            (Ok(best), Ok(fitted)) => Ok(if fitted.cost < best.cost { fitted } else { best }),
             (Ok(best), Err(_)) => Ok(best),
             (Err(_), fitted) => fitted,
         };
@@ -122,7 +122,7 @@ fn from_start<'a>(
             break;
         }
         match fit(camera, poses) {
-            Ok(again) if again.rms_px() < fitted.rms_px() => fitted = again,
+            Ok(again) if again.cost < fitted.cost => fitted = again,
             _ => break,
         }
     }

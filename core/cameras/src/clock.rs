@@ -41,12 +41,12 @@ const STEPS: usize = 20;
 ///
 /// # Errors
 /// [`CameraError::Signal`] of signals that are too short, not finite or whose times do not grow; [`CameraError::Strangers`] where nothing is
-/// alike, as where one stands still.
+/// alike, as where one stands still; [`CameraError::AtTheEnd`] where the best offset is the largest that was allowed.
 pub fn by_movement(first: Signal<'_>, second: Signal<'_>, most_s: f64) -> Result<Offset, CameraError> {
     first.check()?;
     second.check()?;
     let step = first.step_s().min(second.step_s()) / 2.0;
-    let n = (most_s / step).ceil().max(1.0) as i64;
+    let n = n_steps(&first, &second, most_s, step);
     let shortest = first.len_s().min(second.len_s());
     let tried = (-n..=n).map(|k| k as f64 * step).filter_map(|offset| {
         let together = first.beside(second, offset, shortest / 2.0)?;
@@ -54,6 +54,7 @@ pub fn by_movement(first: Signal<'_>, second: Signal<'_>, most_s: f64) -> Result
     });
     let best = tried.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|best| best.0 >= STRANGERS);
     let (_, mut offset) = best.ok_or(CameraError::Strangers)?;
+    within(offset, n, step)?;
     let start = offset;
     for _ in 0..STEPS {
         let fit = first
@@ -72,15 +73,33 @@ pub fn by_movement(first: Signal<'_>, second: Signal<'_>, most_s: f64) -> Result
     Ok(Offset { seconds: offset, error_s: fit.error_s, alike: fit.alike })
 }
 
+/// Steps of the search either way: no more than signals can be apart and still be of the same times.
+fn n_steps(first: &Signal<'_>, second: &Signal<'_>, most_s: f64, step_s: f64) -> i64 {
+    let [a, b] = [first.times_s, second.times_s];
+    let farthest = (b[b.len() - 1] - a[0]).abs().max((b[0] - a[a.len() - 1]).abs());
+    (most_s.min(farthest) / step_s).ceil().max(1.0) as i64
+}
+
+/// What is best at the end of the search may be better beyond.
+fn within(offset: f64, n: i64, step_s: f64) -> Result<(), CameraError> {
+    let is_within = (offset / step_s).round().abs() < n as f64;
+    if is_within { Ok(()) } else { Err(CameraError::AtTheEnd { seconds: offset }) }
+}
+
 /// When a lamp was switched on: the time of the greatest step up of a region's brightness, to a part of a frame.
 ///
 /// Frame k gathers light from `times_s[k]` for `exposure` of a frame's length (0..=1; 1 where it is not known): if a frame's brightness
 /// lies between that before and that after, the lamp was lit for that part of the exposure. Where no frame does, it was
-/// switched on while the shutter was closed, and the error says how long that is.
+/// switched on while the shutter was closed, and the error says how long that is. `rounded` is the standard error that values about
+/// some brightness have from being kept as whole numbers: an even lamp in a clean clip has no other noise.
 ///
 /// # Errors
 /// [`CameraError::Signal`] as [`by_movement`]; [`CameraError::NoFlash`] where no step stands out of the noise fivefold.
-pub fn flash_s(brightness: Signal<'_>, exposure: f64) -> Result<(f64, f64), CameraError> {
+pub fn flash_s(
+    brightness: Signal<'_>,
+    exposure: f64,
+    rounded: impl Fn(f64) -> f64,
+) -> Result<(f64, f64), CameraError> {
     /// A step is so many times the noise.
     const OUTSTANDING: f64 = 5.0;
     /// Frames before and after that tell the levels.
@@ -110,8 +129,8 @@ pub fn flash_s(brightness: Signal<'_>, exposure: f64) -> Result<(f64, f64), Came
     let length = times[frame + 1] - times[frame];
     let open = exposure.clamp(0.0, 1.0) * length;
     let lit = ((values[frame] - before) / rise).clamp(0.0, 1.0);
-    // Half a grey level is as good as none.
-    let unsure = (noise / rise).max(1e-3);
+    let coarse = [before, after, values[frame]].map(rounded).into_iter().fold(0.0, f64::max);
+    let unsure = noise.hypot(coarse) / rise;
     let closed = length - open;
     let (start, error) = if lit > 3.0 * unsure && lit < 1.0 - 3.0 * unsure {
         (times[frame] + open * (1.0 - lit), open * unsure)
@@ -121,16 +140,6 @@ pub fn flash_s(brightness: Signal<'_>, exposure: f64) -> Result<(f64, f64), Came
         (opens - closed / 2.0, (closed / 12.0_f64.sqrt()).hypot(open * unsure))
     };
     Ok((start, error))
-}
-
-/// How far two clocks are apart, by a lamp that both recorded.
-///
-/// # Errors
-/// As [`flash_s`].
-pub fn by_flash(first: Signal<'_>, second: Signal<'_>, exposures: [f64; 2]) -> Result<Offset, CameraError> {
-    let (a, a_error) = flash_s(first, exposures[0])?;
-    let (b, b_error) = flash_s(second, exposures[1])?;
-    Ok(Offset { seconds: b - a, error_s: a_error.hypot(b_error), alike: 1.0 })
 }
 
 impl Signal<'_> {
@@ -328,30 +337,29 @@ mod tests {
             for k in 0..40 {
                 let lit = 1.0 + f64::from(k) * 0.0031;
                 let frames = lamp(25.0, exposure, lit, &mut Noise::new(k as u64, 1.0));
-                let (found, error) = flash_s(signal(&frames), exposure).unwrap();
+                let (found, error) = flash_s(signal(&frames), exposure, |_| 0.0).unwrap();
                 // Uniform where the shutter was closed: never beyond √3 of its standard deviation.
                 assert!((found - lit).abs() < 4.5 * error, "{exposure}, {lit}: {found} ± {error}");
                 let most = if exposure < 1.0 { 0.04 * (1.0 - exposure) / 3.4 + 1e-3 } else { 0.002 };
                 assert!(error < most, "{error}");
             }
         }
-        let (first, second) = (
-            lamp(25.0, 1.0, 1.013, &mut Noise::new(1, 0.5)),
-            lamp(30.0, 1.0, 0.771, &mut Noise::new(2, 0.5)),
-        );
-        let found = by_flash(signal(&first), signal(&second), [1.0; 2]).unwrap();
-        assert!(
-            (found.seconds - (0.771 - 1.013)).abs() < 4.0 * found.error_s && found.error_s < 0.001,
-            "{found:?}"
-        );
+        // A clean lamp that is kept as whole numbers: twenty levels of brightness, thirty times.
+        for k in 0..30 {
+            let lit = 1.0 + f64::from(k) * 0.0013;
+            let (times, values) = lamp(25.0, 1.0, lit, &mut Noise::new(0, 0.0));
+            let values: Vec<f64> = values.into_iter().map(|v| (v / 5.0).round()).collect();
+            let (found, error) = flash_s(signal(&(times, values)), 1.0, |_| 0.29).unwrap();
+            assert!((found - lit).abs() < 4.8 * error && error < 0.002, "{lit}: {found} ± {error}");
+        }
     }
 
     #[test]
     fn where_nothing_flashes_it_is_said() {
         let mut noise = Noise::new(3, 1.0);
         let frames = ((0..60).map(f64::from).collect(), (0..60).map(|_| noise.draw()).collect());
-        assert_eq!(flash_s(signal(&frames), 1.0), Err(CameraError::NoFlash));
+        assert_eq!(flash_s(signal(&frames), 1.0, |_| 0.0), Err(CameraError::NoFlash));
         let even = ((0..60).map(f64::from).collect(), vec![5.0; 60]);
-        assert_eq!(flash_s(signal(&even), 1.0), Err(CameraError::NoFlash));
+        assert_eq!(flash_s(signal(&even), 1.0, |_| 0.0), Err(CameraError::NoFlash));
     }
 }

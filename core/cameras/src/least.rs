@@ -84,6 +84,8 @@ pub(crate) trait Problem: Sized {
 /// What fits best.
 pub(crate) struct Fitted<P> {
     pub(crate) problem: P,
+    /// What its offsets cost, px².
+    pub(crate) cost: f64,
     /// Of one coordinate of a residual, pixels: the root of the weighted mean square, less what fitting took.
     pub(crate) sigma_px: f64,
     /// Offsets of each block.
@@ -214,7 +216,7 @@ impl Normal {
         // As many numbers as parameters fit always, and say nothing of errors.
         let sigma_px = if free > 0.0 { (weighted / free).sqrt() } else { 0.0 };
         let (shared, own) = self.covariances().ok_or(Unfitted::Loose)?;
-        Ok(Fitted { problem, sigma_px, offsets: self.offsets, shared, own })
+        Ok(Fitted { problem, cost: self.cost, sigma_px, offsets: self.offsets, shared, own })
     }
 
     fn covariances(&self) -> Option<(DMatrix<f64>, Vec<DMatrix<f64>>)> {

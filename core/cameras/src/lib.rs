@@ -186,6 +186,12 @@ pub enum CameraError {
         "the signals are not alike at any offset; compare what moves together, and allow a larger offset"
     )]
     Strangers,
+    /// Likeness still grows at the end of the search.
+    #[error("the signals are most alike at the end of the search, {seconds:.3} s: allow a larger offset")]
+    AtTheEnd {
+        /// The offset there.
+        seconds: f64,
+    },
     /// No light.
     #[error("no flash: brightness has no step up that stands out of its noise; give the region of the lamp")]
     NoFlash,

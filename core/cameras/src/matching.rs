@@ -33,9 +33,10 @@ pub struct Match {
     pub right: usize,
     /// Root mean square distance from the epipolar lines, pixels.
     pub epipolar_px: f64,
-    /// How alike they move, -1..=1; 0 where one of them hardly moves.
+    /// How alike they move along the lines, either way, 0..=1; 0 where one of them hardly moves.
     pub alike: f64,
-    /// How much more the next best pair of either would cost, pixels; infinite where there is none. A small number is a doubt.
+    /// How much more the next best pair of either would cost, pixels; infinite where there is none. A small number is a doubt,
+    /// and so is one below 0: it would suit better, and suits another even more.
     pub margin_px: f64,
 }
 
@@ -67,7 +68,7 @@ pub fn matched(
         }
     }
     let cost = |likeness: &Option<(f64, f64)>| match likeness {
-        Some((px, alike)) => px.hypot(options.unlike_px * (1.0 - alike) / 2.0),
+        Some((px, alike)) => px.hypot(options.unlike_px * (1.0 - alike)),
         None => f64::INFINITY,
     };
     let costs: Vec<f64> = likenesses.iter().map(cost).collect();

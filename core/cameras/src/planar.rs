@@ -40,8 +40,7 @@ pub(crate) fn poses(
     for _ in 0..2 {
         let problem = Standing { camera, target, seen, pose: start };
         if let Ok(fitted) = least::fit(problem, loss) {
-            let squares = fitted.offsets.iter().flatten().map(Vector2::norm_squared);
-            found.push((fitted.problem.pose, squares.map(|s| loss.weight(s) * s).sum()));
+            found.push((fitted.problem.pose, fitted.cost));
         }
         start = other_way(found.first().map_or(&first, |found| &found.0), &places);
     }

@@ -185,7 +185,7 @@ impl Spectrum {
         for (bin, power) in median.power_px2.iter_mut().enumerate() {
             powers.iter_mut().zip(spectra).for_each(|(power, spectrum)| *power = spectrum.power_px2[bin]);
             powers.sort_by(f64::total_cmp);
-            *power = powers[powers.len() / 2];
+            *power = f64::midpoint(powers[(powers.len() - 1) / 2], powers[powers.len() / 2]);
         }
         Some(median)
     }

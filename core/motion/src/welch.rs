@@ -157,7 +157,12 @@ impl Welch {
         assert!(piece.iter().all(|v| v.is_finite()), "series are finite");
         let mut input = self.fft.make_input_vec();
         let mut output = self.fft.make_output_vec();
-        let straight = straightened(piece);
+        let mut straight = straightened(piece);
+        // What is left of a series that stands still is rounding.
+        let rounding = piece.iter().fold(0.0_f64, |most, v| most.max(v.abs())) * ROUNDING;
+        if straight.iter().all(|value| value.abs() <= rounding) {
+            straight.fill(0.0);
+        }
         input.iter_mut().zip(&straight).zip(&self.weights).for_each(|((x, value), w)| *x = value * w);
         // Only wrong lengths fail, and these are the transform's own.
         let done = self.fft.process(&mut input, &mut output);
@@ -189,12 +194,23 @@ impl Tally {
     }
 }
 
+/// How far a series that stands still may seem to move, of its value.
+const ROUNDING: f64 = 1e-12;
+
 impl Density {
     /// By what a value is to be multiplied for the lower and the upper end of the band that has the true density with this
     /// probability, 0 to 1: the band of 95 % of values of `freedom` 20 is 0.59 to 2.09 times them.
     #[must_use]
     pub fn band(&self, share: f64) -> [f64; 2] {
         [1.0 + share, 1.0 - share].map(|ends| self.freedom / chi_squared::quantile(ends / 2.0, self.freedom))
+    }
+
+    /// As [`Density::band`], at the frequency of this number: at 0 and at half the rate there are half as many degrees of freedom.
+    #[must_use]
+    pub fn band_at(&self, bin: usize, share: f64) -> [f64; 2] {
+        let is_end = bin == 0 || bin + 1 == self.per_hz.len();
+        let freedom = if is_end { self.freedom / 2.0 } else { self.freedom };
+        [1.0 + share, 1.0 - share].map(|ends| freedom / chi_squared::quantile(ends / 2.0, freedom))
     }
 
     /// The mean square of the series, of all frequencies.
@@ -234,7 +250,7 @@ impl Density {
         for (bin, middle) in median.per_hz.iter_mut().enumerate() {
             values.iter_mut().zip(of).for_each(|(value, density)| *value = density.per_hz[bin]);
             values.sort_by(f64::total_cmp);
-            *middle = values[values.len() / 2];
+            *middle = f64::midpoint(values[(values.len() - 1) / 2], values[values.len() / 2]);
         }
         Some(median)
     }

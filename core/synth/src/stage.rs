@@ -141,8 +141,12 @@ impl Stage {
                 let mut light = [0.0_f32; 3];
                 let mut n_on = 0;
                 for k in 0..SAMPLES * SAMPLES {
-                    let share = |i: usize| (i as f32 + 0.5) / SAMPLES as f32;
-                    let (x, y) = (share(k % SAMPLES), share(k / SAMPLES));
+                    // Rooks that do not see each other: an upright edge meets each at another place.
+                    let (i, j) = (k % SAMPLES, k / SAMPLES);
+                    let share = |coarse: usize, fine: usize| {
+                        (coarse as f32 + (fine as f32 + 0.5) / SAMPLES as f32) / SAMPLES as f32
+                    };
+                    let (x, y) = (share(i, j), share(j, SAMPLES - 1 - i));
                     let ray = (a * (1.0 - x) + b * x) * (1.0 - y) + (c * (1.0 - x) + d * x) * y;
                     if let Some(colour) = self.face.light(&origin, &turn, ray) {
                         light.iter_mut().zip(colour).for_each(|(sum, c)| *sum += c);

@@ -90,7 +90,7 @@ fn step<W: Fn([f64; 2]) -> f64>(
 }
 
 /// The middle of a round thing of this radius, pixels, that lies about a start: a disc, a ring, or either seen obliquely. None where
-/// nothing round is there, or nothing of 2 px or more.
+/// nothing round is there, or where the radius is below 2 px or above a quarter of the picture's longer side.
 #[must_use]
 pub fn middle(picture: &Gray<'_>, start: [f64; 2], radius_px: f64) -> Option<[f64; 2]> {
     /// Its edge, blurred, lies in the window, and a ring about it does not.
@@ -102,7 +102,8 @@ pub fn middle(picture: &Gray<'_>, start: [f64; 2], radius_px: f64) -> Option<[f6
         radius_px: reach.ceil() as i32,
         at_rest_px: 1e-3,
     };
-    if radius_px < SMALLEST_PX {
+    let largest_px = f64::from(picture.width.max(picture.height)) / 4.0;
+    if !(SMALLEST_PX..=largest_px).contains(&radius_px) {
         return None;
     }
     let found = meeting(picture, start, Lines::Across, &window)?;

@@ -3,14 +3,14 @@
 pub mod file;
 pub mod rig;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use honami_cameras::camera::NUMBERS;
 use honami_cameras::stereo::stand;
 use honami_cameras::{
     Calibration, Camera, CameraError, Options, Pixel, Sighting, Stereo, Target, calibrate, stereo,
 };
-use honami_media::{Media, OpenOptions};
+use honami_media::{Media, OpenOptions, Still};
 pub use honami_vision::board::{Board, Window};
 use honami_vision::board::{find, refined};
 
@@ -36,6 +36,9 @@ pub struct Filmed {
     /// How much of a picture around a corner is looked at.
     pub window: Window,
 }
+
+/// A camera whose numbers are known, and the size of its pictures, pixels.
+pub type KnownCamera = (Camera, [u32; 2]);
 
 /// A camera, and which pictures it is from.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,7 +77,8 @@ pub fn by_board(filmed: &Filmed, progress: &dyn Progress) -> Result<Cameras, Wor
     let target = Target::board(filmed.board.columns, filmed.board.rows, filmed.square)
         .map_err(CamerasError::Camera)?;
     let (left, fitting) = Side::of_board(&filmed.left, filmed, progress)?;
-    let by_squares = fitting.map(|side| side.calibrated(&target, &Options::BOARD)).transpose()?;
+    // Advice alone: where it fails there is none.
+    let by_squares = fitting.and_then(|side| side.calibrated(&target, &Options::BOARD).ok());
     let mut sides = vec![left];
     if !filmed.right.is_empty() {
         sides.push(Side::of_board(&filmed.right, filmed, progress)?.0);
@@ -100,11 +104,12 @@ pub fn by_rig(
     left: &Session,
     right: Option<&Session>,
     rig: &Rig,
-    known: Option<[(Camera, [u32; 2]); 2]>,
+    known: Option<[KnownCamera; 2]>,
 ) -> Result<Cameras, WorkbenchError> {
     let sessions: Vec<&Session> = std::iter::once(left).chain(right).collect();
     let mut sides: Vec<Side> =
         sessions.iter().map(|session| rig::seen(&session.project, rig)).collect::<Result<_, _>>()?;
+    sides.iter().try_for_each(Side::shows)?;
     rig::thinned(&mut sides);
     for (side, session) in sides.iter_mut().zip(sessions) {
         rig::refined(side, rig, &session.media)?;
@@ -116,12 +121,7 @@ pub fn by_rig(
 }
 
 /// How two cameras stand whose numbers are known.
-fn placed(
-    rig: &Rig,
-    left: &Side,
-    right: &Side,
-    known: [(Camera, [u32; 2]); 2],
-) -> Result<Cameras, WorkbenchError> {
+fn placed(rig: &Rig, left: &Side, right: &Side, known: [KnownCamera; 2]) -> Result<Cameras, WorkbenchError> {
     for (side, (_, wanted)) in [left, right].into_iter().zip(known) {
         if side.size != wanted {
             return Err(CamerasError::Size { wanted, came: side.size }.into());
@@ -152,9 +152,11 @@ fn calibrated(
     let [left, right] = sides else {
         return Ok(Cameras { left: alone(&sides[0])?, right: None, unit, by_squares: None });
     };
+    // Each alone first: what is wrong with one is told by the names of its pictures.
+    let (left_alone, right_alone) = (alone(left)?, alone(right)?);
     let both = stereo(target, &together(left, right)?, [left.size, right.size], options)
         .map_err(CamerasError::Camera)?;
-    Ok(Cameras { left: alone(left)?, right: Some((alone(right)?, both)), unit, by_squares: None })
+    Ok(Cameras { left: left_alone, right: Some((right_alone, both)), unit, by_squares: None })
 }
 
 /// What each view shows to both: nothing where one of them missed the target.
@@ -166,6 +168,9 @@ fn together(left: &Side, right: &Side) -> Result<Vec<[Sighting; 2]>, CamerasErro
     let of = |side: &Side, view: usize| side.views[view].seen.clone().unwrap_or_default();
     Ok((0..n_left).map(|view| [of(left, view), of(right, view)]).collect())
 }
+
+/// Something of a picture, after the picture's name.
+type Named<T> = (String, T);
 
 /// What one camera saw.
 struct Side {
@@ -210,8 +215,18 @@ impl Side {
         Ok((asked, (filmed.window != Window::Squares).then_some(fitting)))
     }
 
+    /// Refuses a camera that never saw the target.
+    fn shows(&self) -> Result<(), CamerasError> {
+        match self.views.first() {
+            Some(View { seen: Err(why), .. }) if self.views.iter().all(|view| view.seen.is_err()) => {
+                Err(CamerasError::NotShown { n_pictures: self.views.len(), why: why.clone() })
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Views that show the target, and the others with why they do not, by name.
-    fn parted(&self) -> (Vec<(String, Sighting)>, Vec<(String, String)>) {
+    fn parted(&self) -> (Vec<Named<Sighting>>, Vec<Named<String>>) {
         let (mut shown, mut left_out) = (Vec::new(), Vec::new());
         for View { name, seen, .. } in &self.views {
             match seen {
@@ -225,9 +240,7 @@ impl Side {
     fn calibrated(&self, target: &Target, options: &Options) -> Result<Calibrated, WorkbenchError> {
         let (seen, left_out) = self.parted();
         let (shown, views): (Vec<String>, Vec<Sighting>) = seen.into_iter().unzip();
-        if let (true, Some((_, why))) = (views.is_empty(), left_out.first()) {
-            return Err(CamerasError::NotShown { n_pictures: left_out.len(), why: why.clone() }.into());
-        }
+        self.shows()?;
         let calibration = calibrate(target, &views, self.size, options).map_err(|error| match error {
             // Which of those that show the target it is says its name.
             CameraError::View { view, source } => {
@@ -243,20 +256,15 @@ impl Side {
 fn opened(paths: &[PathBuf]) -> Result<Media, WorkbenchError> {
     let options = OpenOptions::default();
     Ok(match paths {
-        [one] if !one.is_file() || !is_image(one) => honami_media::open(one, &options)?,
+        [one] if !one.is_file() || !Still::is_one(one) => honami_media::open(one, &options)?,
         many => honami_media::open_images(many, &options)?,
     })
-}
-
-fn is_image(path: &Path) -> bool {
-    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
-    extension.is_some_and(|e| ["png", "jpg", "jpeg", "tif", "tiff", "bmp"].contains(&e.as_str()))
 }
 
 /// A picture's file, or the number of its frame.
 fn name(paths: &[PathBuf], n: u32) -> String {
     match paths.get(n as usize) {
-        Some(path) if paths.len() > 1 || is_image(path) => path.display().to_string(),
+        Some(path) if paths.len() > 1 || Still::is_one(path) => path.display().to_string(),
         _ => format!("frame {n}"),
     }
 }

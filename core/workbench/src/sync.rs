@@ -65,7 +65,7 @@ pub fn flash(
         values.push(light.mean(&media.frame(n)?.planes(), region).ok_or_else(outside)?);
     }
     let brightness = Signal { times_s: clip.times.as_slice(), values: &values };
-    let found = flash_s(brightness, lamp.exposure);
+    let found = flash_s(brightness, lamp.exposure, |light| rounded(light, lamp.gamma));
     let (seconds, error_s) = found.map_err(|source| SpaceError::Clip { path: path.to_owned(), source })?;
     Ok(Flash { seconds, error_s })
 }
@@ -234,6 +234,14 @@ impl Light {
         let sum: f64 = rows.map(|at| row(at).iter().map(|&v| light[usize::from(v)]).sum::<f64>()).sum();
         (n > 0).then(|| sum / n as f64)
     }
+}
+
+/// Standard error of an even light, 0 to 255, that is kept as whole levels.
+fn rounded(light: f64, gamma: f64) -> f64 {
+    /// Of a level: rounding moves a value by as much as half of one either way.
+    const LEVEL: f64 = 0.288_675_134_594_812_9;
+    let share = (light / 255.0).clamp(0.0, 1.0).powf(1.0 / gamma);
+    LEVEL * gamma * share.powf(gamma - 1.0).min(1e3)
 }
 
 #[cfg(test)]

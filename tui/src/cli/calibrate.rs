@@ -2,11 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use honami_workbench::calibrate::{self, Calibrated, Cameras, Filmed, file, rig};
+use honami_workbench::calibrate::{self, Calibrated, Cameras, Filmed, KnownCamera, file, rig};
+use honami_workbench::cameras::Stereo;
 use honami_workbench::cameras::camera::NUMBERS;
-use honami_workbench::cameras::{Camera, Stereo};
 use honami_workbench::session::{Session, SessionOptions};
-use serde_json::json;
 
 use super::args::Common;
 use super::args::cameras::Calibrate;
@@ -35,8 +34,8 @@ pub(super) fn calibrate(args: &Calibrate, common: &Common) -> anyhow::Result<Ans
 }
 
 /// Both cameras, of one file or of one each.
-fn known(paths: &[PathBuf]) -> anyhow::Result<Option<[(Camera, [u32; 2]); 2]>> {
-    let each: Vec<Vec<(Camera, [u32; 2])>> =
+fn known(paths: &[PathBuf]) -> anyhow::Result<Option<[KnownCamera; 2]>> {
+    let each: Vec<Vec<KnownCamera>> =
         paths.iter().map(|path| file::read_each(path)).collect::<Result<_, _>>()?;
     match each.as_slice() {
         [] => Ok(None),
@@ -65,22 +64,17 @@ fn filmed(args: &Calibrate) -> Filmed {
 }
 
 fn describe(cameras: &Cameras) -> Answer {
-    let mut json = file::json(cameras);
+    let json = file::json(cameras);
     let mut text = String::new();
     match &cameras.right {
         None => say(&mut text, "", &cameras.left),
         Some((right, stereo)) => {
             say(&mut text, "left: ", &cameras.left);
             say(&mut text, "right: ", right);
-            say_pair(
-                &mut text,
-                stereo,
-                cameras.unit.map_or("in the unit of --square", calibrate::Unit::name),
-            );
+            say_pair(&mut text, stereo, cameras.unit.map_or("of the target's unit", calibrate::Unit::name));
         }
     }
     if let Some([fx, rms]) = cameras.by_squares {
-        json["by_squares"] = json!({ "fx": fx, "rms": rms });
         text += &format!(
             "\nwindows that fit the squares (--window squares) agree better: fx {fx:.2}, rms {rms:.3} px"
         );
@@ -96,7 +90,9 @@ fn say(text: &mut String, side: &str, calibrated: &Calibrated) {
     let mut rows = vec![["", "", "±"].map(str::to_owned).to_vec()];
     for (name, (value, error)) in NUMBERS.iter().zip(values) {
         let digits = if name.starts_with(['f', 'c']) { 2 } else { 5 };
-        rows.push(vec![(*name).to_owned(), format!("{value:.digits$}"), format!("{error:.digits$}")]);
+        // Bars tell no more than a focal length, and what is known is not looked for.
+        let error = if error > 0.0 { format!("{error:.digits$}") } else { "taken as given".to_owned() };
+        rows.push(vec![(*name).to_owned(), format!("{value:.digits$}"), error]);
     }
     *text += &format!("\n{}\n", report::table(&rows));
     let worst = calibration.views.iter().zip(shown).max_by(|a, b| a.0.rms_px.total_cmp(&b.0.rms_px));

@@ -13,7 +13,7 @@ use serde_json::json;
 
 use super::args::spectrum::Spectrum;
 use super::{Answer, look, report, want};
-use curves::{Curve, Curves, half_power};
+use curves::{Curve, Curves, half_power, written};
 use series::{damped, swung};
 
 /// Tracks that are listed when none was asked for; all of them are in `--json`.
@@ -101,7 +101,7 @@ fn describe(spectra: &Spectra, args: &Spectrum) -> anyhow::Result<Answer> {
         text += &format!("\n{}", aliased(peak.hz, &peak.aliases_hz));
     }
     let curves = curves_of(spectra, args);
-    let files = curves.as_ref().map_or(Ok(Vec::new()), |curves| curves.write(args))?;
+    let files = written(curves.as_ref(), args)?;
     text += &curves.as_ref().map_or_else(String::new, Curves::text);
     files.iter().for_each(|path| text += &format!("\n{}", path.display()));
     let fps = spectra.fps.unwrap_or(1.0);

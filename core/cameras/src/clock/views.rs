@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
-use super::{FEWEST, Offset, Signal};
+use super::{FEWEST, Offset, Signal, n_steps, within};
 use crate::CameraError;
 
 /// A movement in a picture over time: positions, or velocities.
@@ -15,6 +15,9 @@ pub struct Movement<'a> {
     /// Down, one value each.
     pub down: &'a [f64],
 }
+
+/// Of neighbours that are averaged: binomial. Times are smoothed as well, so that uneven ones do no harm.
+const WEIGHTS: [f64; 5] = [1.0 / 16.0, 4.0 / 16.0, 6.0 / 16.0, 4.0 / 16.0, 1.0 / 16.0];
 
 /// Less alike than this, two movements are strangers: their directions are free, so chance makes more alike.
 const STRANGERS: f64 = 0.7;
@@ -31,17 +34,23 @@ const STRANGERS: f64 = 0.7;
 /// As [`by_movement`](super::by_movement).
 pub fn by_movements(first: &Movement<'_>, second: &Movement<'_>, most_s: f64) -> Result<Offset, CameraError> {
     first.axes().iter().chain(&second.axes()).try_for_each(Signal::check)?;
+    let fewest = FEWEST + WEIGHTS.len() - 1;
+    if let Some(few) = [first, second].into_iter().find(|movement| movement.times_s.len() < fewest) {
+        let n = few.times_s.len();
+        return Err(CameraError::Signal { fewest, times: n, values: n });
+    }
     let [first, second] = [first, second].map(Smooth::of);
     let (first, second) = (&first.movement(), &second.movement());
     let [mine, theirs] = [first, second].map(|movement| movement.axes()[0]);
     let step = mine.step_s().min(theirs.step_s()) / 2.0;
     let least_s = mine.len_s().min(theirs.len_s()) / 2.0;
-    let n = (most_s / step).ceil().max(1.0) as i64;
+    let n = n_steps(&mine, &theirs, most_s, step);
     let alike = |offset: f64, least_s: f64| Some(first.beside(second, offset, least_s)?.directions()?.alike);
     let tried =
         (-n..=n).map(|k| k as f64 * step).filter_map(|offset| Some((alike(offset, least_s)?, offset)));
     let best = tried.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|best| best.0 >= STRANGERS);
     let (_, start) = best.ok_or(CameraError::Strangers)?;
+    within(start, n, step)?;
     let seconds = peak(start - step, start + step, |offset| alike(offset, 0.0).unwrap_or(0.0));
     let both = first.beside(second, seconds, 0.0).ok_or(CameraError::Strangers)?;
     let directions = both.directions().ok_or(CameraError::Strangers)?;
@@ -76,8 +85,6 @@ struct Smooth([Vec<f64>; 3]);
 
 impl Smooth {
     fn of(movement: &Movement<'_>) -> Self {
-        /// Binomial; times are smoothed as well, so that uneven ones do no harm.
-        const WEIGHTS: [f64; 5] = [1.0 / 16.0, 4.0 / 16.0, 6.0 / 16.0, 4.0 / 16.0, 1.0 / 16.0];
         let smooth = |values: &[f64]| {
             let sum = |five: &[f64]| five.iter().zip(WEIGHTS).map(|(value, weight)| value * weight).sum();
             values.windows(WEIGHTS.len()).map(sum).collect()
@@ -237,7 +244,6 @@ mod tests {
             let found = by_movements(&movement(&first), &movement(&second), 1.0).unwrap();
             assert!((found.seconds - 0.3137).abs() < 0.003, "{angle}: {found:?}");
             assert!((found.seconds - 0.3137).abs() < 4.0 * found.error_s, "{angle}: {found:?}");
-            println!("{found:?}");
             assert!(found.alike > 0.99, "{found:?}");
         }
         // To the right alone it is hardly known.
@@ -259,7 +265,6 @@ mod tests {
             let second = view(25.0, 200, 0.21, 0.8, &mut Noise::new(1000 + seed, 0.3));
             let found = by_movements(&movement(&first), &movement(&second), 0.6).unwrap();
             squares += (found.seconds - 0.21).powi(2);
-            println!("{:.4} {:.4} {:.3}", found.seconds - 0.21, found.error_s, found.alike);
             told += found.error_s.powi(2);
         }
         let ratio = (squares / told).sqrt();

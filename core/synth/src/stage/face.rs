@@ -56,13 +56,13 @@ impl Face {
         }
     }
 
-    /// Whether a ray may meet it, or one a few pixels beside.
+    /// Whether a ray may meet it, or one a pixel beside.
     pub(super) fn may_lie(self, origin: &Place, turn: &Rotation3<f64>, ray: Vector2<f32>) -> bool {
         let Some([x, y]) = meets(origin, turn, ray) else { return false };
         let ([left, right], [top, bottom]) = self.bounds();
         let about = match self.0 {
-            Carried::Board => 0.01,
-            Carried::Bars => 0.1,
+            Carried::Board => 0.03,
+            Carried::Bars => 0.4,
         };
         (left - about..right + about).contains(&x) && (top - about..bottom + about).contains(&y)
     }

@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
-use super::{Calibrated, Cameras};
+use super::{Calibrated, Cameras, KnownCamera};
 use crate::error::{CamerasError, WorkbenchError};
 use crate::export;
 
@@ -128,7 +128,7 @@ struct Together {
 ///
 /// # Errors
 /// [`CamerasError::File`] where the file has no camera, or its numbers are not sound.
-pub fn read_each(path: &Path) -> Result<Vec<(Camera, [u32; 2])>, WorkbenchError> {
+pub fn read_each(path: &Path) -> Result<Vec<KnownCamera>, WorkbenchError> {
     let Contents { left, right, stereo, .. } = contents(path)?;
     let (left_too, right_too) = stereo.map_or((None, None), |stereo| (stereo.left, stereo.right));
     let of = |alone: One, both: Option<Numbers>| (both.unwrap_or(alone.numbers).camera(), alone.size);
@@ -198,7 +198,7 @@ pub(crate) fn of_pair(pair: &Pair, sizes: [[u32; 2]; 2], unit: Unit) -> String {
 
 /// What it is stands first, so that the next time a file is known to be in place of one.
 fn headed(json: &Value) -> String {
-    format!("{json:#}\n").replacen('{', "{\n  \"honami\": \"cameras\",", 1)
+    format!("{json:#}\n").replacen('{', "{\n  \"honami\":\"cameras\",", 1)
 }
 
 /// All that is known of cameras.
@@ -207,6 +207,9 @@ pub fn json(cameras: &Cameras) -> Value {
     let mut json = one(&cameras.left);
     if let Some(unit) = cameras.unit {
         json["unit"] = json!(unit);
+    }
+    if let Some([fx, rms]) = cameras.by_squares {
+        json["by_squares"] = json!({ "fx": fx, "rms": rms });
     }
     if let Some((right, stereo)) = &cameras.right {
         json["right"] = one(right);

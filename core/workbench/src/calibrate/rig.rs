@@ -162,8 +162,9 @@ fn widths(sighting: &Sighting, rig: &Rig, diameter: f64) -> Option<Vec<f64>> {
         let ends = (0..16).map(|k| {
             let (sin, cos) = (f64::from(k) * std::f64::consts::PI / 16.0).sin_cos();
             let half = Pixel::new(cos, sin) * (diameter / 2.0);
-            let [a, b] = [at + half, at - half].map(|end| h * end.push(1.0)).map(|p| p.xy() / p.z);
-            (a - b).norm()
+            let [a, b] = [at + half, at - half].map(|end| h * end.push(1.0));
+            // Its horizon goes through the target: a track that is on something else bends the plane so.
+            if a.z * b.z > 0.0 { (a.xy() / a.z - b.xy() / b.z).norm() } else { f64::INFINITY }
         });
         ends.fold(0.0, f64::max)
     };

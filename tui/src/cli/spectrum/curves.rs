@@ -48,6 +48,17 @@ pub(super) fn check(args: &Spectrum) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// Writes the files that were asked for.
+pub(super) fn written(curves: Option<&Curves<'_>>, args: &Spectrum) -> anyhow::Result<Vec<PathBuf>> {
+    match curves {
+        Some(curves) => curves.write(args),
+        None if args.csv.is_some() || args.svg.is_some() => anyhow::bail!(
+            "there is no density to write: it takes evenly timed samples, and a series seen for a whole piece (--piece)"
+        ),
+        None => Ok(Vec::new()),
+    }
+}
+
 impl Curves<'_> {
     /// Writes what was asked for; the files.
     pub(super) fn write(&self, args: &Spectrum) -> anyhow::Result<Vec<PathBuf>> {
@@ -108,8 +119,8 @@ impl Curves<'_> {
             } else {
                 name.clone()
             };
-            let [low, high] = density.band(SURE);
             for (k, value) in density.per_hz.iter().enumerate() {
+                let [low, high] = density.band_at(k, SURE);
                 let hz = k as f64 * density.step_hz;
                 // Writing to a string cannot fail.
                 writeln!(table, "{name},{unit},{hz:.6},{value:e},{:e},{:e}", low * value, high * value)

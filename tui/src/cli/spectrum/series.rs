@@ -4,7 +4,7 @@ use honami_workbench::sways::{Manner, Series, Sways, Swing, Told};
 use serde_json::json;
 
 use super::aliased;
-use super::curves::{Curve, Curves, half_power};
+use super::curves::{Curve, Curves, half_power, written};
 use crate::cli::args::spectrum::Spectrum;
 use crate::cli::{Answer, report};
 
@@ -56,7 +56,7 @@ pub(super) fn swings(sways: &Sways, args: &Spectrum) -> anyhow::Result<Answer> {
         text += &format!("\n{}", aliased(*hz, aliases));
     }
     let curves = curves(sways, args);
-    let files = curves.as_ref().map_or(Ok(Vec::new()), |curves| curves.write(args))?;
+    let files = written(curves.as_ref(), args)?;
     text += &curves.as_ref().map_or_else(String::new, Curves::text);
     files.iter().for_each(|path| text += &format!("\n{}", path.display()));
     let series = sways.series.iter().map(|series| {
