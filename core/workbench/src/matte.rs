@@ -10,6 +10,7 @@ use honami_media::{Media, Still};
 use crate::error::WorkbenchError;
 use crate::progress::{Flow, Progress};
 
+pub mod carried;
 pub mod kept;
 
 /// Where marks come from.
@@ -21,6 +22,13 @@ pub enum MarkSource {
     Trimap(PathBuf),
     /// These, one a pixel, painted over the picture where it is shown.
     Painted(Vec<Mark>),
+    /// These, one a pixel, carried on from an earlier frame.
+    Carried {
+        /// That frame.
+        from: u32,
+        /// One a pixel.
+        marks: Vec<Mark>,
+    },
 }
 
 /// What is wanted.
@@ -92,7 +100,7 @@ pub fn run(still: &Still, request: &MatteRequest, progress: &dyn Progress) -> Re
             let trimap = Still::read(path)?;
             from_trimap(&picture, &trimap.gray(), [trimap.width, trimap.height]).map_err(of(path))?
         }
-        MarkSource::Painted(marks) => marks.clone(),
+        MarkSource::Painted(marks) | MarkSource::Carried { marks, .. } => marks.clone(),
     };
     let mut go_on = |share: f64| progress.report((100.0 * share) as u64, 100, "matte") == Flow::Continue;
     let matte = matte(&picture, &marks, &request.options, &mut go_on).map_err(of(&request.path))?;

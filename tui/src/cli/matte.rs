@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use honami_model::brief::counted;
-use honami_workbench::matte::{self, MarkSource, MatteRequest, Matted, kept};
+use honami_workbench::matte::{self, MarkSource, MatteRequest, Matted, carried, kept};
 use honami_workbench::matting::{Matte as Opacities, Options, Part, Parts, PartsWish};
 use honami_workbench::media::{self, OpenOptions, Still};
 use honami_workbench::plugins::quoted;
@@ -24,6 +24,10 @@ pub(super) fn matte(args: &Matte, common: &Common) -> anyhow::Result<Answer> {
     if args.remove {
         want(is_project, || format!("--remove is of projects, not of {}", args.picture_of.display()))?;
         return remove(args, common);
+    }
+    if let Some(every) = args.every {
+        want(is_project, || format!("--every is of projects, not of {}", args.picture_of.display()))?;
+        return carry(args, every, common);
     }
     let marks = match (&args.scribbles, &args.trimap) {
         (Some(path), _) => Some(MarkSource::Scribbles(path.clone())),
@@ -107,6 +111,33 @@ fn remove(args: &Matte, common: &Common) -> anyhow::Result<Answer> {
         quoted(&args.picture_of)
     );
     Ok(Answer { json: json!({ "removed": frames }), text, done: true })
+}
+
+/// Carries the matte of a frame on over the clip.
+fn carry(args: &Matte, every: u32, common: &Common) -> anyhow::Result<Answer> {
+    let mut session = open(&args.picture_of, false, common)?;
+    let bar = report::Bar::with(common);
+    let done = carried::carry(&mut session, args.frame.unwrap_or(0), every, &bar)?;
+    drop(bar);
+    let frames: Vec<u32> = done.kept.iter().map(|(frame, _)| *frame).collect();
+    let mut text = format!(
+        "carried from frame {} to {}; back: echo undo | honami edit {}",
+        done.from,
+        kept::frames(&frames),
+        quoted(&args.picture_of)
+    );
+    if frames.is_empty() {
+        text = format!(
+            "nothing was carried: the clip has no such frame after frame {}, or all have mattes of their own",
+            done.from
+        );
+    }
+    if let Some((frame, why)) = &done.ended {
+        text += &format!("\nit ends before frame {frame}: {why}");
+    }
+    let ended = done.ended.as_ref().map(|(frame, why)| json!({ "frame": frame, "why": why.to_string() }));
+    let json = json!({ "from": done.from, "frames": frames, "ended": ended });
+    Ok(Answer { json, text, done: done.ended.is_none() })
 }
 
 /// What a project keeps.

@@ -11,6 +11,9 @@ use crate::error::WorkbenchError;
 use crate::error::matte::MatteError;
 use crate::stamp;
 
+/// What the provenance of a matte says of its marks where they were carried on from an earlier frame.
+pub(super) const CARRIED: &str = "carried from frame";
+
 /// A matte of a frame, with what it was found by.
 pub type Found<'a> = (u32, &'a MatteRequest, &'a Matted);
 
@@ -32,8 +35,15 @@ pub struct Counting {
 /// # Errors
 /// What the project met.
 pub fn keep(project: &mut Project, found: &[Found<'_>]) -> Result<Vec<(u32, MatteId)>, WorkbenchError> {
-    let mattes: Vec<KeptMatte> = found.iter().map(|found| to_keep(project, found)).collect();
-    let ids = project.save_mattes(&mattes)?;
+    keep_packed(project, &found.iter().map(|found| packed(project, found)).collect::<Vec<_>>())
+}
+
+/// Keeps mattes that are packed.
+pub(super) fn keep_packed(
+    project: &mut Project,
+    mattes: &[KeptMatte],
+) -> Result<Vec<(u32, MatteId)>, WorkbenchError> {
+    let ids = project.save_mattes(mattes)?;
     let kept: Vec<(u32, MatteId)> = mattes.iter().map(|matte| matte.frame).zip(ids).collect();
     project.commit(Transaction::keep_mattes(&kept))?;
     Ok(kept)
@@ -115,13 +125,15 @@ pub fn frames(of: &[u32]) -> String {
     }
 }
 
-fn to_keep(project: &Project, &(frame, request, matted): &Found<'_>) -> KeptMatte {
+/// A matte as the project keeps it.
+pub(super) fn packed(project: &Project, &(frame, request, matted): &Found<'_>) -> KeptMatte {
     let number = |value: f64| Value::Float(value);
     let whole = |value: usize| Value::Int(i64::try_from(value).unwrap_or(i64::MAX));
     let marks = match &request.marks {
         MarkSource::Scribbles(path) => format!("scribbles {}", path.display()),
         MarkSource::Trimap(path) => format!("trimap {}", path.display()),
         MarkSource::Painted(_) => "painted".to_owned(),
+        MarkSource::Carried { from, .. } => format!("{CARRIED} {from}"),
     };
     let params = [
         ("marks", Value::Text(marks)),

@@ -37,6 +37,10 @@ pub(in crate::cli) struct Matte {
     /// Which frame of a clip (default: 0; all with --remove).
     #[arg(long, value_name = "N")]
     pub(in crate::cli) frame: Option<u32>,
+    /// Carry the kept matte of --frame on by the motion of the tracks, to every N-th frame after it, and keep these, too.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..),
+        conflicts_with_all = ["scribbles", "trimap", "out", "mask", "parts", "picture", "remove"])]
+    pub(in crate::cli) every: Option<u32>,
     /// Keep no matte of a project any longer, or not that of --frame.
     #[arg(long, conflicts_with_all = ["scribbles", "trimap", "out", "mask", "parts", "picture"])]
     pub(in crate::cli) remove: bool,
