@@ -201,6 +201,13 @@ fn tracks_in_space_are_kept_and_undone_and_go_stale() {
     assert_eq!(made["provenance"]["params"]["offset_s"], json!(OFFSET_S));
     assert!(bench.text("log left.honami").contains("8 tracks in space shown"));
 
+    // Sensors that are where the tracks are: what is left is the rounding of the table.
+    bench.json("export left.honami space sensors.csv");
+    let beside = bench.json("compare left.honami --sensors sensors.csv --offset 0");
+    assert_eq!(beside["markers"].as_array().unwrap().len(), N_LEAVES);
+    let rms = beside["all"].as_array().unwrap().iter().map(|cell| cell["rms_m"].as_f64().unwrap());
+    assert!(rms.fold(0.0, f64::max) < 1e-5, "{}", beside["all"]);
+
     let stale = || bench.json("export left.honami space t.csv")["stale"].as_array().unwrap().len();
     assert_eq!(stale(), 0);
     assert_eq!(bench.edit("left.honami", "key 3 5 10 10\n").code, Some(0));

@@ -189,6 +189,7 @@ const CASES: &[Case] = &[
     ("components points.csv", FAILED, &["points.csv", "`track` is missing"]),
     ("components p.honami out.png", USAGE, &[".svg and .csv", "out.png"]),
     ("components p.honami --most 0", USAGE, &["--most"]),
+    ("compare p.honami --sensors points.csv", FAILED, &["no tracks in space", "honami triangulate"]),
     ("compare missing.csv --sensors points.csv", FAILED, &["cannot read the table", "missing.csv"]),
     ("compare points.csv --sensors points.csv", FAILED, &["wanted a column time_s", "points.csv"]),
     ("compare p.honami --sensors points.csv --with klt", USAGE, &["--sensors", "--with"]),

@@ -13,13 +13,18 @@ pub use honami_cameras::Place;
 use honami_cameras::align::deviations;
 pub use honami_cameras::align::{Deviation, Similarity};
 use honami_cameras::clock::{Offset, Signal};
+use honami_model::space::SpaceTrack;
 use honami_motion::accuracy;
 use honami_motion::welch::{Cross, Density, Welch};
+use honami_store::Project;
 
 use crate::densities::Pieces;
 use crate::error::{SensorsError, WorkbenchError};
-pub use table::{Wind, courses, wind};
+use crate::space::{self, InSpace};
+pub use table::{Wind, records, wind};
 
+/// Fewer samples are no record.
+const FEWEST: usize = 3;
 /// A gap is longer than so many usual steps: nothing is read across it.
 const GAP: f64 = 2.5;
 /// What swings less often in a piece is a drift.
@@ -29,7 +34,7 @@ const EVEN: f64 = 0.5;
 
 /// Where something was over time.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Course {
+pub struct Record {
     /// What it is called.
     pub name: String,
     /// Seconds, growing.
@@ -125,7 +130,7 @@ pub struct Strongest {
 ///
 /// # Errors
 /// [`SensorsError`], and [`crate::densities::PieceError`].
-pub fn compare(tracks: &[Course], sensors: &[Course], wish: &Wish) -> Result<Compared, WorkbenchError> {
+pub fn compare(tracks: &[Record], sensors: &[Record], wish: &Wish) -> Result<Compared, WorkbenchError> {
     if let Some(height) = wish.height_m.filter(|height| !(height.is_finite() && *height > 0.0)) {
         return Err(SensorsError::Height(height).into());
     }
@@ -158,8 +163,8 @@ pub fn compare(tracks: &[Course], sensors: &[Course], wish: &Wish) -> Result<Com
     };
     let all = deviations(&every(|m| &m.tracked), &every(|m| &m.sensed))
         .ok_or(SensorsError::Axes(CameraError::Unaligned { came: 0 }))?;
-    let alone = |courses: &[Course], is_paired: &dyn Fn(&str) -> bool| {
-        courses.iter().map(|course| course.name.clone()).filter(|name| !is_paired(name)).collect::<Vec<_>>()
+    let alone = |records: &[Record], is_paired: &dyn Fn(&str) -> bool| {
+        records.iter().map(|record| record.name.clone()).filter(|name| !is_paired(name)).collect::<Vec<_>>()
     };
     Ok(Compared {
         offset_s: met.offset_s,
@@ -205,7 +210,24 @@ fn spectra(welch: &Welch, fps: f64, times_s: &[f64], both: [&[Place]; 2]) -> Opt
     Some([along(0)?, along(1)?, along(2)?])
 }
 
-impl Course {
+/// The tracks in space that a project shows, by their names, or their numbers where they have none; and a line for each reason
+/// why they no longer speak of what the projects show.
+///
+/// # Errors
+/// [`crate::SpaceError::NoSpace`] where none are shown, and what the project met.
+pub fn of_project(project: &Project) -> Result<(Vec<Record>, Vec<String>), WorkbenchError> {
+    let InSpace { tracks, names, times, stale, .. } = space::shown(project)?;
+    let record = |(track, name): (SpaceTrack, Option<String>)| Record {
+        name: name.unwrap_or_else(|| track.track.to_string()),
+        times_s: track.fixes.iter().map(|fix| times.get(fix.frame).unwrap_or_default()).collect(),
+        places: track.fixes.iter().map(|fix| Place::from(fix.place_m)).collect(),
+    };
+    // What was seen by both in hardly any frame is no record.
+    let records = tracks.into_iter().zip(names).map(record).filter(|record| record.times_s.len() >= FEWEST);
+    Ok((records.collect(), stale))
+}
+
+impl Record {
     /// The usual time from one sample to the next, seconds.
     pub(crate) fn step_s(&self) -> f64 {
         let steps = self.times_s.windows(2).map(|pair| pair[1] - pair[0]);

@@ -6,14 +6,12 @@ use std::path::Path;
 
 use honami_cameras::Place;
 
-use super::Course;
+use super::{FEWEST, Record};
 use crate::error::{SensorsError, WorkbenchError};
 use crate::sways::table::{TIMES, cells, number};
 
 /// Heads of a column that says whose row it is.
 const WHOSE: [&str; 3] = ["marker", "sensor", "track"];
-/// Fewer samples are no course.
-const FEWEST: usize = 3;
 
 /// Values of a wind over time.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,7 +29,7 @@ pub struct Wind {
 ///
 /// # Errors
 /// [`SensorsError::Table`] with the line.
-pub fn courses(path: &Path) -> Result<Vec<Course>, WorkbenchError> {
+pub fn records(path: &Path) -> Result<Vec<Record>, WorkbenchError> {
     let wrong = |what: String| SensorsError::Table { path: path.to_owned(), what };
     let table = Table::read(path)?;
     let mut samples = BTreeMap::<(usize, String), Vec<(f64, Place)>>::new();
@@ -75,7 +73,7 @@ pub fn courses(path: &Path) -> Result<Vec<Course>, WorkbenchError> {
         )
         .into());
     }
-    let course = |((_, name), samples): ((usize, String), Vec<(f64, Place)>)| {
+    let record = |((_, name), samples): ((usize, String), Vec<(f64, Place)>)| {
         if samples.len() < FEWEST {
             return Err(
                 wrong(format!("{name}: wanted {FEWEST} samples or more, came {}", samples.len())).into()
@@ -87,9 +85,9 @@ pub fn courses(path: &Path) -> Result<Vec<Course>, WorkbenchError> {
             );
         }
         let (times_s, places) = samples.into_iter().unzip();
-        Ok(Course { name, times_s, places })
+        Ok(Record { name, times_s, places })
     };
-    samples.into_iter().map(course).collect()
+    samples.into_iter().map(record).collect()
 }
 
 /// Columns of wind over time.

@@ -21,9 +21,9 @@ fn drawn(k: usize) -> f64 {
 
 /// Four parts as cameras see them, 25 times a second with 1 mm of noise, and by sensors, 40 times, whose clock is ahead by
 /// 0.4137 s and whose axes are turned a quarter and lie elsewhere.
-fn seen() -> (Vec<Course>, Vec<Course>) {
-    let course =
-        |name: String, n: usize, fps: f64, place: &dyn Fn(usize, f64) -> Place, clock_s: f64| Course {
+fn seen() -> (Vec<Record>, Vec<Record>) {
+    let record =
+        |name: String, n: usize, fps: f64, place: &dyn Fn(usize, f64) -> Place, clock_s: f64| Record {
             name,
             times_s: (0..n).map(|k| k as f64 / fps + clock_s).collect(),
             places: (0..n).map(|k| place(k, k as f64 / fps)).collect(),
@@ -31,10 +31,10 @@ fn seen() -> (Vec<Course>, Vec<Course>) {
     let tracked = |part: usize| {
         let noise =
             move |k: usize| Place::new(drawn(3 * k + part), drawn(3 * k + 1 + part), drawn(3 * k + 2 + part));
-        course(format!("{}", part + 1), 500, 25.0, &|k, t| sway(part, t) + 0.001 * noise(k), 0.0)
+        record(format!("{}", part + 1), 500, 25.0, &|k, t| sway(part, t) + 0.001 * noise(k), 0.0)
     };
     let turned = |p: Place| Place::new(-p.y + 3.0, p.x - 1.0, p.z + 0.5);
-    let sensed = |part: usize| course(format!("S{part}"), 800, 40.0, &|_, t| turned(sway(part, t)), 0.4137);
+    let sensed = |part: usize| record(format!("S{part}"), 800, 40.0, &|_, t| turned(sway(part, t)), 0.4137);
     ((0..4).map(tracked).collect(), [2, 0, 3, 1].map(sensed).to_vec())
 }
 
@@ -81,19 +81,19 @@ fn names_and_a_given_offset_are_kept_to() {
 #[test]
 fn what_cannot_be_brought_together_is_named() {
     let (tracks, sensors) = seen();
-    let said = |tracks: &[Course], sensors: &[Course], wish: Wish| {
+    let said = |tracks: &[Record], sensors: &[Record], wish: Wish| {
         compare(tracks, sensors, &wish).unwrap_err().to_string()
     };
     let late = Wish { offset_s: Some(100.0), ..wish() };
     assert!(said(&tracks, &sensors, late).contains("never seen at the same time"));
     assert!(said(&tracks, &sensors, Wish { height_m: Some(0.0), ..wish() }).contains("above 0, not 0"));
     let still =
-        |course: &Course| Course { places: vec![course.places[0]; course.places.len()], ..course.clone() };
+        |record: &Record| Record { places: vec![record.places[0]; record.places.len()], ..record.clone() };
     let still: Vec<_> = sensors.iter().map(still).collect();
     assert!(said(&tracks, &still, wish()).contains("--offset SECONDS gives it"));
-    let line = |course: &Course| {
+    let line = |record: &Record| {
         let place = |t: &f64| Place::new(1.0, 2.0, 3.0) * t.sin();
-        Course { places: course.times_s.iter().map(place).collect(), ..course.clone() }
+        Record { places: record.times_s.iter().map(place).collect(), ..record.clone() }
     };
     let (a, b) = (line(&tracks[0]), line(&tracks[0]));
     let told = said(&[a], &[b], Wish { offset_s: Some(0.0), ..wish() });
@@ -106,7 +106,7 @@ fn tables_are_read_in_both_forms_and_told_by_their_lines() {
     let path = folder.path().join("m.csv");
     let read = |text: &str| {
         fs::write(&path, text).unwrap();
-        courses(&path).map_err(|error| error.to_string())
+        records(&path).map_err(|error| error.to_string())
     };
     let long =
         "marker,time_s,x,y,z\na,0,1,2,3\nb,0,4,5,6\na,1,1,2,3\nb,1,,,\na,2,1,2,4\nb,2,4,5,6\nb,3,4,5,7\n";

@@ -5,7 +5,7 @@ use honami_cameras::assign::assigned;
 use honami_cameras::clock::{Offset, Signal, by_movement};
 use honami_cameras::{CameraError, Place};
 
-use super::{Course, Wish};
+use super::{Record, Wish};
 use crate::error::SensorsError;
 
 /// Turns of the power method: the axis in which something moves most need not be exact.
@@ -32,7 +32,7 @@ pub(super) struct Met {
     pub(super) pairs: Vec<Pair>,
 }
 
-pub(super) fn meet(tracks: &[Course], sensors: &[Course], wish: &Wish) -> Result<Met, SensorsError> {
+pub(super) fn meet(tracks: &[Record], sensors: &[Record], wish: &Wish) -> Result<Met, SensorsError> {
     let named = by_name(tracks, sensors);
     let (mut partners, start) = if named.is_empty() {
         by_movement_of(tracks, sensors, wish)?
@@ -64,7 +64,7 @@ pub(super) fn meet(tracks: &[Course], sensors: &[Course], wish: &Wish) -> Result
 }
 
 /// Tracks and sensors of the same name; a track may be `track 3` where the sensor is `3`.
-fn by_name(tracks: &[Course], sensors: &[Course]) -> Vec<[usize; 2]> {
+fn by_name(tracks: &[Record], sensors: &[Record]) -> Vec<[usize; 2]> {
     let plain = |name: &str| {
         let name = name.trim().to_lowercase();
         ["track ", "marker ", "sensor "]
@@ -74,14 +74,14 @@ fn by_name(tracks: &[Course], sensors: &[Course]) -> Vec<[usize; 2]> {
             .to_owned()
     };
     let track_of =
-        |sensor: &Course| tracks.iter().position(|track| plain(&track.name) == plain(&sensor.name));
+        |sensor: &Record| tracks.iter().position(|track| plain(&track.name) == plain(&sensor.name));
     sensors.iter().enumerate().filter_map(|(b, sensor)| Some([track_of(sensor)?, b])).collect()
 }
 
 /// Partners by how they move, each along the axis in which it moves most, and the offset of the clocks.
 fn by_movement_of(
-    tracks: &[Course],
-    sensors: &[Course],
+    tracks: &[Record],
+    sensors: &[Record],
     wish: &Wish,
 ) -> Result<(Vec<[usize; 2]>, f64), SensorsError> {
     let about = wish.offset_s.unwrap_or(0.0);
@@ -99,7 +99,7 @@ fn by_movement_of(
         _ => SensorsError::Clock(error),
     })?;
     let offset = wish.offset_s.unwrap_or(best.seconds);
-    let cost = |track: &Course, sensor: &Course| {
+    let cost = |track: &Record, sensor: &Record| {
         let near = STEPS * track.step_s().max(sensor.step_s());
         principal(track, sensor, offset, near).map_or(1.0, |found| 1.0 - found.alike.abs())
     };
@@ -110,10 +110,10 @@ fn by_movement_of(
 }
 
 /// For each sensor the track that is nearest on average, once axes are known.
-fn by_place(tracks: &[Course], sensors: &[Course], axes: &Similarity) -> Vec<[usize; 2]> {
-    let middle = |course: &Course| course.places.iter().sum::<Place>() / course.places.len() as f64;
+fn by_place(tracks: &[Record], sensors: &[Record], axes: &Similarity) -> Vec<[usize; 2]> {
+    let middle = |record: &Record| record.places.iter().sum::<Place>() / record.places.len() as f64;
     let tracked: Vec<Place> = tracks.iter().map(|track| axes.of(&middle(track))).collect();
-    let cost = |sensor: &Course| {
+    let cost = |sensor: &Record| {
         let sensed = middle(sensor);
         tracked.iter().map(move |place| (place - sensed).norm_squared()).collect::<Vec<_>>()
     };
@@ -122,7 +122,7 @@ fn by_place(tracks: &[Course], sensors: &[Course], axes: &Similarity) -> Vec<[us
 }
 
 /// The offset at which two move most alike, each along the axis in which it moves most.
-fn principal(track: &Course, sensor: &Course, about_s: f64, most_s: f64) -> Result<Offset, CameraError> {
+fn principal(track: &Record, sensor: &Record, about_s: f64, most_s: f64) -> Result<Offset, CameraError> {
     let shifted: Vec<f64> = sensor.times_s.iter().map(|t| t - about_s).collect();
     let (mine, theirs) = (strongest(track), strongest(sensor));
     let first = Signal { times_s: &track.times_s, values: &mine };
@@ -132,9 +132,9 @@ fn principal(track: &Course, sensor: &Course, about_s: f64, most_s: f64) -> Resu
 }
 
 /// Displacements along the axis in which something moves most.
-fn strongest(course: &Course) -> Vec<f64> {
-    let middle = course.places.iter().sum::<Place>() / course.places.len().max(1) as f64;
-    let moved: Vec<Place> = course.places.iter().map(|place| place - middle).collect();
+fn strongest(record: &Record) -> Vec<f64> {
+    let middle = record.places.iter().sum::<Place>() / record.places.len().max(1) as f64;
+    let moved: Vec<Place> = record.places.iter().map(|place| place - middle).collect();
     // No axis of a plant is exactly across this one.
     let mut axis = Place::new(0.61, 0.55, 0.57);
     for _ in 0..TURNS {
@@ -146,8 +146,8 @@ fn strongest(course: &Course) -> Vec<f64> {
 
 /// Partners at the times that they share, and what brings the tracks over the sensors.
 fn aligned_at(
-    tracks: &[Course],
-    sensors: &[Course],
+    tracks: &[Record],
+    sensors: &[Record],
     partners: &[[usize; 2]],
     offset_s: f64,
 ) -> Result<(Vec<Pair>, Similarity), SensorsError> {
@@ -161,21 +161,21 @@ fn aligned_at(
 }
 
 /// First and last time of several.
-fn ends(courses: &[Course]) -> [f64; 2] {
-    let times = || courses.iter().flat_map(|course| course.times_s.iter().copied());
+fn ends(records: &[Record]) -> [f64; 2] {
+    let times = || records.iter().flat_map(|record| record.times_s.iter().copied());
     [times().fold(f64::INFINITY, f64::min), times().fold(f64::NEG_INFINITY, f64::max)]
 }
 
-fn is_together(tracks: &[Course], sensors: &[Course], offset_s: f64) -> bool {
+fn is_together(tracks: &[Record], sensors: &[Record], offset_s: f64) -> bool {
     let ([first, last], [begin, end]) = (ends(tracks), ends(sensors));
     first + offset_s <= end && begin <= last + offset_s
 }
 
-fn apart(tracks: &[Course], sensors: &[Course], offset_s: f64) -> SensorsError {
+fn apart(tracks: &[Record], sensors: &[Record], offset_s: f64) -> SensorsError {
     SensorsError::Apart { offset_s, tracks_s: ends(tracks), sensors_s: ends(sensors) }
 }
 
-fn pair(tracks: &[Course], sensors: &[Course], [track, sensor]: [usize; 2], offset_s: f64) -> Pair {
+fn pair(tracks: &[Record], sensors: &[Record], [track, sensor]: [usize; 2], offset_s: f64) -> Pair {
     let own = &tracks[track];
     let times: Vec<f64> = own.times_s.iter().map(|t| t + offset_s).collect();
     let mut pair = Pair { track, sensor, times_s: Vec::new(), tracked: Vec::new(), sensed: Vec::new() };
@@ -196,15 +196,15 @@ fn joined(pairs: &[Pair]) -> (Vec<Place>, Vec<Place>) {
 
 /// The offset along all axes of all partners, now that axes are known.
 fn refined(
-    tracks: &[Course],
-    sensors: &[Course],
+    tracks: &[Record],
+    sensors: &[Record],
     partners: &[[usize; 2]],
     axes: &Similarity,
     about_s: f64,
 ) -> Result<Offset, SensorsError> {
     let mut found = Vec::new();
     for &[a, b] in partners {
-        let turned = Course {
+        let turned = Record {
             places: tracks[a].places.iter().map(|place| axes.of(place)).collect(),
             ..tracks[a].clone()
         };

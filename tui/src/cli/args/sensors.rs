@@ -9,7 +9,8 @@ use super::seconds;
 #[derive(Args, Debug)]
 pub(in crate::cli) struct Sensors {
     /// Tracks in space beside what sensors have recorded: places of markers in metres, `marker,time_s,x,y,z` or
-    /// `time_s,NAME_x,NAME_y,NAME_z`. The clip is a table of tracks in space, `track,time_s,x_m,y_m,z_m`. docs/sensors.md.
+    /// `time_s,NAME_x,NAME_y,NAME_z`. The clip is a project with tracks in space, or a
+    /// table of them, `track,time_s,x_m,y_m,z_m`. docs/sensors.md.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["with", "truth", "tracks", "points", "frames", "quick", "set", "fps"])]
     pub(in crate::cli) sensors: Option<PathBuf>,
     /// With --sensors: the wind, columns beside one of times by the sensors' clock; drawn below.

@@ -8,7 +8,7 @@ use honami_workbench::sensors::{self, Axis, Compared, Deviation, Marker, Wish};
 use serde_json::{Value, json};
 
 use crate::cli::args::Compare;
-use crate::cli::{Answer, report, want};
+use crate::cli::{Answer, look, report, want};
 
 mod figure;
 
@@ -30,7 +30,14 @@ pub(super) fn sensors(args: &Compare, path: &Path) -> anyhow::Result<Answer> {
     let wish =
         Wish { offset_s: wished.offset, most_s: MOST_S, height_m: wished.height, pieces: Pieces::default() };
     let wind = wished.wind.as_deref().map_or(Ok(Vec::new()), sensors::wind)?;
-    let found = sensors::compare(&sensors::courses(tracks)?, &sensors::courses(path)?, &wish)?;
+    let records = if tracks.extension().is_some_and(|e| e == "honami") {
+        let (records, stale) = sensors::of_project(&look(tracks)?)?;
+        stale.iter().for_each(|line| report::say(line));
+        records
+    } else {
+        sensors::records(tracks)?
+    };
+    let found = sensors::compare(&records, &sensors::records(path)?, &wish)?;
     let mut files = Vec::new();
     if let Some(out) = &wished.csv {
         sensors::write(&found, out)?;
