@@ -54,7 +54,6 @@ pub fn by_movement(first: Signal<'_>, second: Signal<'_>, most_s: f64) -> Result
     });
     let best = tried.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|best| best.0 >= STRANGERS);
     let (_, mut offset) = best.ok_or(CameraError::Strangers)?;
-    within(offset, n, step)?;
     let start = offset;
     for _ in 0..STEPS {
         let fit = first
@@ -70,7 +69,8 @@ pub fn by_movement(first: Signal<'_>, second: Signal<'_>, most_s: f64) -> Result
         .beside(second, offset, 0.0)
         .and_then(|together| together.fit())
         .ok_or(CameraError::Strangers)?;
-    Ok(Offset { seconds: offset, error_s: fit.error_s, alike: fit.alike })
+    let found = Offset { seconds: offset, error_s: fit.error_s, alike: fit.alike };
+    if is_beyond(start, offset, n, step) { Err(CameraError::AtTheEnd { offset: found }) } else { Ok(found) }
 }
 
 /// Steps of the search either way: no more than signals can be apart and still be of the same times.
@@ -80,10 +80,10 @@ fn n_steps(first: &Signal<'_>, second: &Signal<'_>, most_s: f64, step_s: f64) ->
     (most_s.min(farthest) / step_s).ceil().max(1.0) as i64
 }
 
-/// What is best at the end of the search may be better beyond.
-fn within(offset: f64, n: i64, step_s: f64) -> Result<(), CameraError> {
-    let is_within = (offset / step_s).round().abs() < n as f64;
-    if is_within { Ok(()) } else { Err(CameraError::AtTheEnd { seconds: offset }) }
+/// Whether what was best at the end of the search, `start`, is better yet beyond it, at `seconds`.
+fn is_beyond(start: f64, seconds: f64, n: i64, step_s: f64) -> bool {
+    let is_end = (start / step_s).round().abs() >= n as f64;
+    is_end && seconds.abs() > start.abs() + 0.9 * step_s
 }
 
 /// When a lamp was switched on: the time of the greatest step up of a region's brightness, to a part of a frame.
@@ -132,7 +132,8 @@ pub fn flash_s(
     let coarse = [before, after, values[frame]].map(rounded).into_iter().fold(0.0, f64::max);
     let unsure = noise.hypot(coarse) / rise;
     let closed = length - open;
-    let (start, error) = if lit > 3.0 * unsure && lit < 1.0 - 3.0 * unsure {
+    // A shutter that never closes leaves no doubt between frames.
+    let (start, error) = if closed <= 0.0 || (lit > 3.0 * unsure && lit < 1.0 - 3.0 * unsure) {
         (times[frame] + open * (1.0 - lit), open * unsure)
     } else {
         // Not lit at all: between this frame's exposure and the next; lit all the time: between the one before and this.
@@ -329,6 +330,21 @@ mod tests {
         let value = |t: &f64| 20.0 + 100.0 * ((t + open - lit_s) / open).clamp(0.0, 1.0) + noise.draw();
         let values = times.iter().map(value).collect();
         (times, values)
+    }
+
+    #[test]
+    fn an_offset_beyond_the_search_is_not_told() {
+        let times: Vec<f64> = (0..400).map(|k| f64::from(k) / 25.0).collect();
+        let moved = |t: f64| (2.0 * t).sin() + 0.6 * (3.7 * t + 0.4).sin() + 0.3 * (0.9 * t * t / 8.0).cos();
+        let first: Vec<f64> = times.iter().map(|&t| moved(t)).collect();
+        let second: Vec<f64> = times.iter().map(|&t| moved(t - 0.2)).collect();
+        let of = |most_s| {
+            let signals = [&first, &second].map(|values| Signal { times_s: &times, values });
+            by_movement(signals[0], signals[1], most_s)
+        };
+        assert!((of(0.5).unwrap().seconds - 0.2).abs() < 1e-3);
+        assert!((of(0.2).unwrap().seconds - 0.2).abs() < 1e-3);
+        assert!(matches!(of(0.1), Err(CameraError::AtTheEnd { .. })), "{:?}", of(0.1));
     }
 
     #[test]

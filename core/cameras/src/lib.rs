@@ -187,10 +187,10 @@ pub enum CameraError {
     )]
     Strangers,
     /// Likeness still grows at the end of the search.
-    #[error("the signals are most alike at the end of the search, {seconds:.3} s: allow a larger offset")]
+    #[error("the signals are most alike at the end of the search, {:.3} s: allow a larger offset", offset.seconds)]
     AtTheEnd {
-        /// The offset there.
-        seconds: f64,
+        /// The offset there, and how alike they are.
+        offset: clock::Offset,
     },
     /// No light.
     #[error("no flash: brightness has no step up that stands out of its noise; give the region of the lamp")]

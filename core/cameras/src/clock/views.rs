@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
-use super::{FEWEST, Offset, Signal, n_steps, within};
+use super::{FEWEST, Offset, Signal, is_beyond, n_steps};
 use crate::CameraError;
 
 /// A movement in a picture over time: positions, or velocities.
@@ -50,12 +50,12 @@ pub fn by_movements(first: &Movement<'_>, second: &Movement<'_>, most_s: f64) ->
         (-n..=n).map(|k| k as f64 * step).filter_map(|offset| Some((alike(offset, least_s)?, offset)));
     let best = tried.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|best| best.0 >= STRANGERS);
     let (_, start) = best.ok_or(CameraError::Strangers)?;
-    within(start, n, step)?;
     let seconds = peak(start - step, start + step, |offset| alike(offset, 0.0).unwrap_or(0.0));
     let both = first.beside(second, seconds, 0.0).ok_or(CameraError::Strangers)?;
     let directions = both.directions().ok_or(CameraError::Strangers)?;
     let error_s = both.error_s(&directions, mine.step_s()).ok_or(CameraError::Strangers)?;
-    Ok(Offset { seconds, error_s, alike: directions.alike })
+    let found = Offset { seconds, error_s, alike: directions.alike };
+    if is_beyond(start, seconds, n, step) { Err(CameraError::AtTheEnd { offset: found }) } else { Ok(found) }
 }
 
 /// Where a function with one peak between two places has it, by golden sections.

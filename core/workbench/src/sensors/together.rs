@@ -127,7 +127,12 @@ fn principal(track: &Record, sensor: &Record, about_s: f64, most_s: f64) -> Resu
     let (mine, theirs) = (strongest(track), strongest(sensor));
     let first = Signal { times_s: &track.times_s, values: &mine };
     let second = Signal { times_s: &shifted, values: &theirs };
-    let found = by_movement(first, second, most_s)?;
+    let is_near = most_s <= STEPS * track.step_s().max(sensor.step_s());
+    let found = match by_movement(first, second, most_s) {
+        // How alike they are near an offset that is given, whether or not they are more so elsewhere.
+        Err(CameraError::AtTheEnd { offset }) if is_near => offset,
+        found => found?,
+    };
     Ok(Offset { seconds: found.seconds + about_s, ..found })
 }
 
