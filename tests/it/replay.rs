@@ -96,7 +96,7 @@ fn it_stops_where_it_goes_another_way() {
     let (bench, head) = bench();
     for (from, to, line, words) in [
         ("\"in\":\"form\"", "\"in\":\"move\"", 8, "this was done in move, and now it would be done in form"),
-        ("right", "paint", 3, "there is no action paint"),
+        ("right", "whistle", 3, "there is no action whistle"),
         ("\"track\":5,\"judged\"", "\"track\":99,\"judged\"", 6, "there is no track 99"),
         ("80.5,60.5", "800.5,60.5", 4, "the point 800.5, 60.5 is not seen now"),
         (
