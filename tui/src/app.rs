@@ -47,6 +47,7 @@ pub mod recovery;
 mod replay;
 mod reviewing;
 mod run;
+pub mod scaling;
 mod seat;
 pub mod skeleton;
 pub mod sketching;

@@ -3,5 +3,6 @@
 pub mod app;
 mod braille;
 pub mod cli;
+mod scale;
 pub mod term;
 mod viewer;

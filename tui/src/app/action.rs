@@ -21,6 +21,8 @@ pub enum Context {
     Sketch,
     /// Painting what is plant and what lies behind it.
     Paint,
+    /// Setting a scale bar.
+    Scale,
     /// Setting the parameters of a plugin.
     Form,
     /// Choosing from a list by typing a part of its name.
@@ -41,7 +43,7 @@ pub enum Context {
 
 impl Context {
     /// All of them.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::Review,
         Self::Place,
         Self::Shape,
@@ -49,6 +51,7 @@ impl Context {
         Self::Slide,
         Self::Sketch,
         Self::Paint,
+        Self::Scale,
         Self::Form,
         Self::Menu,
         Self::Dial,
@@ -70,6 +73,7 @@ impl Context {
             Self::Slide => "slide",
             Self::Sketch => "sketch",
             Self::Paint => "paint",
+            Self::Scale => "scale",
             Self::Form => "form",
             Self::Menu => "menu",
             Self::Dial => "dial",
@@ -126,21 +130,21 @@ macro_rules! table {
 
 table! {
     // Moving about: hjkl and the arrows.
-    Left "left" ["h" "Left"] [Review "" Place "1 px" Move "1 px" Form "change" Dial "turn" Slide "1 frame" Sketch "steer" Shape "plane" Forest "round" Paint "go"]
+    Left "left" ["h" "Left"] [Review "" Place "1 px" Move "1 px" Form "change" Dial "turn" Slide "1 frame" Sketch "steer" Shape "plane" Forest "round" Paint "go" Scale "1 px"]
         "left: the previous frame, one pixel, or a smaller value; at a bone, its plane 5° back; at a forest, go round it"
-    Down "down" ["j" "Down"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "narrower" History "" Start "" Sketch "steer" Shape "lean" Forest "height" Paint "go"]
+    Down "down" ["j" "Down"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "narrower" History "" Start "" Sketch "steer" Shape "lean" Forest "height" Paint "go" Scale "1 px"]
         "down: the next track, one pixel, or the next row; in the queue, the prints and the skeleton, their next row; at a bone, it leans 5° clockwise; at a forest, go lower"
-    Up "up" ["k" "Up"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "wider" History "" Start "" Sketch "steer" Shape "lean" Forest "height" Paint "go"]
+    Up "up" ["k" "Up"] [Review "" Place "1 px" Move "1 px" Form "" Menu "" Dial "wider" History "" Start "" Sketch "steer" Shape "lean" Forest "height" Paint "go" Scale "1 px"]
         "up: the previous track, one pixel, or the previous row; in the queue, the prints and the skeleton, the row before; at a bone, it leans 5° counterclockwise; at a forest, go higher"
-    Right "right" ["l" "Right"] [Review "" Place "1 px" Move "1 px" Form "change" Dial "turn" Slide "1 frame" Sketch "steer" Shape "plane" Forest "round" Paint "go"]
+    Right "right" ["l" "Right"] [Review "" Place "1 px" Move "1 px" Form "change" Dial "turn" Slide "1 frame" Sketch "steer" Shape "plane" Forest "round" Paint "go" Scale "1 px"]
         "right: the next frame, one pixel, or a larger value; at a bone, its plane 5° on; at a forest, go round it"
-    FineLeft "fine-left" ["H" "Shift-Left"] [Place ".25" Move ".25" Form "" Slide ".25" Sketch "" Shape ".5°" Forest "veer" Paint "1 px"] "a quarter of a pixel left, or a tenth of a value's range down; at a bone, its plane half a degree back; at a forest, its wind turns 15° counterclockwise from above"
-    FineDown "fine-down" ["J" "Shift-Down"] [Place ".25" Move ".25" Sketch "" Shape ".5°" Paint "1 px"] "a quarter of a pixel down; at a bone, it leans half a degree clockwise"
-    FineUp "fine-up" ["K" "Shift-Up"] [Place ".25" Move ".25" Sketch "" Shape ".5°" Paint "1 px"] "a quarter of a pixel up; at a bone, it leans half a degree counterclockwise"
-    FineRight "fine-right" ["L" "Shift-Right"] [Place ".25" Move ".25" Form "" Slide ".25" Sketch "" Shape ".5°" Forest "veer" Paint "1 px"] "a quarter of a pixel right, or a tenth of a value's range up; at a bone, its plane half a degree on; at a forest, its wind turns 15° clockwise from above"
-    Accept "accept" ["Enter"] [Place "place" Move "keep" Form "run" Menu "choose" Prompt "done" Review "accept" Dial "keep" History "go there" Slide "keep" Start "open" Sketch "keep" Shape "keep" Paint "find, keep"]
+    FineLeft "fine-left" ["H" "Shift-Left"] [Place ".25" Move ".25" Form "" Slide ".25" Sketch "" Shape ".5°" Forest "veer" Paint "1 px" Scale ".25"] "a quarter of a pixel left, or a tenth of a value's range down; at a bone, its plane half a degree back; at a forest, its wind turns 15° counterclockwise from above"
+    FineDown "fine-down" ["J" "Shift-Down"] [Place ".25" Move ".25" Sketch "" Shape ".5°" Paint "1 px" Scale ".25"] "a quarter of a pixel down; at a bone, it leans half a degree clockwise"
+    FineUp "fine-up" ["K" "Shift-Up"] [Place ".25" Move ".25" Sketch "" Shape ".5°" Paint "1 px" Scale ".25"] "a quarter of a pixel up; at a bone, it leans half a degree counterclockwise"
+    FineRight "fine-right" ["L" "Shift-Right"] [Place ".25" Move ".25" Form "" Slide ".25" Sketch "" Shape ".5°" Forest "veer" Paint "1 px" Scale ".25"] "a quarter of a pixel right, or a tenth of a value's range up; at a bone, its plane half a degree on; at a forest, its wind turns 15° clockwise from above"
+    Accept "accept" ["Enter"] [Place "place" Move "keep" Form "run" Menu "choose" Prompt "done" Review "accept" Dial "keep" History "go there" Slide "keep" Start "open" Sketch "keep" Shape "keep" Paint "find, keep" Scale "accept"]
         "accept: keep, place, run or go; reviewing: in the prints, go to the line's frame; else the open item; in the skeleton, shape the bone; else open the track's, or make a key-frame"
-    Back "back" ["Esc" "Ctrl-c"] [Place "back" Move "back" Form "back" Menu "back" Prompt "back" Label "back" Review "" Dial "back" History "back" Slide "back" Start "" Sketch "back" Shape "back" Forest "" Paint "back"]
+    Back "back" ["Esc" "Ctrl-c"] [Place "back" Move "back" Form "back" Menu "back" Prompt "back" Label "back" Review "" Dial "back" History "back" Slide "back" Start "" Sketch "back" Shape "back" Forest "" Paint "back" Scale "back"]
         "back: leave what is open, undone; while reviewing, stop the clip, the job or what grows, see the skeleton from the front, give up the range, then the picks, then the two runs"
     // Time.
     PlayPause "play" ["space"] [Review "play" Sketch "" Shape "play" Forest "play"] "play or pause; 200 space: at 200 %, from now on"
@@ -176,6 +180,8 @@ table! {
     Sketch "sketch" ["s"] [Review ""] "draw the selected track by mouse or arrows while the clip plays, or frame by frame"
     Paint "paint" ["e p"] [Review ""] "paint on this frame what is plant and what lies behind it: features are looked for in the matte that is found of it"
     Pen "pen" ["D"] [Paint "pen"] "put the pen down where it is, so that keys paint, or lift it"
+    ScaleBar "scale-bar" ["e b"] [Review ""] "say what a pixel is in metres, by both ends of something in this frame whose length is known"
+    RemoveScaleBar "remove-scale-bar" ["d b"] [Review ""] "take the scale bar away: what a pixel is in metres is not known then"
     WalkForward "walk" [")"] [Move ""] "walk one sample on along the path, while the picture stays"
     WalkBack "walk-back" ["("] [Move ""] "walk one sample back along the path, while the picture stays"
     Pin "pin" ["*"] [Review "" Move "end here"] "make the sample here, or walked to while moving, a key-frame as it is; a correction ends there"
@@ -197,7 +203,7 @@ table! {
     TakeB "take-b" ["e B"] [Review "take B"] "keep what B of the two runs found: in the range, else in the disagreement that is open, else all of it; key-frames stay"
     NameTrack "name-track" ["e n"] [Review ""] "name the selected track"
     ClearKey "clear-key-frame" ["X" "d k"] [Review ""] "clear the key-frame here (u brings it back)"
-    Erase "erase" ["Backspace"] [Menu "" Prompt "" Sketch "take back" Paint "take back"] "take back a typed letter, or the stroke drawn or painted last"
+    Erase "erase" ["Backspace"] [Menu "" Prompt "" Sketch "take back" Paint "take back" Scale "take back"] "take back a typed letter, the stroke drawn or painted last, or what was set last of a scale bar"
     EraseLine "erase-line" ["Ctrl-u"] [Menu "" Prompt ""] "empty the line that is being typed"
     RetrackBoth "retrack-both" ["t t"] [Review "re-track"] "track again from the key-frames on both sides, and blend"
     RetrackForward "retrack-forward" ["t f"] [Review ""] "track again from the key-frame here or before, up to the next"
@@ -227,12 +233,12 @@ table! {
     Undo "undo" ["u"] [Review ""] "undo: take the last edit back"
     Redo "redo" ["Ctrl-r"] [Review ""] "redo: do again what was undone"
     // Looking.
-    ZoomIn "zoom-in" ["z"] [Review "" Place "" Move "" Slide "" Sketch "" Shape "" Forest "zoom" Paint ""] "look closer, at the selected track or the cursor"
-    ZoomOut "zoom-out" ["Z"] [Review "" Place "" Move "" Slide "" Sketch "" Shape "" Forest "zoom" Paint ""] "look from farther away"
-    PanLeft "pan-left" ["Ctrl-Left"] [Review "" Place "" Move "" Shape "" Paint ""] "look a quarter of the view further left; a tenth of a pixel while placing or moving"
-    PanDown "pan-down" ["Ctrl-Down"] [Review "" Place "" Move "" Shape "" Paint ""] "look a quarter of the view further down; a tenth of a pixel while placing or moving"
-    PanUp "pan-up" ["Ctrl-Up"] [Review "" Place "" Move "" Shape "" Paint ""] "look a quarter of the view further up; a tenth of a pixel while placing or moving"
-    PanRight "pan-right" ["Ctrl-Right"] [Review "" Place "" Move "" Shape "" Paint ""] "look a quarter of the view further right; a tenth of a pixel while placing or moving"
+    ZoomIn "zoom-in" ["z"] [Review "" Place "" Move "" Slide "" Sketch "" Shape "" Forest "zoom" Paint "" Scale ""] "look closer, at the selected track or the cursor"
+    ZoomOut "zoom-out" ["Z"] [Review "" Place "" Move "" Slide "" Sketch "" Shape "" Forest "zoom" Paint "" Scale ""] "look from farther away"
+    PanLeft "pan-left" ["Ctrl-Left"] [Review "" Place "" Move "" Shape "" Paint "" Scale ""] "look a quarter of the view further left; a tenth of a pixel while placing or moving"
+    PanDown "pan-down" ["Ctrl-Down"] [Review "" Place "" Move "" Shape "" Paint "" Scale ""] "look a quarter of the view further down; a tenth of a pixel while placing or moving"
+    PanUp "pan-up" ["Ctrl-Up"] [Review "" Place "" Move "" Shape "" Paint "" Scale ""] "look a quarter of the view further up; a tenth of a pixel while placing or moving"
+    PanRight "pan-right" ["Ctrl-Right"] [Review "" Place "" Move "" Shape "" Paint "" Scale ""] "look a quarter of the view further right; a tenth of a pixel while placing or moving"
     Centre "centre" ["C"] [Review ""] "bring the selected track to the middle"
     Follow "follow" ["f"] [Review ""] "keep the selected track in the middle, or not"
     MotionColours "motion" ["v v"] [Review ""] "show motion in colours: hue is direction, strength is speed; or not"
@@ -262,13 +268,13 @@ table! {
     NextTheme "next-theme" ["v t"] [Review ""] "change the colours: the next theme"
     Mouse "mouse" ["v m"] [Review ""] "leave the mouse to the terminal, for selecting text, or take it back"
     History "history" ["U" "P u"] [Review "" History ""] "show the undo tree; j and k choose an edit there, Enter goes to it"
-    Palette "palette" [":"] [Review "" Place "" Move "" Form "" Dial "" History "" Slide "" Sketch "" Shape "" Forest "" Paint ""] "find any action by name, key or what it does"
-    Help "help" ["?"] [Review "help" Place "" Move "" Form "help" Dial "help" History "help" Slide "" Sketch "help" Shape "help" Forest "help" Paint "help"] "list what works here; Enter does it"
+    Palette "palette" [":"] [Review "" Place "" Move "" Form "" Dial "" History "" Slide "" Sketch "" Shape "" Forest "" Paint "" Scale ""] "find any action by name, key or what it does"
+    Help "help" ["?"] [Review "help" Place "" Move "" Form "help" Dial "help" History "help" Slide "" Sketch "help" Shape "help" Forest "help" Paint "help" Scale "help"] "list what works here; Enter does it"
     Tutorial "tutorial" ["g ?"] [Review ""] "five minutes on a generated clip: what to press, one step at a time"
-    Redraw "redraw" ["Ctrl-l"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label "" History "" Slide "" Start "" Sketch "" Shape "" Forest "" Paint ""] "paint the screen anew"
-    Suspend "suspend" ["Ctrl-z"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label "" History "" Slide "" Start "" Sketch "" Shape "" Forest "" Paint ""] "stop honami until `fg`"
-    Quit "quit" ["q"] [Review "leave" Place "" Move "" Form "" Dial "" History "" Slide "" Start "leave" Sketch "" Shape "" Forest "leave" Paint ""] "back; while reviewing and at a forest, leave honami"
-    Leave "leave" ["Q"] [Review "" Place "" Move "" Form "" Dial "" History "" Slide "" Start "" Sketch "" Shape "" Forest "" Paint ""] "leave honami (everything is kept; what is open is asked about first)"
+    Redraw "redraw" ["Ctrl-l"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label "" History "" Slide "" Start "" Sketch "" Shape "" Forest "" Paint "" Scale ""] "paint the screen anew"
+    Suspend "suspend" ["Ctrl-z"] [Review "" Place "" Move "" Form "" Menu "" Prompt "" Dial "" Label "" History "" Slide "" Start "" Sketch "" Shape "" Forest "" Paint "" Scale ""] "stop honami until `fg`"
+    Quit "quit" ["q"] [Review "leave" Place "" Move "" Form "" Dial "" History "" Slide "" Start "leave" Sketch "" Shape "" Forest "leave" Paint "" Scale ""] "back; while reviewing and at a forest, leave honami"
+    Leave "leave" ["Q"] [Review "" Place "" Move "" Form "" Dial "" History "" Slide "" Start "" Sketch "" Shape "" Forest "" Paint "" Scale ""] "leave honami (everything is kept; what is open is asked about first)"
 }
 
 impl Action {

@@ -20,6 +20,7 @@ use honami_workbench::WorkbenchError;
 use honami_workbench::cluster::{self, ClusterRequest};
 use honami_workbench::offer::{Granted, Wish};
 use honami_workbench::retrack::{self, Way};
+use honami_workbench::scale::{self, ScaleBar};
 use honami_workbench::session::Session;
 use honami_workbench::store::{Project, StoreError};
 use honami_workbench::track::{self, TrackRequest};
@@ -212,6 +213,7 @@ impl World {
                 .and_then(|transaction| self.commit(transaction, hint)),
             Effect::Shape(step, hint) => shape::prepare(&self.session.project, &step)
                 .and_then(|transaction| self.commit(transaction, hint)),
+            Effect::Scale(bar, hint) => self.scale(bar, hint),
             Effect::Study(track) => {
                 self.studied = Some(track);
                 self.layers().map(|fact| fact.into_iter().collect())
@@ -227,8 +229,7 @@ impl World {
             Effect::Measure(track) => self.measure(track),
             Effect::Versus(runs) => self.versus(runs),
             Effect::Entrants(first) => {
-                let entrants = versus::entrants(&self.session.project);
-                entrants.map(|entrants| vec![Fact::Entrants(first, entrants)])
+                versus::entrants(&self.session.project).map(|entrants| vec![Fact::Entrants(first, entrants)])
             }
             Effect::Cluster(request) => self.cluster(&request, now),
             Effect::Resume(run) => self.resume(run, now),
@@ -281,6 +282,11 @@ impl World {
         self.session.project.commit(transaction)?;
         self.studied = None;
         self.shown_and(said(line))
+    }
+
+    fn scale(&mut self, bar: Option<ScaleBar>, hint: Hint) -> Facts {
+        let transaction = scale::prepare(&self.session.project, bar)?;
+        self.commit(transaction, hint)
     }
 
     fn correct(&mut self, step: &correct::Step, hint: Hint) -> Facts {
@@ -666,8 +672,15 @@ impl World {
         self.n_told = history.entries().len();
         let told = Fact::History(new, history.head());
         let hand = Hand::of(project.document());
-        let mut facts =
-            vec![Fact::Tracks(rows), Fact::Groups(groups), Fact::Hand(hand), Fact::Tracker(tracker), told];
+        let scale = Fact::Scale(project.document().scale());
+        let mut facts = vec![
+            Fact::Tracks(rows),
+            Fact::Groups(groups),
+            Fact::Hand(hand),
+            scale,
+            Fact::Tracker(tracker),
+            told,
+        ];
         if self.used.look(&self.session.project)? {
             facts.push(self.used());
         }

@@ -6,6 +6,7 @@ use std::time::Duration;
 use honami_model::clip::Clip;
 use honami_model::track::TrackId;
 use honami_workbench::review::Review;
+use honami_workbench::scale::ScaleBar;
 
 use super::action::Context;
 use super::before::Before;
@@ -27,6 +28,7 @@ use super::prints::Prints;
 use super::queue::{Looked, Opened};
 use super::ranging::Ranging;
 use super::recovery::Recovery;
+use super::scaling::Scaling;
 use super::skeleton::{Shaping, Skeletal};
 use super::sketching::Sketching;
 use super::tracks::TrackRow;
@@ -81,6 +83,8 @@ pub struct State {
     pub before: Option<Box<Before>>,
     /// The shown clustering.
     pub groups: Option<Groups>,
+    /// The scale bar that says what a pixel is.
+    pub scale: Option<ScaleBar>,
     /// The tracker whose run is on top, with its version.
     pub tracker: Option<String>,
     /// Trackers and clusterers that were found.
@@ -182,6 +186,8 @@ pub enum Mode {
     Sketch(Box<Sketching>),
     /// Painting what is plant and what lies behind it.
     Paint(Box<Painting>),
+    /// Setting a scale bar.
+    Scale(Box<Scaling>),
     /// Setting the parameters of a plugin.
     Form(Box<Form>),
     /// Choosing from a list.
@@ -219,6 +225,8 @@ impl Mode {
             },
             Self::Sketch(_) => Context::Sketch,
             Self::Paint(_) => Context::Paint,
+            Self::Scale(scaling) if scaling.is_typing() => Context::Prompt,
+            Self::Scale(_) => Context::Scale,
             Self::Form(form) if form.typed.is_some() => Context::Prompt,
             Self::Form(_) => Context::Form,
             Self::Menu(_) => Context::Menu,
@@ -342,6 +350,7 @@ impl State {
             looked: Looked::default(),
             before: None,
             groups: None,
+            scale: None,
             tracker: None,
             plugins: Vec::new(),
             used: Vec::new(),

@@ -16,6 +16,7 @@ mod pick;
 mod queue;
 mod ranges;
 mod recovery;
+mod scale;
 mod shaping;
 mod skeleton;
 mod sketch;
@@ -37,6 +38,7 @@ use honami_workbench::offer::Wish;
 use honami_workbench::progress::Patience;
 use honami_workbench::regroup;
 use honami_workbench::retrack;
+use honami_workbench::scale::ScaleBar;
 use honami_workbench::scene::control;
 use honami_workbench::shape;
 use honami_workbench::track::TrackRequest;
@@ -140,6 +142,8 @@ pub enum Effect {
     FindMatte(u32, usize, Plane),
     /// Keep the matte that was found of this frame, and say what may be done next.
     KeepMatte(u32, Hint),
+    /// Keep this scale bar, or take the one away that there is, and say what may be done next.
+    Scale(Option<ScaleBar>, Hint),
     /// Go on with this run, or with the newest that has ended early.
     Resume(Option<RunId>),
     /// Let the plugin of this id start again.
@@ -268,6 +272,7 @@ fn on_text(state: &mut State, text: &str) {
         Mode::Menu(menu) => menu.type_in(chars),
         Mode::Prompt(typed) => append(typed, chars.filter(char::is_ascii_digit), 9),
         Mode::Name(typed) | Mode::GroupName(typed) => append(typed, chars, NAME_MAX),
+        Mode::Scale(scaling) if scaling.is_typing() => append(&mut scaling.typed, chars, NAME_MAX),
         Mode::Form(form) => {
             if form.typed.is_none()
                 && let Some(first) = chars.next()
@@ -286,6 +291,7 @@ fn on_text(state: &mut State, text: &str) {
         | Mode::Move(_)
         | Mode::Sketch(_)
         | Mode::Paint(_)
+        | Mode::Scale(_)
         | Mode::Dial(_)
         | Mode::History { .. } => {
             for c in chars {
@@ -372,6 +378,8 @@ mod offers_tests;
 mod paint_tests;
 #[cfg(test)]
 mod queue_tests;
+#[cfg(test)]
+mod scale_tests;
 #[cfg(test)]
 mod skeleton_tests;
 #[cfg(test)]

@@ -4,9 +4,9 @@ use honami_workbench::scale::{self, ScaleBar};
 use honami_workbench::store::{Access, Project};
 use serde_json::{Value, json};
 
-use super::args::cameras::Length;
 use super::args::scale::Scale;
 use super::{Answer, Usage, look, there};
+use crate::scale::{Length, per_px_and_error};
 
 /// Keeps a scale bar, takes it away, or says what there is.
 pub(super) fn scale(args: &Scale) -> anyhow::Result<Answer> {
@@ -47,20 +47,16 @@ pub(super) fn scale(args: &Scale) -> anyhow::Result<Answer> {
 }
 
 fn metres(option: &str, length: &Length) -> Result<f64, Usage> {
-    let unit = length
-        .unit
-        .ok_or_else(|| Usage(format!("{option}: wanted a unit (mm, cm, m) after {}", length.value)))?;
-    Ok(length.value * unit.metres())
+    length.metres().map_err(|why| Usage(format!("{option}: {why}")))
 }
 
 /// What a bar says, and of what it says nothing.
 fn told(bar: &ScaleBar) -> String {
     format!(
-        "{:.4} mm/px ± {:.2} %: {} m over {:.1} px, along {:.0}°, in frame {}\n\
+        "{}: {} m over {:.1} px, along {:.0}°, in frame {}\n\
          It measures along itself and in its own plane: what is nearer or farther has another\n\
          scale, and what moves towards the camera is not measured.",
-        1000.0 * bar.m_per_px(),
-        100.0 * bar.relative_error(),
+        per_px_and_error(bar),
         bar.length_m,
         bar.length_px(),
         bar.direction_rad().to_degrees(),

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 use super::{
     Action, Effect, Mode, State, choose, complain, edit, groups, history, look, motion, mouse, moving,
-    open_menu, paint, pick, queue, ranges, recovery, say, shaping, skeleton, sketch, time, tracks, versus,
-    window,
+    open_menu, paint, pick, queue, ranges, recovery, say, scale, shaping, skeleton, sketch, time, tracks,
+    versus, window,
 };
 use honami_model::judgement::Verdict;
 use honami_model::track::{Status, TrackSet};
@@ -192,6 +192,8 @@ fn correct(state: &mut State, action: Action) -> Vec<Effect> {
         Action::Sketch => return sketch::begin(state),
         Action::Paint => return paint::begin(state),
         Action::Pen => paint::pen(state),
+        Action::ScaleBar => scale::begin(state),
+        Action::RemoveScaleBar => return scale::remove(state),
         Action::CorrectTime => return moving::begin_slide(state),
         Action::WalkForward => moving::walk(state, count(state)),
         Action::WalkBack => moving::walk(state, -count(state)),
@@ -253,6 +255,7 @@ fn steer(state: &mut State, dx: f32, dy: f32, px: f32) -> Vec<Effect> {
         Mode::Move(_) => moving::nudge(state, by),
         Mode::Sketch(_) => sketch::steer(state, by),
         Mode::Paint(_) => paint::steer(state, [dx, dy].map(|d| d * n as f32), px < 1.0),
+        Mode::Scale(_) => scale::steer(state, by),
         Mode::Form(form) if columns != 0 => form.change(columns, px < 1.0),
         Mode::Form(form) => form.step(rows),
         Mode::Menu(menu) => menu.step(rows),
@@ -276,6 +279,7 @@ fn accept(state: &mut State) -> Vec<Effect> {
         Mode::Move(_) => moving::keep(state),
         Mode::Sketch(_) => sketch::keep(state),
         Mode::Paint(_) => paint::accept(state),
+        Mode::Scale(_) => scale::accept(state),
         Mode::Menu(_) => choose(state),
         Mode::Dial(_) => {
             state.mode = Mode::Review;
@@ -341,6 +345,7 @@ fn leave(state: &mut State) -> Vec<Effect> {
         Mode::Move(moving) if moving.has_moved() => "a move is not kept: Enter keeps",
         Mode::Sketch(sketching) if !sketching.strokes.is_empty() => "a sketch is not kept: Enter keeps",
         Mode::Paint(painting) if !painting.strokes.is_empty() => "what is painted is not kept: Enter keeps",
+        Mode::Scale(scaling) if !scaling.ends.is_empty() => "a scale bar is not kept: Enter keeps",
         Mode::Shape(shaping) if shaping.shape != state.skeleton.hand.shape(shaping.bone.node) => {
             "a bone's shape is not kept: Enter keeps"
         }
@@ -395,6 +400,10 @@ fn erase(state: &mut State, action: Action) -> Vec<Effect> {
         Mode::Menu(menu) => drop(menu.act(action)),
         Mode::Prompt(typed) | Mode::Name(typed) | Mode::GroupName(typed) => typing::take_back(typed, action),
         Mode::Form(form) => form.typed.iter_mut().for_each(|typed| typing::take_back(typed, action)),
+        Mode::Scale(scaling) if scaling.is_typing() && !scaling.typed.is_empty() => {
+            typing::take_back(&mut scaling.typed, action);
+        }
+        Mode::Scale(_) => scale::take_back(state),
         Mode::Sketch(_) => sketch::take_back(state),
         Mode::Paint(_) => paint::take_back(state),
         Mode::Review

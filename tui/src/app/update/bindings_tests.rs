@@ -9,7 +9,7 @@ use crate::app::fixture::{self, press, send};
 use crate::app::keymap::{Binding, KeyMap, shown};
 
 /// How keys come to be read in a place. The start screen and forests have tests of their own.
-const REACH: [(Context, &str); 13] = [
+const REACH: [(Context, &str); 14] = [
     (Context::Review, ""),
     (Context::Place, "a"),
     (Context::Shape, "grown G b"),
@@ -17,6 +17,7 @@ const REACH: [(Context, &str); 13] = [
     (Context::Slide, "T"),
     (Context::Sketch, "s"),
     (Context::Paint, "e p"),
+    (Context::Scale, "e b"),
     (Context::Form, "t r"),
     (Context::Menu, ":"),
     (Context::Prompt, "g f"),
@@ -48,6 +49,7 @@ fn prepared(context: Context, action: Action) -> &'static str {
         (Context::Move, Action::Pin) => ")",
         (Context::Sketch, Action::Erase) => ".",
         (Context::Paint, Action::Erase) => "D",
+        (Context::Scale, Action::Erase) => "Enter",
         _ => "",
     }
 }

@@ -26,6 +26,7 @@ use crate::app::state::{Display, Job, Link, Notice};
 use crate::app::tracks::TrackRow;
 use crate::viewer::Heard;
 use honami_workbench::plots::Plots;
+use honami_workbench::scale::ScaleBar;
 use honami_workbench::versus::{Compared, Entrant};
 
 /// Something that has changed in the world.
@@ -39,6 +40,8 @@ pub enum Fact {
     Groups(Option<Box<Groups>>),
     /// This was done by hand to the skeleton of the shown groups.
     Hand(Hand),
+    /// This scale bar is kept now.
+    Scale(Option<ScaleBar>),
     /// The tracker whose run is on top.
     Tracker(Option<String>),
     /// What a track is made from; `None` where it is not shown any more.
@@ -124,6 +127,7 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
         Fact::Groups(groups) => on_groups(state, groups.map(|groups| *groups)),
         Fact::Plots(subject, plots) => state.plotted.plots = Some((subject, plots)),
         Fact::Hand(hand) => skeleton::on_hand(state, hand),
+        Fact::Scale(bar) => state.scale = bar,
         Fact::Tracker(tracker) => state.tracker = tracker,
         Fact::Placed(track) => {
             state.selected = Some(track);

@@ -23,6 +23,7 @@ fn in_place(context: Context) -> State {
         Context::Slide => press("g f 4 0 Enter T"),
         Context::Sketch => press("g f 4 0 Enter s ."),
         Context::Paint => press("e p"),
+        Context::Scale => press("e b"),
         Context::Form => press("t r j"),
         Context::Menu => press("/ 1"),
         Context::Prompt => press("g f 4"),
@@ -93,7 +94,8 @@ fn drawn_hints(state: &State) -> Vec<(String, String)> {
     let of = |hint: &str| {
         // What Enter does is said in the words of what is open.
         let is_accept = |(keys, word): &(String, &str)| {
-            let words = ["accept", "open", "shape", "key-frame"].map(|word| format!("{keys} {word}"));
+            let words =
+                ["accept", "open", "shape", "key-frame", "set", "keep"].map(|word| format!("{keys} {word}"));
             *word == "accept" && words.iter().any(|words| words == hint)
         };
         let is_it = |known: &&(String, &str)| hint == format!("{} {}", known.0, known.1) || is_accept(known);

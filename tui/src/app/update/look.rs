@@ -14,6 +14,7 @@ pub(super) fn zoom(state: &mut State, by: i64) {
         Mode::Place(at) | Mode::Root(at) => Some(at),
         Mode::Move(ref moving) => Some(moving.to()),
         Mode::Paint(ref painting) => Some(painting.at),
+        Mode::Scale(ref scaling) => Some(scaling.at),
         _ => state.selected_at(),
     };
     if let Some(focus) = focus.filter(|_| by > 0) {

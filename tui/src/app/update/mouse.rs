@@ -1,6 +1,6 @@
 //! The mouse: selects, places, scrubs; whatever it does, keys do too.
 
-use super::{Effect, Mode, State, history, look, moving, paint, queue, sketch, time, versus};
+use super::{Effect, Mode, State, history, look, moving, paint, queue, scale, sketch, time, versus};
 use crate::app::layout::{Layout, Lens, bar, frame_at};
 use crate::app::skeleton::Skeletal;
 use crate::app::view::column::{self, Pick};
@@ -28,7 +28,8 @@ pub(super) fn on_mouse(state: &mut State, mouse: Mouse) -> Vec<Effect> {
                 | Mode::Shape(_)
                 | Mode::Move(_)
                 | Mode::Sketch(_)
-                | Mode::Paint(_) => {
+                | Mode::Paint(_)
+                | Mode::Scale(_) => {
                     if let Some(point) = lens.point_of(mouse.column, mouse.row) {
                         look::zoom_at(state, -by, point);
                     }
@@ -62,6 +63,7 @@ pub(super) fn on_mouse(state: &mut State, mouse: Mouse) -> Vec<Effect> {
         MouseKind::Press(0) | MouseKind::Drag(0) if matches!(state.mode, Mode::Paint(_)) => {
             paint::touch(state, &lens, cell, mouse.kind == MouseKind::Press(0));
         }
+        MouseKind::Press(0) if matches!(state.mode, Mode::Scale(_)) => scale::click(state, &lens, cell),
         MouseKind::Press(0) | MouseKind::Drag(0) => {
             if let Some(point) = lens.point_of(mouse.column, mouse.row) {
                 match &mut state.mode {

@@ -77,6 +77,7 @@ pub(super) fn line(state: &State, effects: &[Effect]) -> String {
             let n = painting.strokes.len();
             format!("paint {} {} at {x} {y} strokes {n}", painting.word(), painting.radius_px)
         }
+        Mode::Scale(scaling) => super::scale_tests::told(scaling),
         Mode::Form(form) => format!("form {:?} row {} typed {:?}", form.task, form.at, form.typed),
         Mode::Menu(menu) => {
             format!("menu {:?} of {}", menu.chosen().map(|r| r.label.as_str()), menu.rows().len())

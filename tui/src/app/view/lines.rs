@@ -1,6 +1,7 @@
 //! The lines round the picture: title, track, time, hints, and what happened.
 
 mod paint;
+mod scale;
 
 use std::ops::{Range, RangeInclusive};
 
@@ -44,6 +45,9 @@ fn facts(state: &State, nth: usize) -> Vec<(u8, String)> {
     if let Mode::Paint(painting) = &state.mode {
         return paint::ways(state, painting);
     }
+    if let Mode::Scale(scaling) = &state.mode {
+        return scale::ways(state, scaling);
+    }
     let counted = |n: usize, one: &str| if n == 1 { format!("1 {one}") } else { format!("{n} {one}s") };
     let mut facts = vec![(0, counted(state.tracks.len(), "track"))];
     match &state.versus {
@@ -55,6 +59,7 @@ fn facts(state: &State, nth: usize) -> Vec<(u8, String)> {
         facts.push((1, format!("{} to review, {} done", progress.open, progress.judged.done())));
     }
     facts.extend(state.groups.as_ref().map(|groups| (4, counted(groups.shown.len(), "group"))));
+    facts.extend(scale::kept(state).map(|words| (3, words)));
     let lens = Lens::shown(state);
     facts.extend(
         (state.marks_all && nth > 1 && Skeletal::azimuth(state) == 0)
@@ -351,6 +356,7 @@ pub(super) fn hints(state: &State, area: Rect, frame: &mut Frame) {
         Mode::Move(moving) => moving_words(moving, state.frame),
         Mode::Sketch(sketching) => sketching_words(sketching, state.frame),
         Mode::Paint(painting) => paint::words(painting),
+        Mode::Scale(scaling) => scale::words(scaling),
         _ => {
             let t_s = state.clip.times.get(state.frame).unwrap_or_default();
             let mut words = format!("{}/{}  {t_s:.2} s", state.frame, state.last_frame());
@@ -390,6 +396,8 @@ pub(super) fn hints(state: &State, area: Rect, frame: &mut Frame) {
 fn narrowed(left: String, context: Context, columns: u16) -> String {
     let kept = if context == Context::Paint {
         "  ⏎ find, keep  ? help"
+    } else if context == Context::Scale {
+        "  ⏎ keep  ? help"
     } else if matches!(context, Context::Place | Context::Move | Context::Slide | Context::Shape) {
         "  ⏎ keep"
     } else {
@@ -468,7 +476,7 @@ fn sketching_words(sketching: &Sketching, frame: u32) -> String {
 /// A word of a hint, nudges in the image pixels that they are at this magnification.
 fn scaled(word: &str, context: Context, zoom: u8) -> String {
     let unit = match word {
-        _ if !matches!(context, Context::Place | Context::Move) => None,
+        _ if !matches!(context, Context::Place | Context::Move | Context::Scale) => None,
         "1 px" => Some((1.0, " px")),
         ".25" => Some((0.25, "")),
         ".1" => Some((0.1, "")),
@@ -499,9 +507,9 @@ fn hint_line(state: &State, room: usize) -> Line<'static> {
         .collect();
     // What is open can be kept, and what is marked worked on: that must be seen on the narrowest screen.
     hints.sort_by_key(|(_, word)| match word.as_str() {
-        "keep" | "find, keep" | "go on" => 0,
+        "set" | "keep" | "find, keep" | "go on" => 0,
         "pen" | "brush" => 1,
-        "back" if context == Context::Paint => 2,
+        "back" if matches!(context, Context::Paint | Context::Scale) => 2,
         "model" if context == Context::Move => 1,
         "back" if matches!(context, Context::Move | Context::Shape) => 2,
         "shape" | "end" | "lost" | "occluded" | "take away" | "average" => 1,
@@ -548,8 +556,11 @@ fn fitting(hints: Vec<(String, String)>, kept: &[&str], room: usize) -> Line<'st
     Line::from(spans)
 }
 
-/// What Enter does while reviewing; `None` where it does nothing that has room to be said.
+/// What Enter does while reviewing, and to a scale bar; `None` where it does nothing that has room to be said.
 fn accept_word(state: &State) -> Option<&'static str> {
+    if let Mode::Scale(scaling) = &state.mode {
+        return Some(if scaling.bar.is_some() { "keep" } else { "set" });
+    }
     if !matches!(state.mode, Mode::Review) || state.read_only.is_some() {
         return None;
     }
@@ -571,6 +582,11 @@ fn accept_word(state: &State) -> Option<&'static str> {
 
 /// Whether a hint makes sense now.
 fn is_useful(state: &State, action: Action) -> bool {
+    if let Mode::Scale(scaling) = &state.mode {
+        // Nothing moves ends that are set.
+        return scaling.is_placing()
+            || matches!(action, Action::Accept | Action::Back | Action::Erase | Action::Help);
+    }
     if !matches!(state.mode, Mode::Review) {
         return true;
     }

@@ -4,6 +4,7 @@ mod ghost;
 pub(super) mod motion;
 mod paint;
 mod path;
+mod scale;
 mod skeleton;
 mod sketch;
 pub(super) mod versus;
@@ -159,6 +160,12 @@ impl<'a> Canvas<'a> {
         }
         if let Mode::Paint(painting) = &state.mode {
             canvas.painting(painting);
+            return canvas;
+        }
+        let kept = state.scale.as_ref().filter(|bar| bar.frame == shot.frame);
+        kept.into_iter().for_each(|bar| canvas.scale_bar(bar));
+        if let Mode::Scale(scaling) = &state.mode {
+            canvas.scaling(scaling);
             return canvas;
         }
         // Marks belong to the frame that is shown, which may be a moment behind.

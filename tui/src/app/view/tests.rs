@@ -19,6 +19,7 @@ use honami_workbench::shape::Shape;
 use ratatui::style::{Color, Modifier};
 
 mod plugins;
+mod scale;
 mod sizes;
 
 /// The screen as text, then its styles as runs: `row: columns style`. Cells of the picture in half blocks are `▒`

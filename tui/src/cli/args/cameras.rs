@@ -4,7 +4,9 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
-use honami_workbench::calibrate::{Board, Unit, Window};
+use honami_workbench::calibrate::{Board, Window};
+
+use crate::scale::Length;
 
 /// Cameras, from pictures of a chessboard or of targets on bars: focal length, centre, distortion, and of two how they stand.
 ///
@@ -55,31 +57,6 @@ impl FromStr for Corners {
             .filter(|board| (2..=100).contains(&board.columns) && (2..=100).contains(&board.rows))
             .map(Self)
             .ok_or_else(|| format!("wanted inner corners as CxR between 2x2 and 100x100, got {text}"))
-    }
-}
-
-/// A length, `25mm` or `25`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::cli) struct Length {
-    /// How many of the unit.
-    pub(in crate::cli) value: f64,
-    /// The unit; none was typed where it is absent.
-    pub(in crate::cli) unit: Option<Unit>,
-}
-
-impl FromStr for Length {
-    type Err = String;
-    fn from_str(text: &str) -> Result<Self, String> {
-        let number = text.trim_end_matches(char::is_alphabetic);
-        let unit = &text[number.len()..];
-        let parse = || {
-            let value: f64 = number.trim().parse().ok()?;
-            let unit = if unit.is_empty() { None } else { Some(unit.parse().ok()?) };
-            Some(Self { value, unit })
-        };
-        parse()
-            .filter(|length| length.value.is_finite() && length.value > 0.0)
-            .ok_or_else(|| format!("wanted a length above 0 such as 25mm (mm, cm, m) or 25, got {text}"))
     }
 }
 

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::cameras::Length;
 use super::grow::Place;
+use crate::scale::Length;
 
 /// How many metres a pixel is, by something in the picture whose length is known; without places, says it.
 ///
