@@ -10,7 +10,7 @@ use crate::{BUILD, accuracy, forest};
 /// Name, what it measures, and how to run it.
 type Bench = (&'static str, &'static str, fn(&[&str]) -> anyhow::Result<()>);
 
-const BENCHES: [Bench; 18] = [
+const BENCHES: [Bench; 19] = [
     ("encode", "the encoder's time, bytes and likeness: `bench encode [BYTES] [CLIP…]`", encode),
     ("trackers", "KLT against OpenCV's calcOpticalFlowPyrLK, same frames, alternating", trackers),
     ("box", "box matching against OpenCV's matchTemplate: `bench box [CLIP…]`", box_matching),
@@ -50,6 +50,7 @@ const BENCHES: [Bench; 18] = [
         review,
     ),
     ("correct", "what a correction on a track of 300 frames takes, a row a model", correct),
+    ("matting", "mattes beside PyMatting's, in turns: `bench matting [WxH… | PICTURE SCRIBBLES]`", matting),
     ("robust", "mean, median and mode of displacements of which a part moves another way", robust),
     (
         "plugins",
@@ -143,6 +144,10 @@ fn on_project(name: &str, args: &[&str]) -> anyhow::Result<()> {
 /// The real corrections, committed.
 fn correct(args: &[&str]) -> anyhow::Result<()> {
     on_project("correct", args)
+}
+
+fn matting(args: &[&str]) -> anyhow::Result<()> {
+    example("honami-matting", "matting_bench", args).run()
 }
 
 fn robust(args: &[&str]) -> anyhow::Result<()> {

@@ -1,184 +1,164 @@
-//! How long a matte takes, in how many steps and how much memory, and how far it is from the truth.
+//! How long a matte takes, in how much memory, and how far it is from the truth, beside PyMatting on the same marks in turns.
 //!
-//! `matting_bench [--threads N] [--out ALPHA.png] [WxH… | PICTURE SCRIBBLES]`
+//! `matting_bench [--threads N] [--repeats N] [--python PYTHON] [--out ALPHA.png] [WxH… | PICTURE SCRIBBLES]`
 //!
 //! A row a size: a crown of leaves before leaves out of focus, drawn here, so that its opacities are known, with some
-//! strokes; or a picture with scribbles, whose truth nobody knows. Memory is the most that this process has had (Linux).
+//! strokes; or a picture with scribbles, whose truth nobody knows. Seconds are the median of the repeats, the ratio is
+//! that of the medians with the least and the most of all turns. Memory is the most that a process has had so far (Linux).
+//! PyMatting is as it comes: Levin's Laplacian with the same numbers, conjugate gradients with incomplete Cholesky, and
+//! it has been warmed up on a small picture. Without Python or PyMatting its columns are empty.
 #![allow(clippy::print_stdout, reason = "a benchmark prints its result")]
+
+#[path = "matting_bench/crown.rs"]
+mod crown;
+#[path = "matting_bench/peer.rs"]
+mod peer;
 
 use std::time::Instant;
 
-use honami_matting::{Mark, Options, Picture, from_scribbles, matte};
+use crown::Crown;
+use honami_matting::{Mark, Matte, Options, Picture, from_scribbles, matte};
+use peer::Peer;
 
 type Failure = Box<dyn std::error::Error>;
 
+struct Wanted {
+    n_repeats: usize,
+    python: String,
+    out: Option<String>,
+    /// Sizes, or a picture and scribbles.
+    words: Vec<String>,
+}
+
+/// What is asked: a picture, its marks, and its opacities where they are known.
+struct Case<'a> {
+    picture: Picture<'a>,
+    rgb: &'a [[u8; 3]],
+    marks: &'a [Mark],
+    truth: Option<&'a [f64]>,
+}
+
+/// Of one matte.
+struct Turn {
+    seconds: f64,
+    /// From the truth: mean, root of the mean square.
+    off: Option<[f64; 2]>,
+}
+
 fn main() -> Result<(), Failure> {
-    let mut out = None;
-    let mut words = Vec::new();
-    let mut args = std::env::args().skip(1);
-    while let Some(arg) = args.next() {
-        let mut value = || args.next().ok_or(format!("{arg} needs a value"));
-        match arg.as_str() {
-            "--threads" => rayon::ThreadPoolBuilder::new().num_threads(value()?.parse()?).build_global()?,
-            "--out" => out = Some(value()?),
-            _ => words.push(arg),
-        }
-    }
-    println!(
-        "{:>11} {:>8} {:>6} {:>9} {:>9} {:>11}",
-        "size", "seconds", "steps", "peak MB", "mean off", "RMS off"
-    );
-    if let [picture, scribbles] = &words[..]
+    let wanted = wanted()?;
+    let mut peer = Peer::start(&wanted.python).inspect_err(|why| println!("no peer: {why}")).ok();
+    let name = peer.as_ref().map_or("peer", |peer| &peer.name);
+    println!("{:>11} | honami {:>42} | {name}", "", "");
+    println!("{:>11} | {HEAD} {:>6} | {HEAD} | {:>6}", "size", "steps", "ratio");
+    if let [picture, scribbles] = &wanted.words[..]
         && std::path::Path::new(picture).is_file()
     {
         let [picture, scribbles] =
             [picture, scribbles].map(|path| image::open(path).map(|image| image.to_rgb8()));
         let (picture, scribbles) = (picture?, scribbles?);
-        let rgb = |image: &image::RgbImage| image.as_raw().as_chunks().0.to_vec();
-        let (pixels, scribbled) = (rgb(&picture), rgb(&scribbles));
-        let view = Picture::new(picture.width(), picture.height(), &pixels)?;
+        let pixels = |image: &image::RgbImage| image.as_raw().as_chunks().0.to_vec();
+        let (rgb, scribbled) = (pixels(&picture), pixels(&scribbles));
+        let view = Picture::new(picture.width(), picture.height(), &rgb)?;
         let marks = from_scribbles(&view, &Picture::new(scribbles.width(), scribbles.height(), &scribbled)?)?;
-        return row(&view, &marks, None, out.as_deref());
+        let case = Case { picture: view, rgb: &rgb, marks: &marks, truth: None };
+        return row(&case, &wanted, peer.as_mut());
     }
-    if words.is_empty() {
-        words = ["235x189", "960x540", "1920x1080"].map(str::to_owned).to_vec();
-    }
-    for size in &words {
+    for size in &wanted.words {
         let (width, height) = size.split_once('x').ok_or("a size is WIDTHxHEIGHT")?;
         let crown = Crown::new(width.parse()?, height.parse()?);
-        let view = Picture::new(crown.width, crown.height, &crown.rgb)?;
-        row(&view, &crown.marks, Some(&crown.alpha), out.as_deref())?;
+        let picture = Picture::new(crown.width, crown.height, &crown.rgb)?;
+        let case = Case { picture, rgb: &crown.rgb, marks: &crown.marks, truth: Some(&crown.alpha) };
+        row(&case, &wanted, peer.as_mut())?;
     }
     Ok(())
 }
 
-/// Finds one matte, and prints what it took.
-fn row(
-    picture: &Picture<'_>,
-    marks: &[Mark],
-    truth: Option<&[f64]>,
-    out: Option<&str>,
-) -> Result<(), Failure> {
-    let since = Instant::now();
-    let matte = matte(picture, marks, &Options::default(), &mut |_| true)?;
-    let seconds = since.elapsed().as_secs_f64();
-    let off = truth.map(|truth| {
-        let off = || matte.alpha.iter().zip(truth).map(|(found, truth)| (f64::from(*found) - truth).abs());
-        let n = truth.len() as f64;
-        (off().sum::<f64>() / n, (off().map(|off| off * off).sum::<f64>() / n).sqrt())
-    });
-    let [width, height] = picture.size();
-    let peak = peak_megabytes().map_or_else(String::new, |peak| format!("{peak:.0}"));
-    print!("{:>11} {seconds:>8.2} {:>6} {peak:>9}", format!("{width}x{height}"), matte.n_steps);
-    println!("{}", off.map_or_else(String::new, |(mean, rms)| format!(" {mean:>9.4} {rms:>11.4}")));
-    if let Some(path) = out {
+const HEAD: &str = " seconds   peak MB  mean off   RMS off";
+
+fn wanted() -> Result<Wanted, Failure> {
+    let mut wanted = Wanted { n_repeats: 3, python: "python3".into(), out: None, words: Vec::new() };
+    if let Ok(python) = std::env::var("HONAMI_PYTHON") {
+        wanted.python = python;
+    }
+    let mut args = std::env::args().skip(1);
+    while let Some(arg) = args.next() {
+        let mut value = || args.next().ok_or(format!("{arg} needs a value"));
+        match arg.as_str() {
+            "--threads" => rayon::ThreadPoolBuilder::new().num_threads(value()?.parse()?).build_global()?,
+            "--repeats" => wanted.n_repeats = value()?.parse::<usize>()?.max(1),
+            "--python" => wanted.python = value()?,
+            "--out" => wanted.out = Some(value()?),
+            _ => wanted.words.push(arg),
+        }
+    }
+    if wanted.words.is_empty() {
+        wanted.words = ["235x189", "960x540", "1920x1080"].map(str::to_owned).to_vec();
+    }
+    Ok(wanted)
+}
+
+/// Finds the mattes of one picture in turns, and prints what they took.
+fn row(case: &Case<'_>, wanted: &Wanted, mut peer: Option<&mut Peer>) -> Result<(), Failure> {
+    let (mut ours, mut theirs) = (Vec::new(), Vec::new());
+    let mut found = None;
+    for _ in 0..wanted.n_repeats {
+        let since = Instant::now();
+        let matte = matte(&case.picture, case.marks, &Options::default(), &mut |_| true)?;
+        ours.push(Turn { seconds: since.elapsed().as_secs_f64(), off: off(&matte.alpha, case.truth) });
+        found = Some(matte);
+        if let Some(peer) = &mut peer {
+            let (seconds, alpha) = peer.matte(case.picture.size(), case.rgb, case.marks)?;
+            theirs.push(Turn { seconds, off: off(&alpha, case.truth) });
+        }
+    }
+    let matte: Matte = found.ok_or("a repeat at least")?;
+    let [width, height] = case.picture.size();
+    let us = figures(&ours, peer::peak_megabytes("self"));
+    let them = peer.map(|peer| figures(&theirs, peak_of(peer))).unwrap_or_default();
+    println!(
+        "{:>11} | {us} {:>6} | {them} | {}",
+        format!("{width}x{height}"),
+        matte.n_steps,
+        ratio(&ours, &theirs)
+    );
+    if let Some(path) = &wanted.out {
         image::GrayImage::from_raw(width, height, matte.gray()).ok_or("a byte a pixel")?.save(path)?;
     }
     Ok(())
 }
 
-fn peak_megabytes() -> Option<f64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
-    Some(line.split_whitespace().next()?.parse::<f64>().ok()? / 1024.0)
+fn peak_of(peer: &Peer) -> Option<f64> {
+    peer::peak_megabytes(&peer.id().to_string())
 }
 
-/// A picture whose opacities are known, and strokes on it.
-struct Crown {
-    width: u32,
-    height: u32,
-    rgb: Vec<[u8; 3]>,
-    alpha: Vec<f64>,
-    marks: Vec<Mark>,
+fn off(alpha: &[f32], truth: Option<&[f64]>) -> Option<[f64; 2]> {
+    let truth = truth?;
+    let off = || alpha.iter().zip(truth).map(|(found, truth)| (f64::from(*found) - truth).abs());
+    let n = truth.len() as f64;
+    Some([off().sum::<f64>() / n, (off().map(|off| off * off).sum::<f64>() / n).sqrt()])
 }
 
-impl Crown {
-    /// Leaves, more and more of them with the picture, lie about its middle.
-    fn new(width: u32, height: u32) -> Self {
-        let unit = f64::from(height) / 540.0;
-        let leaves: Vec<Leaf> =
-            (0..400).map(|k| Leaf::new(k, f64::from(width), f64::from(height), unit)).collect();
-        let mut crown = Self { width, height, rgb: Vec::new(), alpha: Vec::new(), marks: Vec::new() };
-        for y in 0..height {
-            // Only leaves near the row are asked.
-            let near: Vec<&Leaf> =
-                leaves.iter().filter(|leaf| (leaf.y - f64::from(y)).abs() < leaf.length + 2.0).collect();
-            for x in 0..width {
-                crown.draw(f64::from(x), f64::from(y), &near, unit);
-            }
-        }
-        crown
-    }
-
-    fn draw(&mut self, x: f64, y: f64, leaves: &[&Leaf], unit: f64) {
-        let soft = |k: f64| (x / (60.0 * unit) + k).sin() * (y / (45.0 * unit) + 2.0 * k).cos();
-        let mut colour = [0.35 + 0.2 * soft(0.3), 0.42 + 0.2 * soft(1.7), 0.75 + 0.15 * soft(2.9)];
-        let mut alpha = 0.0;
-        for leaf in leaves {
-            let (cover, light) = leaf.at(x, y);
-            let green = [0.25 * light, 0.55 * light, 0.12 * light];
-            colour.iter_mut().zip(green).for_each(|(colour, green)| *colour += cover * (green - *colour));
-            alpha += cover * (1.0 - alpha);
-        }
-        self.rgb.push(colour.map(|value| (value * 255.0).round().clamp(0.0, 255.0) as u8));
-        self.alpha.push(alpha);
-        // Strokes: along the border, and where every tenth leaf is.
-        let edge = 6.0 * unit;
-        let is_edge = x < edge || y < edge || x >= f64::from(self.width) - edge;
-        let is_leaf =
-            leaves.iter().any(|leaf| leaf.k % 10 == 0 && leaf.at(x, y).0 >= 1.0 && leaf.is_near(x, y));
-        self.marks.push(if is_leaf {
-            Mark::Foreground
-        } else if is_edge && alpha == 0.0 {
-            Mark::Background
-        } else {
-            Mark::Unknown
-        });
-    }
+fn seconds(turns: &[Turn]) -> Vec<f64> {
+    let mut seconds: Vec<f64> = turns.iter().map(|turn| turn.seconds).collect();
+    seconds.sort_by(f64::total_cmp);
+    seconds
 }
 
-/// An ellipse with a vein.
-struct Leaf {
-    k: u32,
-    x: f64,
-    y: f64,
-    turn: f64,
-    length: f64,
-    light: f64,
+fn figures(turns: &[Turn], peak: Option<f64>) -> String {
+    let peak = peak.map_or_else(String::new, |peak| format!("{peak:.0}"));
+    let off = turns.first().and_then(|turn| turn.off);
+    let [mean, rms] = off.map_or_else(Default::default, |off| off.map(|off| format!("{off:.4}")));
+    format!("{:>8.2} {peak:>9} {mean:>9} {rms:>9}", seconds(turns)[turns.len() / 2])
 }
 
-impl Leaf {
-    fn new(k: u32, width: f64, height: f64, unit: f64) -> Self {
-        // Digits of irrational numbers: spread evenly, the same in every run.
-        let digit = |of: f64| (f64::from(k + 1) * of).fract();
-        let (far, about) = (digit(0.618_034).sqrt(), digit(0.754_878) * std::f64::consts::TAU);
-        Self {
-            k,
-            x: width / 2.0 + 0.36 * height * far * about.cos(),
-            y: height / 2.0 + 0.4 * height * far * about.sin(),
-            turn: digit(0.569_84) * std::f64::consts::PI,
-            length: unit * (9.0 + 12.0 * digit(0.324_718)),
-            light: 0.7 + 0.6 * digit(0.414_214),
-        }
+/// How often the peer's seconds are ours.
+fn ratio(ours: &[Turn], theirs: &[Turn]) -> String {
+    if theirs.is_empty() {
+        return String::new();
     }
-
-    fn across(&self, x: f64, y: f64) -> [f64; 2] {
-        let (sin, cos) = self.turn.sin_cos();
-        let [dx, dy] = [x - self.x, y - self.y];
-        [dx * cos + dy * sin, dy * cos - dx * sin]
-    }
-
-    fn is_near(&self, x: f64, y: f64) -> bool {
-        let [along, across] = self.across(x, y);
-        along.hypot(across) < self.length / 4.0
-    }
-
-    /// How much of the pixel it covers, and how bright it is there.
-    fn at(&self, x: f64, y: f64) -> (f64, f64) {
-        let [along, across] = self.across(x, y);
-        let wide = 0.45 * self.length;
-        let inside = 1.0 - (along / self.length).hypot(across / wide);
-        let vein = 0.8 + 0.2 * (across.abs() / wide).min(1.0);
-        ((0.5 + inside * wide).clamp(0.0, 1.0), self.light * vein)
-    }
+    let (ours, theirs) = (seconds(ours), seconds(theirs));
+    let (last, middle) = (ours.len() - 1, ours.len() / 2);
+    let [least, most] = [theirs[0] / ours[last], theirs[last] / ours[0]];
+    format!("{:.1}x ({least:.1} to {most:.1})", theirs[middle] / ours[middle])
 }
