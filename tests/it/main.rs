@@ -28,6 +28,7 @@ mod plants_round;
 mod python;
 mod real_clips;
 mod rebuilt;
+mod recipes;
 mod replay;
 mod retrack;
 mod rigs;

@@ -19,6 +19,7 @@ mod log;
 mod matte;
 mod movie;
 mod project;
+mod recipe;
 mod replay;
 mod report;
 mod review;
@@ -219,6 +220,11 @@ fn run(command: Command, common: &Common) -> anyhow::Result<Outcome> {
         Command::Demo(args) => return synth::demo(&args, common),
         Command::Tutorial => return show(Some(synth::lesson(common)), common).map(Outcome::Exit),
         Command::Plugin(args) => return help::plugin(&args, common),
+        Command::Run(args) if args.alone => return recipe::alone::follow(&args, common).map(Outcome::Exit),
+        Command::Run(args) => recipe::many::run(&args, common)?,
+        Command::Recipe(args::recipe::Recipe::Save { project, out }) => {
+            recipe::save(&project, out.as_deref())?
+        }
         Command::Review(args) => review::review(&args, common)?,
         Command::Log(args) => log::log(&args)?,
         Command::Replay(args) => replay::replay(&args, common)?,

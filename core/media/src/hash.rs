@@ -34,7 +34,8 @@ pub(crate) fn sha256_of_sequence(files: &[PathBuf]) -> Result<String, MediaError
 }
 
 /// SHA-256 of bytes in memory, 64 hex digits.
-pub(crate) fn sha256_of_bytes(bytes: &[u8]) -> String {
+#[must_use]
+pub fn sha256_of_bytes(bytes: &[u8]) -> String {
     hex(&Sha256::digest(bytes))
 }
 

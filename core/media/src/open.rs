@@ -79,6 +79,17 @@ pub fn open_with(
     open_kind(path, (kind, images), options, on_step)
 }
 
+/// Content hash of a clip, as [`Media::sha256`] without opening it.
+///
+/// # Errors
+/// [`MediaError`] when it cannot be read.
+pub fn sha256_of_clip(path: &Path) -> Result<String, MediaError> {
+    match kind_of(path)? {
+        Kind::Images => hash::sha256_of_sequence(&sequence::list(path)?.0),
+        _ => hash::sha256_of_file(path),
+    }
+}
+
 /// Opens image files, in this order, as one clip.
 ///
 /// # Errors

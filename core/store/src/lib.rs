@@ -18,18 +18,20 @@ mod run;
 mod schema;
 mod shown;
 mod space;
+mod step;
 #[cfg(test)]
 mod testing;
 
 pub use clustering::{Clustering, ClusteringInfo, Grouping, Stale};
 pub use error::StoreError;
-pub use lock::Holder;
+pub use lock::{Claim, Holder};
 pub use log::{LogItem, LogLine};
 pub use matte::{KeptMatte, MatteInfo};
 pub use media::ClipRecord;
 pub use project::{Access, Project};
 pub use run::{Build, RunHead, RunInfo, RunState, RunWriter, Seam};
 pub use space::{Space, SpaceInfo};
+pub use step::{KeptFile, Step};
 
 /// The time now, UTC to the second, RFC 3339: the form of every date in a project.
 #[must_use]

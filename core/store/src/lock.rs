@@ -40,6 +40,22 @@ pub(crate) struct Lock {
     pub(crate) holder: Holder,
 }
 
+/// What one process alone works on while this is held, besides projects.
+#[derive(Debug)]
+pub struct Claim {
+    _lock: Lock,
+}
+
+impl Claim {
+    /// Claims a place by a file beside it, `.NAME.lock`, that names the holder.
+    ///
+    /// # Errors
+    /// [`StoreError::Locked`] when another process has it, [`StoreError::Io`] when the folder refuses.
+    pub fn of(path: &Path) -> Result<Self, StoreError> {
+        Ok(Self { _lock: Lock::acquire(path)? })
+    }
+}
+
 /// A reader that looks for the holder has the lock for a moment; so often a writer tries again.
 const TRIES: u32 = 10;
 const PAUSE: Duration = Duration::from_millis(10);

@@ -14,7 +14,7 @@ const APPLICATION_ID: u32 = 0x484F_4E41;
 pub(crate) const BUSY_TIMEOUT: Duration = Duration::from_secs(20);
 
 /// Step n brings schema n to n + 1; a step is never changed once it was released.
-const MIGRATIONS: [&str; 7] = [
+const MIGRATIONS: [&str; 8] = [
     "
     CREATE TABLE state (            -- one row: what changes with every edit
         id          INTEGER PRIMARY KEY CHECK (id = 1),
@@ -115,6 +115,20 @@ const MIGRATIONS: [&str; 7] = [
         tracks      TEXT NOT NULL,  -- left track, right track, number of fixes of each, JSON
         fixes       BLOB NOT NULL,  -- frame u32, place 3 f64 and its errors 3 f32, metres, residual f32, pixels
         provenance  TEXT NOT NULL   -- JSON
+    );
+",
+    "
+    CREATE TABLE step (             -- of the recipe that was followed last, as far as it was done
+        id          INTEGER PRIMARY KEY, -- 0 is the clip itself, steps count from 1
+        line        TEXT NOT NULL,  -- as on the command line, without the project
+        made_of     TEXT NOT NULL,  -- hash of all that it came from, steps before it included
+        before      INTEGER NOT NULL, -- revisions between which it worked
+        after       INTEGER NOT NULL,
+        inputs      TEXT NOT NULL,  -- files that it read, as they were seen, JSON
+        outputs     TEXT NOT NULL,  -- files that it wrote, JSON
+        answer      TEXT NOT NULL,  -- what it said, JSON
+        seconds     REAL NOT NULL,
+        time        TEXT NOT NULL
     );
 ",
 ];

@@ -32,7 +32,7 @@ pub use ends::Ends;
 use frames::Kept;
 use kept::Tracked;
 use resume::Asked;
-pub use resume::{area_of, resume, unfinished};
+pub use resume::{detection_of, resume, unfinished};
 
 /// Numbers that a table of points may use: above them there must be room for those of features to come.
 pub(crate) const MAX_NUMBER: u32 = i32::MAX.unsigned_abs();
@@ -403,8 +403,8 @@ fn given(session: &mut Session, seeds: &[Seed]) -> Result<Vec<Seed>, WorkbenchEr
     Ok(seeds.to_vec())
 }
 
-/// How many threads a plugin may use.
-pub(crate) fn threads() -> u32 {
-    let n = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-    u32::try_from(n).unwrap_or(1)
+/// How many threads a plugin may use: as many as this process, by `RAYON_NUM_THREADS` or the cores it may run on.
+#[must_use]
+pub fn threads() -> u32 {
+    u32::try_from(rayon::current_num_threads()).unwrap_or(1)
 }

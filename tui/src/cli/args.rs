@@ -4,6 +4,7 @@ pub(super) mod cameras;
 pub(super) mod grow;
 pub(super) mod matte;
 pub(super) mod plant;
+pub(super) mod recipe;
 pub(super) mod scale;
 pub(super) mod sensors;
 pub(super) mod space;
@@ -123,6 +124,15 @@ pub(super) enum Command {
     /// What plugins there are and what they take.
     #[command(subcommand)]
     Plugin(Plugin),
+    /// Follow a recipe with many clips: a project for each, and only what is missing or stale is done.
+    ///
+    /// A step is done again when the clip, its line, a plugin, a file that it reads, honami or a step before it is another, when
+    /// the project was edited since, or when what it wrote is gone. A clip that fails holds up no other. Ctrl-C ends it, and the
+    /// same line goes on. Exit status 1: a clip has failed, or it was stopped. docs/recipes.md has more.
+    Run(recipe::Run),
+    /// Recipes, from projects.
+    #[command(subcommand)]
+    Recipe(recipe::Recipe),
     /// The segments worth a look, the most doubtful first; how far the review is and what it has taken.
     Review(Project),
     /// Everything that was done to a project: runs, clusterings, edits.

@@ -10,7 +10,7 @@ use super::args::{Cluster, Common};
 use super::{Answer, report, session, track};
 
 /// The clusterer that is used unless one is named.
-const DEFAULT: &str = "bod";
+pub(super) const DEFAULT: &str = "bod";
 
 /// Clusters, and shows the groups.
 pub(super) fn cluster(args: &Cluster, common: &Common) -> anyhow::Result<Answer> {

@@ -4,7 +4,7 @@ use honami_model::brief::counted;
 use honami_model::provenance::Provenance;
 use honami_workbench::WorkbenchError;
 use honami_workbench::store::{LogItem, LogLine, Project, Seam};
-use honami_workbench::track::{area_of, inside};
+use honami_workbench::track::{detection_of, inside};
 use serde_json::json;
 
 use super::args;
@@ -25,8 +25,8 @@ pub(super) fn log(args: &args::Project) -> anyhow::Result<Answer> {
 /// Frames of the mattes that a run has heeded.
 fn mattes(project: &Project, line: &LogLine) -> Result<Vec<u32>, WorkbenchError> {
     match &line.item {
-        LogItem::Run(run) => match area_of(project, run.id)? {
-            Some(area) => area.mattes(project),
+        LogItem::Run(run) => match detection_of(project, run.id)? {
+            Some((area, _)) => area.mattes(project),
             None => Ok(Vec::new()),
         },
         _ => Ok(Vec::new()),

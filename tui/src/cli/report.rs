@@ -1,9 +1,9 @@
 //! What a command says while it works: a progress bar on a terminal, a line a named part elsewhere.
 
 use std::io::{IsTerminal as _, Write as _};
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Duration;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::time::{Duration, Instant};
 
 use honami_model::brief;
 use honami_workbench::progress::{Flow, Level, Patience, Progress, Silence};
@@ -11,6 +11,25 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::args::Common;
 use super::ends;
+
+/// Who is told how far a step is, instead of a bar: its number, how much is done of how much, of what. Nobody there: stop.
+type Relay = Box<dyn Fn(usize, u64, u64, &str) -> bool + Send + Sync>;
+
+static RELAY: OnceLock<Relay> = OnceLock::new();
+static STEP: AtomicUsize = AtomicUsize::new(0);
+/// So often, so that nobody is told more than can be shown.
+const TELL_EVERY: Duration = Duration::from_millis(200);
+
+/// From now on what works tells this one how far it is.
+pub(super) fn relay(to: Relay) {
+    // Once in the life of a process that follows a recipe.
+    drop(RELAY.set(to));
+}
+
+/// The number of the step that is at work.
+pub(super) fn step(number: usize) {
+    STEP.store(number, Ordering::Relaxed);
+}
 
 /// A progress bar on standard error; Ctrl-C asks the job to stop and keep what it has.
 pub(super) struct Bar {
@@ -20,6 +39,8 @@ pub(super) struct Bar {
     stop: Arc<AtomicBool>,
     /// A plugin that is silent is told of after so long a silence.
     told: Mutex<Duration>,
+    /// When the one who is told of steps was told last.
+    relayed: Mutex<Option<Instant>>,
 }
 
 impl Bar {
@@ -36,7 +57,7 @@ impl Bar {
         }
         let stop = Arc::new(AtomicBool::new(false));
         ends::stops(&stop);
-        Self { bar, verbose: common.verbose, stop, told: Mutex::default() }
+        Self { bar, verbose: common.verbose, stop, told: Mutex::default(), relayed: Mutex::default() }
     }
 }
 
@@ -55,6 +76,15 @@ impl Progress for Bar {
         }
         self.bar.set_length(total);
         self.bar.set_position(done);
+        if let Some(relay) = RELAY.get() {
+            let mut last = self.relayed.lock().unwrap_or_else(PoisonError::into_inner);
+            if last.is_none_or(|last| last.elapsed() >= TELL_EVERY) {
+                *last = Some(Instant::now());
+                if !relay(STEP.load(Ordering::Relaxed), done, total, what) {
+                    return Flow::Stop;
+                }
+            }
+        }
         if self.stop.load(Ordering::Relaxed) { Flow::Stop } else { Flow::Continue }
     }
 

@@ -143,7 +143,6 @@ fn place(path: &Path) -> PathBuf {
 
 /// What is asked for of a motion.
 fn motion(args: &Simulate, n_frames: u32) -> Motion {
-    let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     Motion {
         n_frames,
         fps: args.fps,
@@ -163,7 +162,7 @@ fn motion(args: &Simulate, n_frames: u32) -> Motion {
         pull: args.pull,
         n_sensors: args.sensors as usize,
         sensors: args.nodes.clone(),
-        n_threads: args.threads.unwrap_or(cores),
+        n_threads: args.threads.unwrap_or(honami_workbench::track::threads() as usize),
         ..args.stand.motion()
     }
 }

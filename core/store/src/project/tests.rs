@@ -67,7 +67,7 @@ fn what_is_no_project_is_told_apart() {
         (other, "not a honami project"),
         (bench.folder.path().to_owned(), "not a honami project"),
         (bench.folder.path().join("gone.honami"), "cannot open the project"),
-        (newer, "schema 9, this honami knows up to 7; update honami"),
+        (newer, "schema 9, this honami knows up to 8; update honami"),
         (damaged, "damaged"),
         (rootless, "damaged"),
     ];

@@ -62,12 +62,13 @@ impl Asked {
     }
 }
 
-/// Where a run has looked for features; `None` where it has not, or where that was not kept.
+/// Where a run has looked for features, and every how many frames again; `None` where it has not, or where that was not kept.
 ///
 /// # Errors
 /// What the project met.
-pub fn area_of(project: &Project, run: RunId) -> Result<Option<Area>, WorkbenchError> {
-    Ok(Asked::read(project, run)?.filter(|asked| asked.found_from.is_some()).map(|asked| asked.area))
+pub fn detection_of(project: &Project, run: RunId) -> Result<Option<(Area, Option<u32>)>, WorkbenchError> {
+    let asked = Asked::read(project, run)?.filter(|asked| asked.found_from.is_some());
+    Ok(asked.map(|asked| (asked.area, asked.every)))
 }
 
 /// The newest run that has ended early, that no other goes on with, and whose tracks newer ones have not replaced; `None`

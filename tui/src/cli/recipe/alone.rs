@@ -1,0 +1,261 @@
+//! One clip, in a process of its own: what is stale is done, and told in a line of JSON each to the process that started it.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Instant;
+
+use anyhow::Context as _;
+use honami_workbench::store::{self, Access, Claim, KeptFile, Project, Step};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::super::args::Common;
+use super::super::args::recipe::Run;
+use super::super::{Outcome, options, project, report, run, want};
+use super::plan::{Clip, Plan, Why, look, plan};
+use super::{Line, Recipe};
+
+/// What is told of a clip, a line of JSON each.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum Told {
+    /// A step is at work.
+    At {
+        /// Its number, from 1; 0 is the clip itself.
+        step: usize,
+        /// How far it is, of how much, of what.
+        done: u64,
+        total: u64,
+        what: String,
+    },
+    /// A step is done.
+    Done {
+        /// Its number.
+        step: usize,
+        /// How long it took.
+        seconds: f64,
+        /// What it said.
+        answer: Value,
+    },
+    /// It could not be done, or was stopped.
+    Failed {
+        /// The step, or 0.
+        step: usize,
+        /// Why, in a line.
+        why: String,
+    },
+}
+
+fn tell(told: &Told) -> bool {
+    let Ok(line) = serde_json::to_string(told) else { return true };
+    let mut out = std::io::stdout().lock();
+    writeln!(out, "{line}").and_then(|()| out.flush()).is_ok()
+}
+
+/// Follows the recipe with the one clip that was named.
+pub(in crate::cli) fn follow(args: &Run, common: &Common) -> anyhow::Result<ExitCode> {
+    let recipe = Recipe::read(&args.recipe)?;
+    let [clip] = &super::many::clips(&args.clips, &args.into)?[..] else {
+        want(false, || "--alone is for one clip".to_owned())?;
+        return Ok(ExitCode::from(2));
+    };
+    // Whoever waits is gone: then nobody wants the rest.
+    report::relay(Box::new(|step, done, total, what| {
+        tell(&Told::At { step, done, total, what: what.to_owned() })
+    }));
+    let mut step = 0;
+    let result = all(&recipe, clip, args.over_edits, common, &mut step);
+    match result {
+        Ok(()) => Ok(ExitCode::SUCCESS),
+        Err(error) => {
+            tell(&Told::Failed { step, why: report::chain(&error) });
+            Ok(ExitCode::FAILURE)
+        }
+    }
+}
+
+fn all(
+    recipe: &Recipe,
+    clip: &Clip,
+    over_edits: bool,
+    common: &Common,
+    at: &mut usize,
+) -> anyhow::Result<()> {
+    fs::create_dir_all(&clip.folder).with_context(|| format!("cannot make {}", clip.folder.display()))?;
+    let folder =
+        clip.folder.canonicalize().with_context(|| format!("cannot find {}", clip.folder.display()))?;
+    let path = clip.path.canonicalize().unwrap_or_else(|_| clip.path.clone());
+    let clip = &Clip { name: clip.name.clone(), path, folder };
+    // No other process works on this clip meanwhile, on whatever machine.
+    let _claim = Claim::of(&clip.folder.join("steps"))?;
+    let registry = options(common).registry();
+    let plan = plan(recipe, clip, &registry)?;
+    let Some(why) = &plan.why else { return Ok(()) };
+    take_away(clip, plan.n_fresh + 1)?;
+    if plan.makes_project {
+        make(recipe, clip, (&plan, why), over_edits, common)?;
+    }
+    std::env::set_current_dir(&clip.folder)?;
+    for number in plan.n_fresh + 1..plan.made_of.len() {
+        *at = number;
+        report::step(number);
+        do_step(&recipe.steps[number - 1], number, clip, &plan, common)?;
+    }
+    Ok(())
+}
+
+/// Removes what steps from this one on have written, so that nothing stale lies about.
+fn take_away(clip: &Clip, from: usize) -> anyhow::Result<()> {
+    let file = clip.project();
+    let done = if file.exists() { Project::open(&file, Access::Read)?.steps()? } else { Vec::new() };
+    let outputs = done.iter().skip(from).flat_map(|step| &step.outputs);
+    let there = outputs.map(|file| (clip.folder.join(&file.path), file)).filter(|(path, _)| path.exists());
+    let there: Vec<_> = there.collect();
+    for (path, file) in &there {
+        anyhow::ensure!(
+            look(path, std::slice::from_ref(*file))?.sha256 == file.sha256,
+            "{} was changed since it was written, and is to be written anew: take it away first",
+            path.display()
+        );
+    }
+    there.iter().try_for_each(|(path, _)| {
+        fs::remove_file(path).with_context(|| format!("cannot remove {}", path.display()))
+    })
+}
+
+/// Makes the project; one that is there is kept beside it.
+fn make(
+    recipe: &Recipe,
+    clip: &Clip,
+    (plan, why): (&Plan, &Why),
+    over_edits: bool,
+    common: &Common,
+) -> anyhow::Result<()> {
+    let file = clip.project();
+    if file.exists() {
+        anyhow::ensure!(
+            plan.n_edits == 0 || over_edits,
+            "{} was edited {} by hand, and its tracks are to be found anew ({why}): --over-edits does so, and keeps the project \
+             as it is now beside it",
+            file.display(),
+            honami_model::brief::counted(plan.n_edits, "time"),
+        );
+        let before = file.with_file_name(format!("{}.before.honami", clip.name));
+        if plan.n_edits > 0 {
+            anyhow::ensure!(
+                !before.exists(),
+                "{} is there already: take it away, or keep it elsewhere",
+                before.display()
+            );
+            fs::rename(&file, &before).with_context(|| format!("cannot rename {}", file.display()))?;
+        } else {
+            fs::remove_file(&file).with_context(|| format!("cannot remove {}", file.display()))?;
+        }
+    }
+    let since = Instant::now();
+    let mut session = project::make(&file, &clip.path, recipe.fps, common)?;
+    let revision = session.project.revision();
+    let seconds = since.elapsed().as_secs_f64();
+    let answer =
+        serde_json::json!({ "frames": session.media.clip().n_frames(), "notes": session.media.notes() });
+    let step = Step {
+        line: "new".to_owned(),
+        made_of: plan.made_of[0].clone(),
+        before: revision,
+        after: revision,
+        inputs: plan.inputs[0].clone(),
+        outputs: Vec::new(),
+        answer: answer.clone(),
+        seconds,
+        time: store::now(),
+    };
+    session.project.keep_step(0, &step)?;
+    tell(&Told::Done { step: 0, seconds, answer });
+    Ok(())
+}
+
+/// Does one step, and keeps what it was made of and what it wrote; one that fails is kept as not finished.
+fn do_step(line: &Line, number: usize, clip: &Clip, plan: &Plan, common: &Common) -> anyhow::Result<()> {
+    let file = clip.project();
+    let cli = line.command(&file, &clip.name).map_err(|error| super::Usage(super::first_line(&error)))?;
+    let Some(command) = cli.command else { anyhow::bail!("a step is a command") };
+    let before = Project::open(&file, Access::Read)?;
+    let (revision, others) = (before.revision(), before.steps()?);
+    drop(before);
+    let was = files(&clip.folder, &file)?;
+    let since = Instant::now();
+    let ran = match run(command, common) {
+        Ok(Outcome::Answer(answer)) if answer.done => Ok(answer),
+        Ok(Outcome::Answer(answer)) => Err(anyhow::anyhow!("not all was done: {}", answer.text)),
+        Ok(Outcome::Exit(_)) => Err(anyhow::anyhow!("a step has an answer")),
+        Err(error) => Err(error),
+    };
+    let seconds = since.elapsed().as_secs_f64();
+    let outputs = written(&clip.folder, &was, &files(&clip.folder, &file)?)?;
+    let mine = |path: &str| outputs.iter().any(|file| file.path == path);
+    let earlier = others.iter().take(number).flat_map(|step| &step.outputs).find(|file| mine(&file.path));
+    if let Some(both) = earlier {
+        anyhow::bail!("two steps write {}: let one name another file", both.path);
+    }
+    let mut project = Project::open(&file, Access::Write)?;
+    let (made_of, json) = match &ran {
+        Ok(answer) => (plan.made_of[number].clone(), answer.json.clone()),
+        Err(error) => (String::new(), serde_json::json!({ "error": report::chain(error) })),
+    };
+    let step = Step {
+        line: line.text.clone(),
+        made_of,
+        before: revision,
+        after: project.revision(),
+        inputs: plan.inputs[number].clone(),
+        outputs,
+        answer: json,
+        seconds,
+        time: store::now(),
+    };
+    project.keep_step(number, &step)?;
+    let answer = ran?.json;
+    tell(&Told::Done { step: number, seconds, answer });
+    Ok(())
+}
+
+/// The files of a folder, with size and time of the last change; without projects and what lies hidden.
+fn files(folder: &Path, project: &Path) -> anyhow::Result<BTreeMap<PathBuf, (u64, std::time::SystemTime)>> {
+    let mut found = BTreeMap::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(folder) = folders.pop() {
+        for entry in folder.read_dir().with_context(|| format!("cannot read {}", folder.display()))? {
+            let entry = entry?;
+            let (path, data) = (entry.path(), entry.metadata()?);
+            let name = entry.file_name();
+            let is_project = path == project || path.extension().is_some_and(|e| e == "honami");
+            if is_project || name.as_encoded_bytes().starts_with(b".") {
+                continue;
+            }
+            if data.is_dir() {
+                folders.push(path);
+            } else {
+                found.insert(path, (data.len(), data.modified()?));
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// What is there now and was not, or was another.
+fn written(
+    folder: &Path,
+    was: &BTreeMap<PathBuf, (u64, std::time::SystemTime)>,
+    is: &BTreeMap<PathBuf, (u64, std::time::SystemTime)>,
+) -> anyhow::Result<Vec<KeptFile>> {
+    let new = is.iter().filter(|(path, seen)| was.get(*path) != Some(seen));
+    new.map(|(path, _)| {
+        let mut file = look(path, &[])?;
+        file.path = path.strip_prefix(folder).unwrap_or(path).to_string_lossy().into_owned();
+        Ok(file)
+    })
+    .collect()
+}
