@@ -208,6 +208,8 @@ fn a_matte_is_kept_heeded_told_written_and_removed() {
     let ran = bench.line("matte p.honami --remove --frame 2");
     assert_eq!(ran.code, Some(2), "{}", ran.stderr);
     assert!(ran.stderr.contains("there are those of frame 0"), "{}", ran.stderr);
+    let listed = bench.text("matte p.honami --frame 2");
+    assert!(listed.contains("no matte of frame 2 is kept; there are those of frame 0"), "{listed}");
     bench.json("matte p.honami --remove");
     assert!(bench.text("matte p.honami").contains("no matte is kept"));
     for line in ["matte p.honami --remove", "export p.honami mask no.png", "matte p.honami --mask no.png"] {

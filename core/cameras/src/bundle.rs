@@ -61,6 +61,11 @@ impl Model {
         columns
     }
 
+    /// How many numbers are looked for.
+    pub(crate) fn n_numbers(self) -> usize {
+        self.columns().ncols()
+    }
+
     /// How many views of a plane it takes: each gives two equations for focal lengths and centre.
     pub(crate) fn fewest_views(self) -> usize {
         let focal = match self.focal {
@@ -110,9 +115,10 @@ impl<'a> Bundle<'a> {
     }
 
     pub(crate) fn fit(self, loss: Loss) -> Result<Fitted<Self>, CameraError> {
+        let number = if self.first_column(self.cameras.len()) > 0 { "numbers" } else { "place" };
         least::fit(self, loss).map_err(|why| match why {
             Unfitted::Start => CameraError::Behind,
-            Unfitted::Loose => CameraError::Alike { number: "focal length", share: f64::INFINITY },
+            Unfitted::Loose => CameraError::Alike { number, share: f64::INFINITY },
             Unfitted::Restless => CameraError::Restless,
         })
     }

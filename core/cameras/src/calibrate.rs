@@ -3,10 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use crate::bundle::{Bundle, Focal, Model, rms};
-use crate::camera::{N_NUMBERS, NUMBERS};
+use crate::camera::{N_NUMBERS, NUMBERS, middle};
 use crate::least::{Fitted, Loss};
 use crate::target::{Sighting, Target};
-use crate::{Camera, CameraError, Pixel, Pose, planar, zhang};
+use crate::{Camera, CameraError, Pose, planar, zhang};
 
 /// How cameras are calibrated.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -57,8 +57,8 @@ pub struct Standing {
 /// view's pose is found from its homography, and all are fitted together.
 ///
 /// # Errors
-/// [`CameraError::View`] of a view that says too little; [`CameraError::TooFewViews`]; [`CameraError::Alike`] where views do not tell
-/// focal length or centre, as when all are parallel; [`CameraError::Restless`] and [`CameraError::Behind`] where nothing fits.
+/// [`CameraError::View`] of a view that says too little; [`CameraError::TooFewViews`]; [`CameraError::TooLittle`] where all points together
+/// are too few; [`CameraError::Alike`] where views do not tell focal length or centre, as when all are parallel; [`CameraError::Restless`] and [`CameraError::Behind`] where nothing fits.
 pub fn calibrate(
     target: &Target,
     views: &[Sighting],
@@ -72,6 +72,12 @@ pub fn calibrate(
     let in_view = |view: usize| move |source| CameraError::View { view, source: Box::new(source) };
     let seen_as = |(view, sighting): (usize, &Sighting)| target.seen_as(sighting).map_err(in_view(view));
     let homographies = views.iter().enumerate().map(seen_as).collect::<Result<Vec<_>, _>>()?;
+    // Two numbers a point, less six of how the target stands in each view.
+    let (n_points, n_views) = (views.iter().map(Vec::len).sum::<usize>(), views.len());
+    let (wanted, told) = (options.model.n_numbers(), (2 * n_points).saturating_sub(6 * n_views));
+    if told < wanted {
+        return Err(CameraError::TooLittle { n_points, n_views, told, wanted });
+    }
     let mut starts: Vec<Camera> =
         zhang::starts(&homographies, size).iter().map(|c| options.model.start(c, size)).collect();
     if starts.is_empty() {
@@ -143,11 +149,6 @@ impl Model {
         }
         camera
     }
-}
-
-/// The middle of a picture, pixels.
-fn middle([width, height]: [u32; 2]) -> Pixel {
-    Pixel::new((f64::from(width) - 1.0) / 2.0, (f64::from(height) - 1.0) / 2.0)
 }
 
 /// Whether the views tell a camera's focal lengths and centre.

@@ -20,7 +20,8 @@ const PROBES: usize = 16;
 /// A place (X, Y, Z) in the camera's own axes (x right, y down, z forward) is seen in the direction `x = X / Z, y = Y / Z`. The
 /// lens moves it, with `r² = x² + y²` and `a = 1 + k1 r² + k2 r⁴ + k3 r⁶`, to
 /// `x' = a x + 2 p1 x y + p2 (r² + 2 x²)`, `y' = a y + p1 (r² + 2 y²) + 2 p2 x y`, and the pixel is `(fx x' + cx, fy y' + cy)`:
-/// numbers and centre, `(0, 0)` in the middle of the top-left pixel, are those of OpenCV.
+/// numbers and centre, `(0, 0)` in the middle of the top-left pixel, are those of OpenCV. Where it is read from a file the distortion
+/// may be left out: there is none then.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Camera {
     /// Focal length along x, pixels.
@@ -32,15 +33,26 @@ pub struct Camera {
     /// Where the axis meets the picture, y, pixels.
     pub cy: f64,
     /// Radial distortion, of r².
+    #[serde(default)]
     pub k1: f64,
     /// Radial distortion, of r⁴.
+    #[serde(default)]
     pub k2: f64,
     /// Distortion of a lens that stands askew.
+    #[serde(default)]
     pub p1: f64,
     /// The same, across.
+    #[serde(default)]
     pub p2: f64,
     /// Radial distortion, of r⁶.
+    #[serde(default)]
     pub k3: f64,
+}
+
+/// The middle of a picture of this size, pixels.
+#[must_use]
+pub fn middle([width, height]: [u32; 2]) -> Pixel {
+    Pixel::new((f64::from(width) - 1.0) / 2.0, (f64::from(height) - 1.0) / 2.0)
 }
 
 /// A pixel, and how it changes with the place, in the camera's axes, and with the camera's numbers.

@@ -20,17 +20,6 @@ impl Pair {
         self.right_from_left.translation.cross_matrix() * self.right_from_left.rotation
     }
 
-    /// The fundamental matrix F of pixels without distortion, `rightᵀ F left = 0`, of length 1; `None` where a focal length is nought
-    /// or both cameras stand in one place.
-    #[must_use]
-    pub fn fundamental(&self) -> Option<Matrix3<f64>> {
-        let [left, right] =
-            self.cameras.map(|c| Matrix3::new(c.fx, 0.0, c.cx, 0.0, c.fy, c.cy, 0.0, 0.0, 1.0).try_inverse());
-        let f = right?.transpose() * self.essential() * left?;
-        let size = f.norm();
-        (size.is_finite() && size > 0.0).then(|| f / size)
-    }
-
     /// Directions in which both see something.
     ///
     /// # Errors
@@ -96,25 +85,13 @@ mod tests {
     }
 
     #[test]
-    fn both_matrices_say_the_same_and_have_rank_two() {
+    fn the_matrix_has_two_equal_singular_values_and_a_third_of_nothing() {
         let pair = pair();
-        let (e, f) = (pair.essential(), pair.fundamental().unwrap());
+        let e = pair.essential();
         let place = Place::new(0.3, -0.2, 3.0);
-        let pixel = |camera: Camera, place: Place| {
-            Vector3::new(
-                camera.fx * place.x / place.z + camera.cx,
-                camera.fy * place.y / place.z + camera.cy,
-                1.0,
-            )
-        };
-        let (left, right) =
-            (pixel(pair.cameras[0], place), pixel(pair.cameras[1], pair.right_from_left.of(&place)));
-        assert!((right.transpose() * f * left).norm() / (right.norm() * left.norm()) < 1e-12);
-        assert!(f.determinant().abs() < 1e-12);
-        // E has two equal singular values and a third of 0.
+        let [left, right] = [place, pair.right_from_left.of(&place)].map(|place| place / place.z);
+        assert!((right.transpose() * e * left).norm() < 1e-12);
         let singular = e.singular_values();
         assert!((singular[0] - singular[1]).abs() < 1e-12 && singular[2] < 1e-12, "{singular}");
-        let together = Pair { right_from_left: Pose::identity(), ..pair };
-        assert_eq!(together.fundamental(), None);
     }
 }

@@ -47,7 +47,7 @@ pub enum CameraError {
     /// The distortion has no way back from there.
     #[error(
         "pixel ({x:.1}, {y:.1}) lies beyond what the camera's distortion can describe; it holds where the target was seen: \
-         calibrate with views that reach there, or with fewer radial numbers"
+         calibrate with views that reach there, or with k3 held"
     )]
     Reach {
         /// Right.
@@ -119,7 +119,7 @@ pub enum CameraError {
         source: Box<CameraError>,
     },
     /// Not enough views.
-    #[error("calibration needs at least {wanted} views, came {came}; or look for fewer numbers")]
+    #[error("calibration needs at least {wanted} views, came {came}, or some of its numbers held")]
     TooFewViews {
         /// The fewest.
         wanted: usize,
@@ -128,15 +128,29 @@ pub enum CameraError {
     },
     /// Views that say the same.
     #[error(
-        "the views are too much alike to tell the camera's {number} (to {:.0} %); tilt the target by 20 to 50 degrees, each time \
-         another way",
-        share * 100.0
+        "the views are too much alike to tell the camera's {number} {}; tilt the target by 20 to 50 degrees, each time another way",
+        well(*share)
     )]
     Alike {
         /// The number.
         number: &'static str,
-        /// Its standard error, of the focal length or the picture's size.
+        /// Its standard error, of the focal length or the picture's size; infinite where nothing is told.
         share: f64,
+    },
+    /// Fewer points than numbers.
+    #[error(
+        "{n_points} points in {n_views} views tell {told} numbers of a camera, {wanted} are looked for; wanted are more views, \
+         a target of more points, or some of the numbers held"
+    )]
+    TooLittle {
+        /// Points that were seen.
+        n_points: usize,
+        /// Views there were.
+        n_views: usize,
+        /// Numbers that so many tell, beside how the target stands.
+        told: usize,
+        /// Numbers that are looked for.
+        wanted: usize,
     },
     /// One of two cameras.
     #[error("the {camera} camera: {source}")]
@@ -196,6 +210,13 @@ pub enum CameraError {
     #[error("no flash: brightness has no step up that stands out of its noise; give the region of the lamp")]
     NoFlash,
     /// No end.
-    #[error("the fit did not come to rest; check the order of the points, or look for fewer numbers")]
+    #[error(
+        "the fit did not come to rest; check the order of the points, or have some of the camera's numbers held"
+    )]
     Restless,
+}
+
+/// How well a number is known whose standard error is such a share of its size.
+fn well(share: f64) -> String {
+    if share < 1.0 { format!("better than to {:.0} %", 100.0 * share) } else { "at all".to_owned() }
 }

@@ -1,7 +1,7 @@
 //! Which track of one view is which of the other.
 
 use crate::assign::assigned;
-use crate::{CameraError, Pair, Pixel};
+use crate::{Pair, Pixel};
 
 /// Fewer frames that both were seen in say nothing.
 pub const FEWEST_FRAMES: usize = 8;
@@ -45,19 +45,14 @@ pub struct Match {
 /// What is one place lies on the epipolar line in every frame, so what moves across the lines moves alike in both views; of the
 /// movement along them, which depends on depth, only its likeness in time counts.
 ///
-/// # Errors
-/// [`CameraError::Reach`] of pixels beyond a camera's distortion.
-pub fn matched(
-    pair: &Pair,
-    left: &[&Seen],
-    right: &[&Seen],
-    options: &Options,
-) -> Result<Vec<Match>, CameraError> {
-    let rays = |tracks: &[&Seen], camera: usize| -> Result<Vec<Vec<Option<Pixel>>>, CameraError> {
-        let ray = |at: &Option<Pixel>| at.map(|at| pair.cameras[camera].undistort(&at)).transpose();
+/// A pixel beyond what a camera's distortion can describe counts as one that was not seen.
+#[must_use]
+pub fn matched(pair: &Pair, left: &[&Seen], right: &[&Seen], options: &Options) -> Vec<Match> {
+    let rays = |tracks: &[&Seen], camera: usize| -> Vec<Vec<Option<Pixel>>> {
+        let ray = |at: &Option<Pixel>| pair.cameras[camera].undistort(&(*at)?).ok();
         tracks.iter().map(|track| track.iter().map(ray).collect()).collect()
     };
-    let (left_rays, right_rays) = (rays(left, 0)?, rays(right, 1)?);
+    let (left_rays, right_rays) = (rays(left, 0), rays(right, 1));
     let mut likenesses = Vec::with_capacity(left.len() * right.len());
     for (l, l_rays) in left.iter().zip(&left_rays) {
         for (r, r_rays) in right.iter().zip(&right_rays) {
@@ -82,7 +77,7 @@ pub fn matched(
         let next = in_row.chain(in_column).fold(f64::INFINITY, f64::min);
         Some(Match { left: l, right: r, epipolar_px, alike, margin_px: next - costs[l * n + r] })
     });
-    Ok(with_margin.collect())
+    with_margin.collect()
 }
 
 /// Frames in which both are seen.
@@ -129,7 +124,8 @@ mod tests {
     /// Leaves that sway, each at its own pace, as two cameras see them.
     fn swaying(n: usize, sigma: f64) -> (Pair, [Vec<Vec<Option<Pixel>>>; 2]) {
         let right_from_left = Pose::new(Vector3::new(0.0, 0.3, 0.02), Vector3::new(-1.2, 0.05, 0.2));
-        let pair = Pair { cameras: [LENS, Camera { fx: 560.0, fy: 560.0, ..LENS }], right_from_left };
+        let pair =
+            Pair { cameras: [LENS, Camera { fx: 560.0, fy: 560.0, k2: 0.0, ..LENS }], right_from_left };
         let mut noise = Noise::new(21, sigma);
         let mut views = [Vec::new(), Vec::new()];
         for leaf in 0..n {
@@ -162,7 +158,7 @@ mod tests {
         right.remove(4);
         left.remove(20);
         left[3][10..40].fill(None);
-        let matches = matched(&pair, &slices(&left), &slices(&right), &Options::default()).unwrap();
+        let matches = matched(&pair, &slices(&left), &slices(&right), &Options::default());
         assert_eq!(matches.len(), 22);
         for found in matches {
             let leaf = found.left + usize::from(found.left >= 20);
@@ -173,12 +169,26 @@ mod tests {
     }
 
     #[test]
+    fn a_pixel_beyond_the_lens_is_left_out_alone() {
+        let (pair, [left, mut right]) = swaying(4, 0.1);
+        let beyond = Pixel::new(900.0, 232.0);
+        assert!(pair.cameras[1].undistort(&beyond).is_err());
+        right[2][7] = Some(beyond);
+        let matches = matched(&pair, &slices(&left), &slices(&right), &Options::default());
+        assert_eq!(
+            matches.iter().map(|m| (m.left, m.right)).collect::<Vec<_>>(),
+            [(0, 0), (1, 1), (2, 2), (3, 3)]
+        );
+        assert!(matches.iter().all(|found| found.epipolar_px < 0.3), "{matches:?}");
+    }
+
+    #[test]
     fn tracks_that_were_hardly_seen_together_are_no_match() {
         let (pair, [left, mut right]) = swaying(2, 0.0);
         right[1][FEWEST_FRAMES - 1..].fill(None);
-        let matches = matched(&pair, &slices(&left), &slices(&right), &Options::default()).unwrap();
+        let matches = matched(&pair, &slices(&left), &slices(&right), &Options::default());
         assert_eq!(matches.iter().map(|m| (m.left, m.right)).collect::<Vec<_>>(), [(0, 0)]);
         assert!(matches[0].alike > 0.9 && matches[0].epipolar_px < 1e-9, "{matches:?}");
-        assert!(matched(&pair, &[], &slices(&right), &Options::default()).unwrap().is_empty());
+        assert!(matched(&pair, &[], &slices(&right), &Options::default()).is_empty());
     }
 }

@@ -30,8 +30,6 @@ pub struct Stereo {
     pub sigma_px: f64,
     /// How far what both saw is from the epipolar lines, pixels: root mean square.
     pub epipolar_px: f64,
-    /// `left_from_target` of each view.
-    pub views: Vec<Pose>,
 }
 
 impl Stereo {
@@ -186,7 +184,6 @@ fn report(fitted: &Fitted<Bundle<'_>>, views: &[[Sighting; 2]]) -> Result<Stereo
         rms_px: fitted.rms_px(),
         sigma_px: fitted.sigma_px,
         epipolar_px: rms(squares.into_iter()),
-        views: bundle.first_from_target.clone(),
     })
 }
 

@@ -6,6 +6,7 @@
 
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
+use crate::camera::middle;
 use crate::{Camera, Pixel};
 
 /// Smallest singular value that counts, of the largest.
@@ -82,8 +83,7 @@ fn columns(h: &Matrix3<f64>) -> Option<[Vector3<f64>; 2]> {
 
 /// Cameras to start a search from, of pictures of this size, pixels: with a free centre, and with one in the middle.
 pub(crate) fn starts(homographies: &[Matrix3<f64>], size: [u32; 2]) -> Vec<Camera> {
-    let [width, height] = size.map(f64::from);
-    let (middle, unit) = (Pixel::new((width - 1.0) / 2.0, (height - 1.0) / 2.0), (width + height) / 4.0);
+    let (middle, unit) = (middle(size), f64::from(size[0] + size[1]) / 4.0);
     let even = Matrix3::new(unit, 0.0, middle.x, 0.0, unit, middle.y, 0.0, 0.0, 1.0);
     let Some(to_even) = even.try_inverse() else { return Vec::new() };
     let homographies: Vec<_> = homographies.iter().map(|h| to_even * h).collect();

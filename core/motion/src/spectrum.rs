@@ -224,12 +224,14 @@ fn hann(times_s: &[f64]) -> Vec<f64> {
     times_s.iter().map(|&t| phase(t).sin().powi(2)).collect()
 }
 
-/// The values less the straight line that fits them best.
-fn detrended(times_s: &[f64], mut values: Vec<f64>) -> Vec<f64> {
+/// The values less the straight line that fits them best; times are irregular, or one alone.
+#[must_use]
+pub fn detrended(times_s: &[f64], mut values: Vec<f64>) -> Vec<f64> {
     let n = values.len() as f64;
     let (mean_t, mean) = (times_s.iter().sum::<f64>() / n, values.iter().sum::<f64>() / n);
     let spread: f64 = times_s.iter().map(|t| (t - mean_t).powi(2)).sum();
-    let slope = times_s.iter().zip(&values).map(|(t, v)| (t - mean_t) * (v - mean)).sum::<f64>() / spread;
+    let along: f64 = times_s.iter().zip(&values).map(|(t, v)| (t - mean_t) * (v - mean)).sum();
+    let slope = if spread > 0.0 { along / spread } else { 0.0 };
     values.iter_mut().zip(times_s).for_each(|(v, t)| *v -= mean + slope * (t - mean_t));
     values
 }

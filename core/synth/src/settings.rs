@@ -14,7 +14,7 @@ pub struct Settings {
     pub height: u32,
     /// Frames, 2 to 20,000.
     pub n_frames: u32,
-    /// Frames a second, 10 to 1000: below 10 the fastest sway (4.9 Hz) would alias.
+    /// Frames a second, 10 to 1000: below 10 the fastest sway (4.9 Hz) would alias. What is carried may be filmed as slowly as 0.001.
     pub fps: f64,
     /// How hard the wind blows.
     pub level: Level,
@@ -50,18 +50,27 @@ impl Settings {
         Self { width: 960, height: 720, n_frames: 150, n_leaves: 2600, level, ..Self::default() }
     }
 
-    /// Checks every range.
+    /// Checks every range of a scene.
     pub(crate) fn check(&self) -> Result<(), SynthError> {
+        self.check_film()?;
+        if !(1..=20_000).contains(&self.n_leaves) {
+            return Err(SynthError::Leaves(self.n_leaves));
+        }
+        if !(10.0..=1000.0).contains(&self.fps) {
+            return Err(SynthError::Sways(self.fps));
+        }
+        Ok(())
+    }
+
+    /// Checks the ranges of what films, whatever moves before it.
+    pub(crate) fn check_film(&self) -> Result<(), SynthError> {
         if !(32..=8192).contains(&self.width) || !(32..=8192).contains(&self.height) {
             return Err(SynthError::Size { width: self.width, height: self.height });
         }
         if !(2..=20_000).contains(&self.n_frames) {
             return Err(SynthError::Frames(self.n_frames));
         }
-        if !(1..=20_000).contains(&self.n_leaves) {
-            return Err(SynthError::Leaves(self.n_leaves));
-        }
-        if !(10.0..=1000.0).contains(&self.fps) {
+        if !(1e-3..=1000.0).contains(&self.fps) {
             return Err(SynthError::Fps(self.fps));
         }
         if !(0.0..=50.0).contains(&self.noise) {
@@ -148,8 +157,11 @@ pub enum SynthError {
     #[error("wanted 1 to 20000 leaves, got {0}")]
     Leaves(u32),
     /// The rate is out of range or not a number.
-    #[error("wanted 10 to 1000 frames a second (below 10 the sways alias), got {0}")]
+    #[error("wanted 0.001 to 1000 frames a second, got {0}")]
     Fps(f64),
+    /// The rate is too slow for what sways.
+    #[error("wanted 10 to 1000 frames a second (below 10 the sways alias), got {0}")]
+    Sways(f64),
     /// The noise is out of range or not a number.
     #[error("wanted sensor noise of 0 to 50 levels, got {0}")]
     Noise(f64),

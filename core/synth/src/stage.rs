@@ -6,6 +6,7 @@ mod tests;
 
 use std::f64::consts::TAU;
 
+use honami_cameras::camera::middle;
 use honami_cameras::{Camera, Pair, Pixel, Place, Pose};
 use nalgebra::{Rotation3, Vector2, Vector3};
 use rand::SeedableRng;
@@ -39,14 +40,15 @@ pub struct Stage {
 const SAMPLES: usize = 4;
 
 impl Stage {
-    /// A stage of this size, number of frames and seed; of settings the plant's are not looked at.
+    /// A stage of this size, number of frames and seed; of settings the plant's are not looked at, so frames may be as
+    /// slow as one likes.
     ///
     /// # Errors
     /// [`SynthError`] for settings out of range.
     pub fn new(carried: Carried, settings: &Settings) -> Result<Self, SynthError> {
-        settings.check()?;
-        let (width, height) = (f64::from(settings.width), f64::from(settings.height));
-        let middle = Pixel::new((width - 1.0) / 2.0, (height - 1.0) / 2.0);
+        settings.check_film()?;
+        let width = f64::from(settings.width);
+        let middle = middle([settings.width, settings.height]);
         let pair = match carried {
             // Lenses such as webcams have, a hand's breadth apart.
             Carried::Board => {

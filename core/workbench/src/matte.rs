@@ -102,7 +102,7 @@ pub fn run(still: &Still, request: &MatteRequest, progress: &dyn Progress) -> Re
         }
         MarkSource::Painted(marks) | MarkSource::Carried { marks, .. } => marks.clone(),
     };
-    let mut go_on = |share: f64| progress.report((100.0 * share) as u64, 100, "matte") == Flow::Continue;
+    let mut go_on = |share: f64| progress.report((100.0 * share) as u64, 100, "per cent") == Flow::Continue;
     let matte = matte(&picture, &marks, &request.options, &mut go_on).map_err(of(&request.path))?;
     Ok(Matted { marks, parts: Parts::new(&matte, &request.parts), matte })
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use honami_cameras::clock::Offset;
 use honami_cameras::matching::{self, Match};
 use honami_cameras::together::{Placed, View, placed, sigma_px};
-use honami_cameras::{Pair, Pixel};
+use honami_cameras::{Camera, Pair, Pixel};
 use honami_model::clip::FrameTimes;
 use honami_model::edit::Transaction;
 use honami_model::provenance::{Provenance, Value};
@@ -108,6 +108,8 @@ pub struct Found {
     pub pairs: Vec<Paired>,
     /// Tracks of the left and of the right project without a partner.
     pub n_unmatched: [usize; 2],
+    /// Samples of the left and of the right project that are left out: they lie beyond what their camera's distortion can describe.
+    pub n_beyond: [usize; 2],
     /// How far the clocks are apart.
     pub offset: Offset,
     /// Standard deviation of one coordinate of a sample, pixels.
@@ -139,23 +141,28 @@ struct Side {
     times: FrameTimes,
     ids: Vec<TrackId>,
     seen: Vec<Vec<Option<Pixel>>>,
+    /// Samples that are left out: they lie beyond what the camera's distortion can describe.
+    n_beyond: usize,
 }
 
 impl Side {
-    fn of(project: &Project) -> Result<Self, WorkbenchError> {
+    fn of(project: &Project, camera: &Camera) -> Result<Self, WorkbenchError> {
         let times = project.clip().clip.times.clone();
-        let (mut ids, mut seen) = (Vec::new(), Vec::new());
+        let (mut ids, mut seen, mut n_beyond) = (Vec::new(), Vec::new(), 0);
         for (id, span) in project.shown_all()? {
-            let at = |frame| {
+            let mut at = |frame| {
                 let sample = span.get(frame).filter(|sample| sample.status.is_seen())?;
-                Some(Pixel::new(sample.x.into(), sample.y.into()))
+                let at = Pixel::new(sample.x.into(), sample.y.into());
+                let is_within = camera.undistort(&at).is_ok();
+                n_beyond += usize::from(!is_within);
+                is_within.then_some(at)
             };
-            seen.push((0..times.len()).map(at).collect());
+            seen.push((0..times.len()).map(&mut at).collect());
             ids.push(id);
         }
         match ids.is_empty() {
             true => Err(SpaceError::NoTracks { path: project.path().to_owned() }.into()),
-            false => Ok(Self { times, ids, seen }),
+            false => Ok(Self { times, ids, seen, n_beyond }),
         }
     }
 
@@ -181,7 +188,7 @@ pub fn prepare(left: &Project, right: &Project, request: SpaceRequest) -> Result
             return Err(SpaceError::Size { path, came, wanted, cameras }.into());
         }
     }
-    let sides = [Side::of(left)?, Side::of(right)?];
+    let sides = [Side::of(left, &pair.cameras[0])?, Side::of(right, &pair.cameras[1])?];
     let offset = match request.clocks {
         Clocks::Apart(offset) => offset,
         Clocks::BeginTogether => {
@@ -239,10 +246,10 @@ impl SpaceJob {
     /// Finds which tracks are one, and where they are; stopped, it keeps nothing.
     ///
     /// # Errors
-    /// [`SpaceError::NoPairs`] where no tracks are one or have no place together, [`WorkbenchError::Stopped`], and pixels that the
-    /// cameras' distortion does not reach.
+    /// [`SpaceError::NoPairs`] where no tracks are one or have no place together, [`WorkbenchError::Stopped`].
     pub fn run(self, progress: &dyn Progress) -> Result<SpaceDone, WorkbenchError> {
-        let (mut pairs, n_unmatched) = self.pairs()?;
+        let (mut pairs, n_unmatched) = self.pairs();
+        let n_beyond = self.sides.each_ref().map(|side| side.n_beyond);
         pairs.sort_by_key(|&([left, _], _)| left);
         let (mut tracks, mut told) = (Vec::new(), Vec::new());
         for (k, ([left, right], because)) in pairs.iter().enumerate() {
@@ -285,6 +292,7 @@ impl SpaceJob {
             id: SpaceId(0),
             pairs: told,
             n_unmatched,
+            n_beyond,
             offset: self.offset,
             sigma_px,
             residual_px,
@@ -296,8 +304,7 @@ impl SpaceJob {
 
 impl SpaceJob {
     /// Numbers of the tracks that are one, and why; and how many of either side are none.
-    #[expect(clippy::type_complexity, reason = "two answers of one search, used once")]
-    fn pairs(&self) -> Result<(Vec<([usize; 2], Because)>, [usize; 2]), WorkbenchError> {
+    fn pairs(&self) -> (Vec<([usize; 2], Because)>, [usize; 2]) {
         let mut pairs: Vec<([usize; 2], Because)> =
             self.named.iter().map(|&pair| (pair, Because::Named)).collect();
         let left_over = |side: usize| -> Vec<usize> {
@@ -319,14 +326,12 @@ impl SpaceJob {
             let options =
                 matching::Options { farthest_px: self.request.farthest_px, ..matching::Options::default() };
             let found = matching::matched(&self.pair, &left, &right, &options);
-            let found =
-                found.map_err(|source| SpaceError::Cameras { path: self.request.cameras.clone(), source })?;
             pairs.extend(
                 found.into_iter().map(|one| ([rest[0][one.left], rest[1][one.right]], Because::Moves(one))),
             );
         }
         let n_unmatched = [0, 1].map(|side| self.sides[side].ids.len() - pairs.len());
-        Ok((pairs, n_unmatched))
+        (pairs, n_unmatched)
     }
 }
 

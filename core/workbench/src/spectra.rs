@@ -17,7 +17,7 @@ pub use honami_motion::spectrum::Peak;
 use crate::densities::{self, Density, HalfPower, Pieces};
 use crate::error::WorkbenchError;
 use crate::scale::ScaleBar;
-use crate::sways::{self, Swing, Within};
+use crate::sways::{self, ABOUT, Swing, Within};
 
 /// How many times the noise around it the power of a peak of one track must be: foliage has broad peaks.
 pub(crate) const OVER_FLOOR: f64 = 3.0;
@@ -26,8 +26,6 @@ pub(crate) const OVER_FLOOR_OF_MANY: f64 = 1.5;
 
 /// Of more tracks than this some are taken for how they swing: a fit takes longer than a spectrum.
 const MOST_SWINGS: usize = 100;
-/// A swing lies within this factor of its peak.
-const ABOUT: f64 = 1.3;
 
 /// Which peaks are wanted.
 #[derive(Clone, Copy, Debug, PartialEq)]

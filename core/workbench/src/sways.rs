@@ -18,8 +18,8 @@ pub use table::{Kind, kind};
 
 /// Slower than so many times in the whole series is a drift.
 const LOWEST_CYCLES: f64 = 3.0;
-/// A peak of the density lies within this factor of its swing.
-const ABOUT: f64 = 1.3;
+/// A peak and its swing lie within this factor of one another.
+pub(crate) const ABOUT: f64 = 1.3;
 
 /// What of a record is looked at.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

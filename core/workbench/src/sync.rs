@@ -9,6 +9,7 @@ use honami_media::Media;
 use honami_model::clip::FrameTimes;
 use honami_model::picture::{Planes, Range};
 use honami_model::track::{Span, TrackId};
+use honami_motion::spectrum::detrended;
 use honami_store::Project;
 
 use crate::error::{SpaceError, WorkbenchError};
@@ -153,9 +154,10 @@ impl Course {
                 best.clone_from(&course);
             }
         }
-        best.right = without_drift(&best.times_s, &best.right);
-        best.down = without_drift(&best.times_s, &best.down);
-        best
+        // What creeps is alike at any offset.
+        let Self { times_s, right, down } = best;
+        let [right, down] = [right, down].map(|values| detrended(&times_s, values));
+        Self { times_s, right, down }
     }
 
     fn begun(time_s: f64) -> Self {
@@ -189,16 +191,6 @@ fn mean_step(spans: &[Arc<Span>], frame: u32) -> Option<[f64; 2]> {
         .collect();
     let mean = |axis: usize| steps.iter().map(|step| step[axis]).sum::<f64>() / steps.len() as f64;
     (!steps.is_empty()).then(|| [mean(0), mean(1)])
-}
-
-/// Without the straight line through all of it: what creeps is alike at any offset.
-fn without_drift(times_s: &[f64], values: &[f64]) -> Vec<f64> {
-    let n = times_s.len() as f64;
-    let [time, value] = [times_s, values].map(|of| of.iter().sum::<f64>() / n);
-    let spread: f64 = times_s.iter().map(|t| (t - time).powi(2)).sum();
-    let along: f64 = times_s.iter().zip(values).map(|(t, v)| (t - time) * (v - value)).sum();
-    let slope = if spread > 0.0 { along / spread } else { 0.0 };
-    times_s.iter().zip(values).map(|(t, v)| v - value - slope * (t - time)).collect()
 }
 
 /// What pixels' values say of light, for both meanings that they have.

@@ -142,9 +142,9 @@ fn carry(args: &Matte, every: u32, common: &Common) -> anyhow::Result<Answer> {
 
 /// What a project keeps.
 fn list(args: &Matte) -> anyhow::Result<Answer> {
-    let all = kept::all(&look(&args.picture_of)?)?;
-    let all: Vec<_> =
-        all.into_iter().filter(|one| args.frame.is_none_or(|frame| frame == one.frame)).collect();
+    let mut all = kept::all(&look(&args.picture_of)?)?;
+    let frames: Vec<u32> = all.iter().map(|one| one.frame).collect();
+    all.retain(|one| args.frame.is_none_or(|frame| frame == one.frame));
     let line = |one: &kept::Counting| {
         let n_pixels = one.parts.parts.len().max(1) as f64;
         let share = |part: &Part| {
@@ -154,9 +154,12 @@ fn list(args: &Matte) -> anyhow::Result<Answer> {
         let marks = one.provenance.params.get("marks").map_or_else(String::new, |marks| format!("  {marks}"));
         format!("frame {}  {}{marks}  {}", one.frame, shares.join(", "), one.provenance.date)
     };
-    let text = match &all[..] {
-        [] => "no matte is kept: features are looked for everywhere".to_owned(),
-        all => all.iter().map(line).collect::<Vec<_>>().join("\n"),
+    let text = match (&all[..], args.frame) {
+        ([], Some(frame)) if !frames.is_empty() => {
+            format!("no matte of frame {frame} is kept; there are those of {}", kept::frames(&frames))
+        }
+        ([], _) => "no matte is kept: features are looked for everywhere".to_owned(),
+        (all, _) => all.iter().map(line).collect::<Vec<_>>().join("\n"),
     };
     let entry = |one: &kept::Counting| {
         json!({

@@ -69,6 +69,14 @@ fn answer(found: &Found, how: &str, args: &Triangulate) -> Answer {
         text +=
             &format!("\nin {} the lines of sight do not meet before both cameras", counted(n_lost, "frame"));
     }
+    let [beyond_left, beyond_right] = found.n_beyond;
+    if beyond_left + beyond_right > 0 {
+        text += &format!(
+            "\nleft out: {} of the left tracks and {beyond_right} of the right ones lie beyond what the cameras' distortion can describe: \
+             calibrate with views that reach there",
+            counted(beyond_left, "sample")
+        );
+    }
     let doubts = found.pairs.iter().filter_map(|pair| doubt(pair, args.farthest));
     text.extend(doubts.map(|doubt| format!("\n{doubt}")));
     let pairs: Vec<_> = found.pairs.iter().map(entry).collect();
@@ -76,6 +84,7 @@ fn answer(found: &Found, how: &str, args: &Triangulate) -> Answer {
         "space": found.id,
         "pairs": pairs,
         "unmatched": { "left": alone_left, "right": alone_right },
+        "beyond": { "left": beyond_left, "right": beyond_right },
         "fixes": n_fixes,
         "offset_s": found.offset.seconds,
         "offset_error_s": found.offset.error_s,

@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use super::*;
+use crate::Pixel;
 use crate::staged::{LENS, Noise, SIZE, board, board_views, poses, seen};
 
 const EXACT: f64 = 0.0;
@@ -143,12 +144,23 @@ fn views_that_do_not_tell_are_named() {
             asides.iter().map(|&aside| seen(&camera, &stand(turn, aside), &board(), &mut noise)).collect();
         let error = calibrate(&board(), &views, SIZE, &Options::BOARD).map(|c| (c.camera, c.errors));
         assert!(matches!(error, Err(CameraError::Alike { .. })), "{turn:?}, {sigma} px: {error:?}");
+        let said = error.unwrap_err().to_string();
+        assert!(
+            !said.contains("inf") && (said.contains("at all") || said.contains("better than to")),
+            "{said}"
+        );
     }
     let views = board_views(&LENS, 3, &mut exact());
     assert_eq!(
         calibrate(&board(), &views[..1], SIZE, &Options::BOARD).unwrap_err(),
         CameraError::TooFewViews { wanted: 2, came: 1 }
     );
+    // Four corners tell two numbers a view, of nine.
+    let small = Target::board(2, 2, 25.0).unwrap();
+    let four = |pose: &Pose| seen(&LENS, pose, &small, &mut exact());
+    let few: Vec<_> = poses(4, [12.5, 12.5], 450.0, 60.0).iter().map(four).collect();
+    let error = calibrate(&small, &few, SIZE, &Options::BOARD).unwrap_err();
+    assert_eq!(error, CameraError::TooLittle { n_points: 16, n_views: 4, told: 8, wanted: 9 });
     let mut broken = views.clone();
     broken[2].truncate(9);
     let error = calibrate(&board(), &broken, SIZE, &Options::BOARD).unwrap_err();

@@ -35,6 +35,17 @@ fn a_disc_is_bright_where_its_middle_is_seen_and_dark_about_it() {
 }
 
 #[test]
+fn what_is_carried_may_be_filmed_slowly_and_what_sways_may_not() {
+    let settings = Settings { n_frames: 2, fps: 0.5, width: 64, height: 48, ..Settings::default() };
+    let stage = Stage::new(Carried::Board, &settings).unwrap();
+    assert_eq!(stage.render(0, 1).y.len(), 64 * 48);
+    let said = crate::Scene::new(&settings).unwrap_err().to_string();
+    assert!(said.contains("below 10 the sways alias"), "{said}");
+    let said = Stage::new(Carried::Board, &Settings { fps: 0.0, ..settings }).unwrap_err().to_string();
+    assert!(said.contains("0.001 to 1000 frames a second, got 0"), "{said}");
+}
+
+#[test]
 fn all_corners_of_the_board_are_before_both_cameras() {
     let stage = Stage::new(Carried::Board, &Settings { n_frames: 20, ..Settings::default() }).unwrap();
     for frame in 0..20 {

@@ -85,40 +85,14 @@ struct Contents {
 struct One {
     size: [u32; 2],
     #[serde(flatten)]
-    numbers: Numbers,
-}
-
-/// A camera whose distortion may be left out.
-#[derive(Deserialize)]
-struct Numbers {
-    fx: f64,
-    fy: f64,
-    cx: f64,
-    cy: f64,
-    #[serde(default)]
-    k1: f64,
-    #[serde(default)]
-    k2: f64,
-    #[serde(default)]
-    p1: f64,
-    #[serde(default)]
-    p2: f64,
-    #[serde(default)]
-    k3: f64,
-}
-
-impl Numbers {
-    fn camera(&self) -> Camera {
-        let Self { fx, fy, cx, cy, k1, k2, p1, p2, k3 } = *self;
-        Camera { fx, fy, cx, cy, k1, k2, p1, p2, k3 }
-    }
+    camera: Camera,
 }
 
 /// Both cameras fitted together; without numbers of their own those of each alone are meant.
 #[derive(Deserialize)]
 struct Together {
-    left: Option<Numbers>,
-    right: Option<Numbers>,
+    left: Option<Camera>,
+    right: Option<Camera>,
     turn_rad: [f64; 3],
     shift: [f64; 3],
     sigma_px: Option<f64>,
@@ -131,7 +105,7 @@ struct Together {
 pub fn read_each(path: &Path) -> Result<Vec<KnownCamera>, WorkbenchError> {
     let Contents { left, right, stereo, .. } = contents(path)?;
     let (left_too, right_too) = stereo.map_or((None, None), |stereo| (stereo.left, stereo.right));
-    let of = |alone: One, both: Option<Numbers>| (both.unwrap_or(alone.numbers).camera(), alone.size);
+    let of = |alone: One, both: Option<Camera>| (both.unwrap_or(alone.camera), alone.size);
     let each: Vec<_> =
         std::iter::once(of(left, left_too)).chain(right.map(|right| of(right, right_too))).collect();
     if each.iter().all(|(camera, _)| camera.is_sound()) { Ok(each) } else { Err(unsound(path).into()) }
@@ -160,8 +134,7 @@ pub fn read(path: &Path) -> Result<Known, WorkbenchError> {
         let why = "one camera alone; wanted are two and how they stand: `honami calibrate LEFT… --right RIGHT… --out`";
         return Err(CamerasError::File { path: path.to_owned(), why: why.to_owned() }.into());
     };
-    let cameras =
-        [stereo.left.unwrap_or(read.left.numbers).camera(), stereo.right.unwrap_or(right.numbers).camera()];
+    let cameras = [stereo.left.unwrap_or(read.left.camera), stereo.right.unwrap_or(right.camera)];
     let right_from_left = Pose::new(stereo.turn_rad.into(), stereo.shift.into());
     let stands = |v: &Vector3<f64>| v.iter().all(|c| c.is_finite()) && v.norm() > 0.0;
     if !cameras.iter().all(Camera::is_sound) || !stands(&right_from_left.translation) {

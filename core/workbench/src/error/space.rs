@@ -53,14 +53,6 @@ pub enum SpaceError {
         /// The file of cameras.
         cameras: PathBuf,
     },
-    /// Cameras that do not fit what was seen.
-    #[error("{source}: {}", path.display())]
-    Cameras {
-        /// The file of cameras.
-        path: PathBuf,
-        /// Why.
-        source: CameraError,
-    },
     /// No two tracks are one feature.
     #[error(
         "none of {} left tracks is one of {} right ones: names that are the same in both say so, as does movement no farther than \

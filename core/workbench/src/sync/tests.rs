@@ -26,7 +26,7 @@ fn a_track_that_comes_or_goes_is_no_movement_and_a_gap_ends_it() {
     let course = Course::of(&times, &[span(0, &early), span(4, &late)]);
     assert_eq!(course.times_s, times.as_slice());
     let wanted: Vec<f64> = (0..30).map(|frame| f64::from(sway(frame))).collect();
-    let wanted = without_drift(times.as_slice(), &wanted);
+    let wanted = detrended(times.as_slice(), wanted);
     for (k, want) in wanted.iter().enumerate() {
         assert!((course.right[k] - want).abs() < 1e-4 && (course.down[k] + want).abs() < 1e-4, "frame {k}");
     }

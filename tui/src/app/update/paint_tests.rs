@@ -36,7 +36,7 @@ fn keys_alone_paint_find_and_keep() {
 
 /// The matte is found while the terminal waits, as a job.
 fn job(state: &mut State) {
-    let (plugin, what) = ("the matte".to_owned(), "matte".to_owned());
+    let (plugin, what) = ("the matte".to_owned(), "per cent".to_owned());
     let (done, since) = ((0, 100), Duration::ZERO);
     let (first, keeps_frames, is_stopping, frame, quiet) = (0, false, false, None, None);
     let job = Job { plugin, what, done, first, since, keeps_frames, is_stopping, frame, quiet };
