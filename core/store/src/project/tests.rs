@@ -364,7 +364,7 @@ fn a_seat_is_kept_without_an_edit_and_a_project_of_before_gets_one() {
     // As the first schema was.
     let conn = Connection::open(bench.path()).unwrap();
     conn.execute_batch(
-        "DROP TABLE space; DROP TABLE matte; DROP TABLE seam; DROP TABLE seat; ALTER TABLE run DROP COLUMN request; PRAGMA user_version = 1",
+        "DROP TABLE step; DROP TABLE space; DROP TABLE matte; DROP TABLE seam; DROP TABLE seat; ALTER TABLE run DROP COLUMN request; PRAGMA user_version = 1",
     )
     .unwrap();
     drop(conn);

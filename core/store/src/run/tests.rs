@@ -253,7 +253,7 @@ fn every_frame_can_be_told_the_build_that_tracked_it_and_seams_of_before_have_no
     // As the schema before was.
     let conn = Connection::open(bench.path()).unwrap();
     conn.execute_batch(
-        "DROP TABLE space; DROP TABLE matte; ALTER TABLE seam DROP COLUMN plugin_version; ALTER TABLE seam DROP COLUMN plugin_sha256;
+        "DROP TABLE step; DROP TABLE space; DROP TABLE matte; ALTER TABLE seam DROP COLUMN plugin_version; ALTER TABLE seam DROP COLUMN plugin_sha256;
          ALTER TABLE run DROP COLUMN request;
          PRAGMA user_version = 3",
     )
