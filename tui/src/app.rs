@@ -23,6 +23,7 @@ mod fuzzy;
 pub mod groups;
 mod growing;
 mod history;
+pub mod in_space;
 mod jobs;
 pub mod keymap;
 mod labels;

@@ -88,8 +88,13 @@ impl Project {
     /// # Errors
     /// [`StoreError::NoSuchSpace`], or what SQLite met.
     pub fn is_space_stale(&self, id: SpaceId) -> Result<Option<Stale>, StoreError> {
-        let Space { provenance, tracks } = self.space(id)?;
-        let used = tracks.iter().map(|track| track.track).collect();
+        // Fixes are many, and not asked for.
+        let sql = "SELECT tracks, provenance FROM space WHERE id = ?1";
+        let mut statement = self.conn.prepare_cached(sql)?;
+        let pair = |row: &Row<'_>| Ok::<(Pairs, Provenance), _>((from_json(row, 0)?, from_json(row, 1)?));
+        let found = statement.query_row([id.0], |row| Ok(pair(row))).optional()?;
+        let (pairs, provenance) = found.unwrap_or(Err(StoreError::NoSuchSpace(id)))?;
+        let used = pairs.iter().map(|(track, ..)| *track).collect();
         self.changed_since(EntryId(provenance.input_revision), &used)
     }
 

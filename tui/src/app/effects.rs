@@ -31,6 +31,7 @@ use super::command_log::{self, Origin};
 use super::correcting::{Answer, Ask};
 use super::dense::Measuring;
 use super::groups::Groups;
+use super::in_space::InSpace;
 use super::jobs::{Done, Running, Work};
 use super::offering::Offering;
 use super::rebuilding::Rebuilding;
@@ -56,6 +57,8 @@ pub(super) struct World {
     /// Measures dense motion, once that was asked for.
     measuring: Option<Measuring>,
     rows: BTreeMap<TrackId, TrackRow>,
+    /// The tracks in space that the state was told of.
+    space: Option<InSpace>,
     /// What plugins were told last.
     used: Used,
     /// Entries of the undo tree that the state has been told of.
@@ -95,6 +98,7 @@ impl World {
             reviewing,
             measuring,
             rows,
+            space: None,
             used: Used::default(),
             n_told: 0,
             n_before,
@@ -673,11 +677,14 @@ impl World {
         let told = Fact::History(new, history.head());
         let hand = Hand::of(project.document());
         let scale = Fact::Scale(project.document().scale());
+        self.space = InSpace::of(project, self.space.take())?;
+        let space = Fact::Space(self.space.clone());
         let mut facts = vec![
             Fact::Tracks(rows),
             Fact::Groups(groups),
             Fact::Hand(hand),
             scale,
+            space,
             Fact::Tracker(tracker),
             told,
         ];

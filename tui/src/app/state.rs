@@ -17,6 +17,7 @@ use super::dense::Dense;
 use super::form::{Form, Plugin, Used};
 use super::groups::Groups;
 use super::history::Tree;
+use super::in_space::InSpace;
 use super::keymap::KeyMap;
 use super::lesson::Lesson;
 use super::menu::Menu;
@@ -83,6 +84,8 @@ pub struct State {
     pub before: Option<Box<Before>>,
     /// The shown clustering.
     pub groups: Option<Groups>,
+    /// Tracks in space, as two cameras see them.
+    pub space: Option<InSpace>,
     /// The scale bar that says what a pixel is.
     pub scale: Option<ScaleBar>,
     /// The tracker whose run is on top, with its version.
@@ -350,6 +353,7 @@ impl State {
             looked: Looked::default(),
             before: None,
             groups: None,
+            space: None,
             scale: None,
             tracker: None,
             plugins: Vec::new(),

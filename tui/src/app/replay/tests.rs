@@ -101,6 +101,8 @@ fn a_session_done_again_makes_the_same_document() {
         "a Enter 8 . m 3 l Enter 4 , | m 2 k Tab Enter T l Esc Esc m 2 j Enter u",
         "a Enter G p 3 l H Enter G R u u Ctrl-r G p Esc v k",
         "a Enter g l a m l Enter ? Esc g k Enter m l Enter 9 9 g f d d u",
+        "a Enter e b z Enter Z 2 0 h Enter 5 0 c m Enter Enter u Ctrl-r 3 . d b u",
+        "e b z press:30,8 press:60,12 5 Enter c m Enter Backspace Backspace m Enter Enter e b Enter Esc u Ctrl-r d b",
     ] {
         let bench = Bench::new();
         let log = bench.record(keys);

@@ -17,6 +17,7 @@ use crate::app::dense::FieldOf;
 use crate::app::files::Listing;
 use crate::app::form::{Plugin, Used};
 use crate::app::groups::Groups;
+use crate::app::in_space::InSpace;
 use crate::app::menu::Menu;
 use crate::app::plotted::Subject;
 use crate::app::prints::Print;
@@ -40,6 +41,8 @@ pub enum Fact {
     Groups(Option<Box<Groups>>),
     /// This was done by hand to the skeleton of the shown groups.
     Hand(Hand),
+    /// These tracks in space are kept now.
+    Space(Option<InSpace>),
     /// This scale bar is kept now.
     Scale(Option<ScaleBar>),
     /// The tracker whose run is on top.
@@ -127,6 +130,7 @@ pub(super) fn on_fact(state: &mut State, fact: Fact) {
         Fact::Groups(groups) => on_groups(state, groups.map(|groups| *groups)),
         Fact::Plots(subject, plots) => state.plotted.plots = Some((subject, plots)),
         Fact::Hand(hand) => skeleton::on_hand(state, hand),
+        Fact::Space(space) => state.space = space,
         Fact::Scale(bar) => state.scale = bar,
         Fact::Tracker(tracker) => state.tracker = tracker,
         Fact::Placed(track) => {

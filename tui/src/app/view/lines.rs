@@ -2,6 +2,7 @@
 
 mod paint;
 mod scale;
+mod space;
 
 use std::ops::{Range, RangeInclusive};
 
@@ -245,6 +246,7 @@ fn words(state: &State, row: &TrackRow) -> Vec<String> {
             words.extend(quality.ncc.map(ncc_words));
         }
     }
+    words.extend(space::words(state, row));
     words
 }
 

@@ -1,8 +1,9 @@
-//! Screens of scale bars: while one is set, what it says, and as it is kept.
+//! Screens of scale bars: while one is set, what it says, and as it is kept; and of tracks in space.
 
 use honami_workbench::scale::ScaleBar;
 
 use super::*;
+use crate::app::in_space::tests::in_space;
 
 #[test]
 fn screens_of_scale_bars() {
@@ -28,4 +29,20 @@ fn screens_of_scale_bars() {
         kept(state);
         state.mono = true;
     });
+}
+
+/// What two cameras see of a track is in its line.
+#[test]
+fn a_track_in_space_says_how_far_away_it_is() {
+    let (low, small, large) = ((40, 12), (80, 24), (120, 40));
+    let space = |is_stale| {
+        move |state: &mut State| {
+            update(state, Msg::Fact(Fact::Space(Some(in_space(is_stale)))));
+            state.review = Default::default();
+        }
+    };
+    check("space_80x24", small, "", space(false));
+    check("space_stale_120x40", large, "", space(true));
+    check("space_elsewhere_80x24", small, ".  1 0 .", space(false));
+    check("space_40x12", low, "", space(false));
 }
