@@ -37,10 +37,16 @@ fn opencvs_pairs_give_opencvs_numbers() {
     is_near(&found["by_squares"], "rms", 0.178, 0.01);
     assert_eq!(found["views"].as_array().unwrap().len(), 13);
     assert_eq!(found["left_out"], Value::Array(Vec::new()));
+    assert_eq!(found["views"][12]["picture"], "left14.jpg");
     let kept: Value =
         serde_json::from_str(&std::fs::read_to_string(bench.path("cameras.json")).unwrap()).unwrap();
     assert_eq!(kept["honami"], "cameras");
     assert_eq!(kept["stereo"], found["stereo"]);
+    // What they were made from: names without folders, and hashes.
+    let made = &kept["provenance"];
+    assert_eq!((&made["what"], &made["params"]["board"]), (&"calibrate".into(), &"9x6".into()));
+    assert!(made["params"]["right"].as_str().unwrap().starts_with("right01.jpg, right02.jpg"), "{made}");
+    assert_eq!(made["params"]["left_sha256"].as_str().unwrap().len(), 64);
     let found = bench.run(args(&["--window", "squares"])).json();
     is_near(&found, "fx", 533.0, 1.0);
     is_near(&found, "rms", 0.178, 0.01);
@@ -94,6 +100,13 @@ fn a_board_that_was_filmed_gives_the_cameras_that_filmed_it() {
     }
     assert_eq!(found["unit"], "mm");
     assert_eq!(found["views"].as_array().unwrap().len(), 20);
+    // Some of them, that differ most, tell nearly as much; what is held stays.
+    let few = bench.json(&format!("{line} --views 12 --hold k3,tangential"));
+    are_as_filmed(&bench, &few, "board", 1e-3, 5e-3);
+    assert_eq!((few["views"].as_array().unwrap().len(), &few["shown"]), (12, &20.into()));
+    assert_eq!((&few["k3"], &few["errors"]["p1"]), (&0.0.into(), &0.0.into()));
+    let text = bench.text(&format!("{line} --views 12"));
+    assert!(text.contains("left: 12 of 20 views of the target"), "{text}");
 }
 
 #[test]
@@ -117,6 +130,9 @@ fn bars_that_were_tracked_give_the_cameras_that_filmed_them() {
     let found =
         bench.json("calibrate left.honami --right right.honami --rig bars/bars.toml --out found.json");
     are_as_filmed(&bench, &found, "bars", 1.0, 0.01);
+    let n_middles = |key: &str| found["middles"][key].as_u64().unwrap();
+    assert!(n_middles("measured") > 400 && n_middles("tracked") < 100, "{}", found["middles"]);
+    assert_eq!(found["provenance"]["params"]["targets"], "bars.toml");
     // With numbers that are known, from one file or from two, only how they stand is looked for.
     let line = "calibrate left.honami --right right.honami --rig bars/bars.toml --known";
     let known = bench.json(&format!("{line} bars/cameras.json"));

@@ -33,6 +33,8 @@ const CASES: &[Case] = &[
     ("calibrate clip.y4m --board 9", USAGE, &["inner corners as CxR", "got 9"]),
     ("calibrate clip.y4m --square 0", USAGE, &["a length above 0 such as 25mm", "got 0"]),
     ("calibrate clip.y4m --square 25in", USAGE, &["a length above 0 such as 25mm", "got 25in"]),
+    ("calibrate clip.y4m --hold k2", USAGE, &["wanted k3, tangential, distortion, centre, square", "got k2"]),
+    ("calibrate clip.y4m --views 0", USAGE, &["1 to 10000 views", "got 0"]),
     ("calibrate clip.y4m --window 0", USAGE, &["pixels, 1 to 100, or squares", "got 0"]),
     ("calibrate clip.y4m", FAILED, &["none of ", "shows the whole target", "of the first: ", "9 by 6"]),
     ("calibrate a.honami b.honami --rig bars.toml", USAGE, &["one project a camera"]),

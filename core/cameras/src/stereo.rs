@@ -66,7 +66,20 @@ pub fn stereo(
         let one = |source| CameraError::One { camera: ["left", "right"][camera], source: Box::new(source) };
         calibrate(target, &its, sizes[camera], options).map_err(one)
     };
-    let cameras = [alone(0)?.camera, alone(1)?.camera];
+    from_cameras(target, views, sizes, [alone(0)?.camera, alone(1)?.camera], options)
+}
+
+/// The same of cameras that have been calibrated, each alone by all that it saw.
+///
+/// # Errors
+/// As [`stereo`].
+pub fn from_cameras(
+    target: &Target,
+    views: &[[Sighting; 2]],
+    sizes: [[u32; 2]; 2],
+    cameras: [crate::Camera; 2],
+    options: &Options,
+) -> Result<Stereo, CameraError> {
     let lists = lists(views);
     let fitted = together(target, &lists, cameras.map(|camera| (camera, options.model)), options.loss)?;
     for (camera, size) in sizes.into_iter().enumerate() {

@@ -45,6 +45,11 @@ pub(crate) fn own(
     params: BTreeMap<String, Value>,
     sha256: String,
 ) -> Provenance {
+    Provenance { input_revision: project.revision().0, ..alone(what, params, sha256) }
+}
+
+/// The same of what no project has to do with.
+pub(crate) fn alone(what: &str, params: BTreeMap<String, Value>, sha256: String) -> Provenance {
     Provenance {
         what: what.to_owned(),
         plugin_id: what.to_owned(),
@@ -53,7 +58,7 @@ pub(crate) fn own(
         abi: (0, 0),
         params,
         seed: SEED,
-        input_revision: project.revision().0,
+        input_revision: 0,
         sandbox: "in process".to_owned(),
         simd: "none".to_owned(),
         date: honami_store::now(),

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use honami_workbench::calibrate::{self, Calibrated, Cameras, Filmed, KnownCamera, file, rig};
+use honami_workbench::calibrate::{self, Calibrated, Cameras, Filmed, KnownCamera, Tracked, file, rig};
 use honami_workbench::cameras::Stereo;
 use honami_workbench::cameras::camera::NUMBERS;
 use honami_workbench::session::{Session, SessionOptions};
@@ -21,7 +21,14 @@ pub(super) fn calibrate(args: &Calibrate, common: &Common) -> anyhow::Result<Ans
             })?;
             let rig = rig::read(path)?;
             let right = args.right.first().map(|path| opened(path, common)).transpose()?;
-            calibrate::by_rig(&opened(&args.images[0], common)?, right.as_ref(), &rig, known(&args.known)?)?
+            let tracked = Tracked {
+                left: &opened(&args.images[0], common)?,
+                right: right.as_ref(),
+                rig: &rig,
+                known: known(&args.known)?,
+                n_views: args.views,
+            };
+            calibrate::by_rig(&tracked, &report::Bar::with(common))?
         }
         None => calibrate::by_board(&filmed(args), &report::Bar::with(common))?,
     };
@@ -60,6 +67,8 @@ fn filmed(args: &Calibrate) -> Filmed {
         square: args.square.value,
         unit: args.square.unit,
         window: args.window,
+        held: args.hold.clone(),
+        n_views: args.views,
     }
 }
 
@@ -83,8 +92,11 @@ fn describe(cameras: &Cameras) -> Answer {
 }
 
 fn say(text: &mut String, side: &str, calibrated: &Calibrated) {
-    let Calibrated { calibration, shown, left_out, .. } = calibrated;
-    let n = shown.len();
+    /// More pictures than these are not named.
+    const MOST_NAMED: usize = 6;
+    let Calibrated { calibration, shown, n_shown, left_out, middles, .. } = calibrated;
+    let n =
+        if shown.len() < *n_shown { format!("{} of {n_shown}", shown.len()) } else { n_shown.to_string() };
     *text += &format!("{side}{n} views of the target, rms {:.3} px", calibration.rms_px);
     let values = calibration.camera.numbers().into_iter().zip(calibration.errors);
     let mut rows = vec![["", "", "±"].map(str::to_owned).to_vec()];
@@ -99,7 +111,13 @@ fn say(text: &mut String, side: &str, calibrated: &Calibrated) {
     if let Some((view, name)) = worst {
         *text += &format!("worst: {name}, rms {:.3} px, {:.2} px at most\n", view.rms_px, view.worst_px);
     }
-    left_out.iter().for_each(|(name, why)| *text += &format!("left out: {name}: {why}\n"));
+    if let Some([measured, tracked]) = middles {
+        *text += &format!("middles of targets: {measured} measured, {tracked} as the tracks have them\n");
+    }
+    left_out.iter().take(MOST_NAMED).for_each(|(name, why)| *text += &format!("left out: {name}: {why}\n"));
+    if left_out.len() > MOST_NAMED {
+        *text += &format!("left out: {} more (--json names them)\n", left_out.len() - MOST_NAMED);
+    }
 }
 
 fn say_pair(text: &mut String, stereo: &Stereo, unit: &str) {

@@ -178,6 +178,7 @@ fn headed(json: &Value) -> String {
 #[must_use]
 pub fn json(cameras: &Cameras) -> Value {
     let mut json = one(&cameras.left);
+    json["provenance"] = json!(cameras.provenance);
     if let Some(unit) = cameras.unit {
         json["unit"] = json!(unit);
     }
@@ -206,6 +207,10 @@ fn one(calibrated: &Calibrated) -> Value {
     json["views"] = views
         .map(|(view, name)| json!({ "picture": name, "rms": view.rms_px, "worst_px": view.worst_px }))
         .collect();
+    json["shown"] = json!(calibrated.n_shown);
+    if let Some([measured, tracked]) = calibrated.middles {
+        json["middles"] = json!({ "measured": measured, "tracked": tracked });
+    }
     let left_out = calibrated.left_out.iter();
     json["left_out"] = left_out.map(|(name, why)| json!({ "picture": name, "why": why })).collect();
     json

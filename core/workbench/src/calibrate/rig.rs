@@ -13,11 +13,13 @@ use honami_store::Project;
 use honami_vision::meeting::middle;
 use serde::Deserialize;
 
-use super::{Side, Unit, View};
+use super::Unit;
+use super::side::{Side, Source, View, file_name};
 use crate::error::{CamerasError, WorkbenchError};
+use crate::progress::{Flow, Progress};
 
 /// More views than these add little: targets that are carried about stand still from frame to frame.
-const MOST_VIEWS: usize = 100;
+pub(super) const MOST_VIEWS: usize = 100;
 /// A view with fewer targets says nothing of how they stand.
 const FEWEST: usize = 4;
 
@@ -32,6 +34,10 @@ pub struct Rig {
     pub unit: Option<Unit>,
     /// Of round targets how wide they are: their middles are looked for in every picture that is used, about the tracks.
     pub diameter: Option<f64>,
+    /// The name of the file.
+    pub name: String,
+    /// SHA-256 of the file, hexadecimal.
+    pub sha256: String,
 }
 
 #[derive(Deserialize)]
@@ -71,7 +77,8 @@ pub fn read(path: &Path) -> Result<Rig, WorkbenchError> {
         return Err(wrong("the diameter of targets must be above 0".to_owned()).into());
     }
     let target = Target::new(targets, true).map_err(|error| wrong(error.to_string()))?;
-    Ok(Rig { target, names, unit, diameter })
+    let sha256 = honami_media::sha256_of_file(path)?;
+    Ok(Rig { target, names, unit, diameter, name: file_name(path), sha256 })
 }
 
 /// What a project's tracks saw of the targets: one view for each frame, left empty where fewer than four are seen.
@@ -93,7 +100,12 @@ pub(super) fn seen(project: &Project, rig: &Rig) -> Result<Side, WorkbenchError>
         };
         View { frame, name: format!("frame {frame}"), seen: sighting }
     });
-    Ok(Side { size: [clip.width, clip.height], views: views.collect() })
+    let source = Source {
+        name: file_name(project.path()),
+        sha256: project.clip().sha256.clone(),
+        revision: Some(project.revision().0),
+    };
+    Ok(Side::new([clip.width, clip.height], views.collect(), source))
 }
 
 /// The track of each target.
@@ -126,30 +138,40 @@ fn followed<'a>(
 }
 
 /// Of the moments that all cameras filmed few enough, evenly in time, in which any saw the targets.
-pub(super) fn thinned(sides: &mut [Side]) {
+pub(super) fn thinned(sides: &mut [Side], n_most: usize) {
     let n = sides.iter().map(|side| side.views.len()).min().unwrap_or(0);
     let is_seen = |view: usize| sides.iter().any(|side| side.views[view].seen.is_ok());
     let seen: Vec<usize> = (0..n).filter(|&view| is_seen(view)).collect();
-    let n_kept = seen.len().min(MOST_VIEWS);
+    let n_kept = seen.len().min(n_most);
     let kept: BTreeSet<usize> = (0..n_kept).map(|k| seen[k * seen.len() / n_kept]).collect();
-    for side in sides {
-        side.views.retain(|view| kept.contains(&(view.frame as usize)));
-    }
+    sides.iter_mut().for_each(|side| side.keep(&kept));
 }
 
-/// The middles of round targets in place of where tracks have them.
-pub(super) fn refined(side: &mut Side, rig: &Rig, media: &Media) -> Result<(), WorkbenchError> {
+/// The middles of round targets in place of where tracks have them, and how many there were of either.
+pub(super) fn refined(
+    side: &mut Side,
+    rig: &Rig,
+    media: &Media,
+    progress: &dyn Progress,
+) -> Result<(), WorkbenchError> {
     let Some(diameter) = rig.diameter else { return Ok(()) };
-    for View { frame, seen, .. } in &mut side.views {
+    let (mut n_measured, mut n_targets, n_views) = (0, 0, side.views.len() as u64);
+    for (k, View { frame, seen, .. }) in (0..).zip(&mut side.views) {
+        if progress.report(k, n_views, "picture") == Flow::Stop {
+            return Err(WorkbenchError::Stopped);
+        }
         let Ok(sighting) = seen else { continue };
+        n_targets += sighting.len();
         let Some(widths) = widths(sighting, rig, diameter) else { continue };
         let picture = media.frame(*frame)?;
         for ((_, at), wide) in sighting.iter_mut().zip(widths) {
             if let Some(found) = middle(&picture.planes().y, (*at).into(), wide / 2.0) {
                 *at = found.into();
+                n_measured += 1;
             }
         }
     }
+    side.middles = Some([n_measured, n_targets - n_measured]);
     Ok(())
 }
 

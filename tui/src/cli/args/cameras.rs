@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
-use honami_workbench::calibrate::{Board, Window};
+use honami_workbench::calibrate::{Board, Held, Window};
 
 use crate::scale::Length;
 
@@ -31,8 +31,14 @@ pub(in crate::cli) struct Calibrate {
     /// How much around a corner is looked at: so many pixels each way, OpenCV's habit, or `squares`: what belongs to it.
     #[arg(long, value_name = "PX|squares", default_value = "11", value_parser = window)]
     pub(in crate::cli) window: Window,
+    /// Numbers that are not looked for, where views tell too little: k3, tangential (p1, p2), distortion (all), centre, square (fx is fy).
+    #[arg(long, value_name = "NUMBERS", value_delimiter = ',')]
+    pub(in crate::cli) hold: Vec<Held>,
+    /// Fit so many views at most, those that differ most (default: 40 of a board, 100 of bars, evenly in time).
+    #[arg(long, value_name = "N", value_parser = views)]
+    pub(in crate::cli) views: Option<usize>,
     /// Targets on bars or another plane, as this file places them: the projects' tracks are what the cameras saw of them.
-    #[arg(long, value_name = "TOML", conflicts_with_all = ["board", "square", "window"])]
+    #[arg(long, value_name = "TOML", conflicts_with_all = ["board", "square", "window", "hold"])]
     pub(in crate::cli) rig: Option<PathBuf>,
     /// With `--rig`, both cameras' own numbers are known, from files that `--out` wrote: only how they stand is looked for.
     #[arg(long, value_name = "JSON", num_args = 1..=2, requires = "rig", requires = "right")]
@@ -66,6 +72,11 @@ fn window(text: &str) -> Result<Window, String> {
         (_, Ok(radius @ 1..=100)) => Ok(Window::Radius(radius)),
         _ => Err(format!("wanted pixels, 1 to 100, or squares, got {text}")),
     }
+}
+
+fn views(text: &str) -> Result<usize, String> {
+    let n = text.parse().ok().filter(|n| (1..=10_000).contains(n));
+    n.ok_or_else(|| format!("wanted 1 to 10000 views, got {text}"))
 }
 
 /// What `synth` has carried before cameras.
