@@ -5,12 +5,12 @@ use std::fs;
 use anyhow::Context as _;
 
 use crate::shell::{Step, cargo, target_dir};
-use crate::{BUILD, accuracy, forest};
+use crate::{BUILD, accuracy, forest, recipes};
 
 /// Name, what it measures, and how to run it.
 type Bench = (&'static str, &'static str, fn(&[&str]) -> anyhow::Result<()>);
 
-const BENCHES: [Bench; 19] = [
+const BENCHES: [Bench; 20] = [
     ("encode", "the encoder's time, bytes and likeness: `bench encode [BYTES] [CLIP…]`", encode),
     ("trackers", "KLT against OpenCV's calcOpticalFlowPyrLK, same frames, alternating", trackers),
     ("box", "box matching against OpenCV's matchTemplate: `bench box [CLIP…]`", box_matching),
@@ -51,6 +51,11 @@ const BENCHES: [Bench; 19] = [
     ),
     ("correct", "what a correction on a track of 300 frames takes, a row a model", correct),
     ("matting", "mattes beside PyMatting's, in turns: `bench matting [WxH… | PICTURE SCRIBBLES]`", matting),
+    (
+        "recipes",
+        "many short clips, one and two at a time, and what each costs beside its steps: `bench recipes [CLIPS]`",
+        recipes::run,
+    ),
     ("robust", "mean, median and mode of displacements of which a part moves another way", robust),
     (
         "plugins",

@@ -6,6 +6,7 @@ mod bench;
 mod forest;
 mod opencv;
 mod peers;
+mod recipes;
 mod shell;
 mod system;
 mod wan;

@@ -21,6 +21,9 @@ use super::plan::{Clip, plan};
 use super::told::{Fate, Shown, planned, summary};
 use super::{Recipe, plugins};
 
+/// How many threads a process may have: whoever has set it means it for each clip.
+const THREADS: &str = "RAYON_NUM_THREADS";
+
 /// The clips that were named, in their order, with their folders.
 pub(super) fn clips(named: &[String], into: &Path) -> anyhow::Result<Vec<Clip>> {
     let mut seen: BTreeMap<String, PathBuf> = BTreeMap::new();
@@ -220,7 +223,9 @@ impl Crew<'_> {
         let mut named = std::ffi::OsString::from(format!("{}=", clip.name));
         named.push(&clip.path);
         command.arg("--").arg(named);
-        command.env("RAYON_NUM_THREADS", self.n_threads.to_string());
+        if std::env::var_os(THREADS).is_none() {
+            command.env(THREADS, self.n_threads.to_string());
+        }
         // In a group of its own: Ctrl-C is for this process, which tells the others.
         command.process_group(0).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
         command.spawn().with_context(|| format!("cannot start {}", self.program.display()))
