@@ -165,4 +165,27 @@ fn the_recipe_of_a_project_makes_it_again() {
     assert!(tables("p.honami") == tables("out/p/p.honami"));
     // Of a project that a recipe has made it is that recipe.
     assert_eq!(bench.text("recipe save out/p/p.honami"), fs::read_to_string(bench.path("s.toml")).unwrap());
+    for project in ["p.honami", "out/p/p.honami"] {
+        let again = bench.json(&format!("rerun {project}"));
+        assert_eq!((&again["same"], &again["runs"][0]["moved"]), (&true.into(), &0.into()), "{again}");
+    }
+}
+
+#[test]
+fn a_project_that_does_not_repeat_says_how_far_it_is_off() {
+    let bench = bench();
+    bench.json("run r.toml c1.y4m --into out");
+    let again = bench.json("rerun out/c1/c1.honami");
+    let files = again["files"].as_array().unwrap();
+    assert!(files.len() == 3 && files.iter().all(|file| file["same"] == true), "{again}");
+    // As if another machine had tracked it: the clip is another, and its project says it were this one.
+    let database = rusqlite::Connection::open(bench.path("out/c1/c1.honami")).unwrap();
+    let line = "track --with klt --set max_features=30 --set radius=6";
+    assert_eq!(database.execute("UPDATE step SET line = ?1 WHERE id = 1", [line]).unwrap(), 1);
+    let ran = bench.line("rerun out/c1/c1.honami");
+    assert_eq!(ran.code, Some(1), "{ran:?}");
+    assert!(
+        ran.stdout.contains(" lie elsewhere, at most ") && ran.stdout.ends_with("it differs\n"),
+        "{ran:?}"
+    );
 }

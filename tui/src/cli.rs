@@ -222,6 +222,7 @@ fn run(command: Command, common: &Common) -> anyhow::Result<Outcome> {
         Command::Plugin(args) => return help::plugin(&args, common),
         Command::Run(args) if args.alone => return recipe::alone::follow(&args, common).map(Outcome::Exit),
         Command::Run(args) => recipe::many::run(&args, common)?,
+        Command::Rerun(args) => recipe::rerun(&args.project, common)?,
         Command::Recipe(args::recipe::Recipe::Save { project, out }) => {
             recipe::save(&project, out.as_deref())?
         }

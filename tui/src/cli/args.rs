@@ -130,6 +130,10 @@ pub(super) enum Command {
     /// the project was edited since, or when what it wrote is gone. A clip that fails holds up no other. Ctrl-C ends it, and the
     /// same line goes on. Exit status 1: a clip has failed, or it was stopped. docs/recipes.md has more.
     Run(recipe::Run),
+    /// Make a project again from its recipe, in a folder for the time being, and say what differs: its runs sample by sample, its
+    /// hierarchy of groups, and the files that its steps wrote. What was done by hand is not compared. Exit status 1: it
+    /// differs.
+    Rerun(Project),
     /// Recipes, from projects.
     #[command(subcommand)]
     Recipe(recipe::Recipe),

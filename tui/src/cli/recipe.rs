@@ -3,6 +3,7 @@
 pub(super) mod alone;
 pub(super) mod many;
 pub(super) mod plan;
+mod rerun;
 mod save;
 mod told;
 
@@ -15,6 +16,7 @@ use serde::Deserialize;
 use super::args::{Cli, Command};
 use super::{Usage, want};
 
+pub(super) use rerun::rerun;
 pub(super) use save::save;
 
 /// What may be a step: it works on a project, or writes what it has found.

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use honami_model::brief::counted;
+use honami_model::document::RunId;
 use honami_model::provenance::Provenance;
 use honami_workbench::plugins::{Kind, Registry, SearchPath, Values};
 use honami_workbench::store::Project;
@@ -12,33 +13,47 @@ use serde_json::json;
 
 use super::super::{Answer, look, want};
 
+/// What a project was made by.
+pub(super) struct Made {
+    fps: Option<f64>,
+    lines: Vec<String>,
+    /// What the lines do not tell.
+    pub(super) notes: Vec<String>,
+    /// The shown runs that the lines make.
+    pub(super) runs: Vec<RunId>,
+}
+
 /// Writes the recipe of a project.
 pub(in crate::cli) fn save(project: &Path, out: Option<&Path>) -> anyhow::Result<Answer> {
-    let project = look(project)?;
-    let (lines, notes) = lines(&project)?;
-    want(!lines.is_empty(), || {
-        format!("{}: nothing was tracked in it yet, so there is no recipe of it", project.path().display())
-    })?;
-    let fps = project.clip().fps_override;
-    let text = written(fps, &lines, &notes);
-    let json = json!({ "fps": fps, "steps": lines, "notes": notes, "file": out });
+    let made = made(&look(project)?)?;
+    let text = written(&made);
+    let json = json!({ "fps": made.fps, "steps": made.lines, "notes": made.notes, "file": out });
     let Some(out) = out else { return Ok(Answer { json, text: text.trim_end().to_owned(), done: true }) };
     let is_toml = out.extension().is_some_and(|e| e == "toml");
     want(is_toml, || format!("a recipe is a .toml file: {}", out.display()))?;
     honami_workbench::export::text(out, &text)?;
-    let mut told = format!("{}: {}", out.display(), counted(lines.len(), "step"));
-    notes.iter().for_each(|note| told += &format!("\nnote: {note}"));
+    let mut told = format!("{}: {}", out.display(), counted(made.lines.len(), "step"));
+    made.notes.iter().for_each(|note| told += &format!("\nnote: {note}"));
     Ok(Answer { json, text: told, done: true })
 }
 
-/// Steps of the recipe that it was made by, else of the tracks and groups that are shown; and what these do not tell.
-fn lines(project: &Project) -> anyhow::Result<(Vec<String>, Vec<String>)> {
+/// Steps of the recipe that it was made by, else of the tracks and groups that are shown.
+pub(super) fn made(project: &Project) -> anyhow::Result<Made> {
+    let mut made = shown(project)?;
     let steps = project.steps()?;
     if steps.len() > 1 {
-        return Ok((steps.into_iter().skip(1).map(|step| step.line).collect(), Vec::new()));
+        made.lines = steps.into_iter().skip(1).map(|step| step.line).collect();
+        made.notes.clear();
     }
+    want(!made.lines.is_empty(), || {
+        format!("{}: nothing was tracked in it yet, so there is no recipe of it", project.path().display())
+    })?;
+    Ok(made)
+}
+
+fn shown(project: &Project) -> anyhow::Result<Made> {
     let registry = Registry::scan_path(&SearchPath::of_process(&[]));
-    let (mut lines, mut notes) = (Vec::new(), Vec::new());
+    let (mut lines, mut notes, mut runs) = (Vec::new(), Vec::new(), Vec::new());
     let document = project.document();
     let shown: BTreeSet<_> = document.runs().iter().map(|shown| shown.run).collect();
     for run in shown {
@@ -70,6 +85,7 @@ fn lines(project: &Project) -> anyhow::Result<(Vec<String>, Vec<String>)> {
             Area::Whole | Area::Usual | Area::Kept(_) => {}
         }
         lines.push(line);
+        runs.push(run);
     }
     if let Some(shown) = document.clustering() {
         let clustering = project.clustering(shown.id)?;
@@ -79,7 +95,7 @@ fn lines(project: &Project) -> anyhow::Result<(Vec<String>, Vec<String>)> {
             shown.k
         ));
     }
-    Ok((lines, notes))
+    Ok(Made { fps: project.clip().fps_override, lines, notes, runs })
 }
 
 /// The command with its plugin, and the parameters that are not as usual.
@@ -101,7 +117,7 @@ fn with(made: &Provenance, kind: Kind, registry: &Registry) -> String {
 }
 
 /// As TOML.
-fn written(fps: Option<f64>, lines: &[String], notes: &[String]) -> String {
+pub(super) fn written(Made { fps, lines, notes, .. }: &Made) -> String {
     let mut text: String = notes.iter().map(|note| format!("# {note}\n")).collect();
     if let Some(fps) = fps {
         text += &format!("fps = {fps:?}\n");
