@@ -58,7 +58,7 @@ pub struct Standing {
 ///
 /// # Errors
 /// [`CameraError::View`] of a view that says too little; [`CameraError::TooFewViews`]; [`CameraError::TooLittle`] where all points together
-/// are too few; [`CameraError::Alike`] where views do not tell focal length or centre, as when all are parallel; [`CameraError::Restless`] and [`CameraError::Behind`] where nothing fits.
+/// are too few; [`CameraError::SameView`] of a view that was given twice; [`CameraError::Alike`] where views do not tell focal length or centre, as when all are parallel; [`CameraError::Restless`] and [`CameraError::Behind`] where nothing fits.
 pub fn calibrate(
     target: &Target,
     views: &[Sighting],
@@ -68,6 +68,11 @@ pub fn calibrate(
     let wanted = options.model.fewest_views();
     if views.len() < wanted {
         return Err(CameraError::TooFewViews { wanted, came: views.len() });
+    }
+    for (second, sighting) in views.iter().enumerate() {
+        if let Some(first) = views[..second].iter().position(|other| other == sighting) {
+            return Err(CameraError::SameView { first, second });
+        }
     }
     let in_view = |view: usize| move |source| CameraError::View { view, source: Box::new(source) };
     let seen_as = |(view, sighting): (usize, &Sighting)| target.seen_as(sighting).map_err(in_view(view));

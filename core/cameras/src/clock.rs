@@ -24,6 +24,47 @@ pub struct Offset {
     pub error_s: f64,
     /// Correlation of both over the time that they share, -1..=1; of a flash, how much of the step the noise leaves, 0..=1.
     pub alike: f64,
+    /// Another offset, far from it, at which both are nearly as alike: of what sways evenly, a whole swing away.
+    pub rival_s: Option<f64>,
+}
+
+/// An offset that was tried.
+#[derive(Clone, Copy, Debug)]
+struct Tried {
+    seconds: f64,
+    alike: f64,
+    /// Samples that were compared.
+    n: usize,
+}
+
+impl Tried {
+    /// The part of the movement that is not alike; no less than reading between samples leaves.
+    fn unlike(&self) -> f64 {
+        (1.0 - self.alike * self.alike).max(1e-6)
+    }
+
+    /// Logarithm of how likely it is beside chance, but for a factor: many samples that are alike say more than few.
+    fn evidence(&self) -> f64 {
+        -(self.n as f64) * self.unlike().ln()
+    }
+}
+
+/// The most likely of the offsets that were tried, in their order, and its rival; `None` where none is so much alike.
+fn best_of(tried: &[Tried], strangers: f64) -> Option<(Tried, Option<f64>)> {
+    /// What a rival leaves unlike, of what the best leaves.
+    const NEARLY: f64 = 4.0;
+    let peaks = (0..tried.len()).filter(|&k| {
+        let is_over = |other: Option<&Tried>| other.is_none_or(|other| tried[k].alike >= other.alike);
+        is_over(k.checked_sub(1).and_then(|k| tried.get(k))) && is_over(tried.get(k + 1))
+    });
+    let peaks: Vec<Tried> = peaks.map(|k| tried[k]).filter(|tried| tried.alike >= strangers).collect();
+    let by_evidence = |a: &&Tried, b: &&Tried| a.evidence().total_cmp(&b.evidence());
+    let best = *peaks.iter().max_by(by_evidence)?;
+    let is_rival = |other: &&Tried| {
+        (other.seconds - best.seconds).abs() > f64::EPSILON && other.unlike() <= NEARLY * best.unlike()
+    };
+    let rival = peaks.iter().filter(is_rival).max_by(by_evidence);
+    Some((best, rival.map(|rival| rival.seconds)))
 }
 
 /// Fewer samples than this say nothing.
@@ -33,7 +74,8 @@ const STRANGERS: f64 = 0.5;
 /// Steps of Gauss and Newton; they need three.
 const STEPS: usize = 20;
 
-/// The offset, of at most `most_s` either way, at which the second signal is most like the first, times a gain of either sign and shifted.
+/// The offset, of at most `most_s` either way, at which the second signal is most likely the first, times a gain of either sign and
+/// shifted: by how much they are alike, and over how many samples.
 ///
 /// Both are compared over at least half of the shorter one, at the first one's times; the second is read between its samples
 /// by cubics. The error is that of a least squares fit, with as many independent samples as the remainder's own correlation
@@ -50,11 +92,10 @@ pub fn by_movement(first: Signal<'_>, second: Signal<'_>, most_s: f64) -> Result
     let shortest = first.len_s().min(second.len_s());
     let tried = (-n..=n).map(|k| k as f64 * step).filter_map(|offset| {
         let together = first.beside(second, offset, shortest / 2.0)?;
-        Some((together.fit()?.alike.abs(), offset))
+        Some(Tried { seconds: offset, alike: together.fit()?.alike.abs(), n: together.mine.len() })
     });
-    let best = tried.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|best| best.0 >= STRANGERS);
-    let (_, mut offset) = best.ok_or(CameraError::Strangers)?;
-    let start = offset;
+    let (best, rival_s) = best_of(&tried.collect::<Vec<_>>(), STRANGERS).ok_or(CameraError::Strangers)?;
+    let (start, mut offset) = (best.seconds, best.seconds);
     for _ in 0..STEPS {
         let fit = first
             .beside(second, offset, 0.0)
@@ -69,7 +110,7 @@ pub fn by_movement(first: Signal<'_>, second: Signal<'_>, most_s: f64) -> Result
         .beside(second, offset, 0.0)
         .and_then(|together| together.fit())
         .ok_or(CameraError::Strangers)?;
-    let found = Offset { seconds: offset, error_s: fit.error_s, alike: fit.alike };
+    let found = Offset { seconds: offset, error_s: fit.error_s, alike: fit.alike, rival_s };
     if is_beyond(start, offset, n, step) { Err(CameraError::AtTheEnd { offset: found }) } else { Ok(found) }
 }
 

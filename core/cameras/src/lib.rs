@@ -137,6 +137,14 @@ pub enum CameraError {
         /// Its standard error, of the focal length or the picture's size; infinite where nothing is told.
         share: f64,
     },
+    /// A view that was given twice tells nothing new, and would be counted as if it did.
+    #[error("views {first} and {second} are one: every point is at the same place in both; give it once")]
+    SameView {
+        /// The first of both, from 0.
+        first: usize,
+        /// The second.
+        second: usize,
+    },
     /// Fewer points than numbers.
     #[error(
         "{n_points} points in {n_views} views tell {told} numbers of a camera, {wanted} are looked for; wanted are more views, \

@@ -141,7 +141,7 @@ mod tests {
     }
 
     fn offset(seconds: f64, error_s: f64) -> Offset {
-        Offset { seconds, error_s, alike: 1.0 }
+        Offset { seconds, error_s, alike: 1.0, rival_s: None }
     }
 
     #[test]

@@ -67,6 +67,8 @@ pub struct Compared {
     pub axes: Similarity,
     /// What the scale would be if it were free: the sensors' metres by the cameras'.
     pub scale: f64,
+    /// Whether the sensors' places fit far better seen in a mirror: one of both has left-handed axes.
+    pub is_mirrored: bool,
     /// Of all markers together, along each axis of the sensors, metres.
     pub all: [Deviation; 3],
     /// Height of the plant, metres, if it is known.
@@ -171,6 +173,7 @@ pub fn compare(tracks: &[Record], sensors: &[Record], wish: &Wish) -> Result<Com
         found: met.found,
         axes: met.axes,
         scale: met.scale,
+        is_mirrored: met.is_mirrored,
         all,
         height_m: wish.height_m,
         piece_s: welch.map(|welch| welch.piece_s()),

@@ -193,7 +193,7 @@ pub fn prepare(left: &Project, right: &Project, request: SpaceRequest) -> Result
         Clocks::Apart(offset) => offset,
         Clocks::BeginTogether => {
             let [first, second] = sides.each_ref().map(|side| side.times.as_slice()[0]);
-            Offset { seconds: second - first, error_s: 0.0, alike: 1.0 }
+            Offset { seconds: second - first, error_s: 0.0, alike: 1.0, rival_s: None }
         }
     };
     let named = match request.pairing {

@@ -75,7 +75,7 @@ pub fn flash(
 #[must_use]
 pub fn by_flash([left, right]: [Flash; 2]) -> Offset {
     let error_s = left.error_s.hypot(right.error_s);
-    Offset { seconds: right.seconds - left.seconds, error_s, alike: 1.0 }
+    Offset { seconds: right.seconds - left.seconds, error_s, alike: 1.0, rival_s: None }
 }
 
 /// The offset of two clocks by movement, and what it is from.

@@ -27,23 +27,30 @@ pub(super) struct Synced {
 /// Says how far two clocks are apart.
 pub(super) fn sync(args: &Sync, common: &Common) -> anyhow::Result<Answer> {
     let (left, right) = (&args.left, &args.right);
+    two_views([left, right])?;
     let by_flash = by_flash([left, right], &args.flash, common)?;
     let Synced { offset, how, from } = match by_flash {
         Some(synced) => synced,
         None => by_motion([left, right], args.most)?,
     };
-    let Offset { seconds, error_s, alike } = offset;
+    let Offset { seconds, error_s, alike, rival_s } = offset;
     let text = format!(
         "what happens at t in {} happens at t {} in {}: {how}",
         left.display(),
         signed(&offset),
         right.display()
     );
-    let mut json = json!({ "offset_s": seconds, "error_s": error_s, "alike": alike });
+    let mut json = json!({ "offset_s": seconds, "error_s": error_s, "alike": alike, "rival_s": rival_s });
     if let (Some(json), Value::Object(from)) = (json.as_object_mut(), from) {
         json.extend(from);
     }
     Ok(Answer { json, text, done: true })
+}
+
+/// Refuses the same file for both views.
+pub(super) fn two_views([left, right]: [&Path; 2]) -> Result<(), super::Usage> {
+    let is_one = left.canonicalize().is_ok_and(|left| right.canonicalize().is_ok_and(|right| left == right));
+    want(!is_one, || format!("{} is given as left and as right: wanted two views", left.display()))
 }
 
 /// `+ 0.4137 s ± 0.0002 s`; what was given without an error has none.
@@ -96,9 +103,15 @@ fn by_motion([left, right]: [&Path; 2], most_s: f64) -> anyhow::Result<Synced> {
     } else {
         format!("{} and {n_right}", counted(n_left, "track"))
     };
+    let rival = found.offset.rival_s.map_or_else(String::new, |rival_s| {
+        format!(
+            "\ndoubtful: at {rival_s:+.2} s they are nearly as alike, as what sways evenly is a swing away; --most leaves out what is \
+             too far, a lamp in both (--flash) tells"
+        )
+    });
     Ok(Synced {
         offset: found.offset,
-        how: format!("movement of {of}, alike {alike:.3}"),
+        how: format!("movement of {of}, alike {alike:.3}{rival}"),
         from: json!({ "by": "motion", "tracks": [n_left, n_right], "named": found.named }),
     })
 }

@@ -8,6 +8,7 @@ use serde_json::json;
 
 use super::args::Common;
 use super::args::space::Triangulate;
+use super::sync::two_views;
 use super::{Answer, look, report, sync, there};
 
 /// Another pair that costs so little more is a doubt, pixels.
@@ -16,6 +17,7 @@ const DOUBTFUL_PX: f64 = 1.0;
 /// Finds tracks in space and keeps them in the left project.
 pub(super) fn triangulate(args: &Triangulate, common: &Common) -> anyhow::Result<Answer> {
     there(&args.left)?;
+    two_views([&args.left, &args.right])?;
     let right = look(&args.right)?;
     let (clocks, how) = clocks(args, common)?;
     let mut left = Project::open(&args.left, Access::Write)?;
@@ -38,7 +40,7 @@ pub(super) fn triangulate(args: &Triangulate, common: &Common) -> anyhow::Result
 /// How far the clocks are apart, and what is said of it.
 fn clocks(args: &Triangulate, common: &Common) -> anyhow::Result<(Clocks, String)> {
     if let Some(seconds) = args.offset {
-        let offset = Offset { seconds, error_s: args.offset_error, alike: 1.0 };
+        let offset = Offset { seconds, error_s: args.offset_error, alike: 1.0, rival_s: None };
         return Ok((Clocks::Apart(offset), "the right clock is ahead as given".to_owned()));
     }
     if let Some(synced) = sync::by_flash([&args.left, &args.right], &args.flash, common)? {

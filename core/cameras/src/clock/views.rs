@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
-use super::{FEWEST, Offset, Signal, is_beyond, n_steps};
+use super::{FEWEST, Offset, Signal, Tried, best_of, is_beyond, n_steps};
 use crate::CameraError;
 
 /// A movement in a picture over time: positions, or velocities.
@@ -45,16 +45,18 @@ pub fn by_movements(first: &Movement<'_>, second: &Movement<'_>, most_s: f64) ->
     let step = mine.step_s().min(theirs.step_s()) / 2.0;
     let least_s = mine.len_s().min(theirs.len_s()) / 2.0;
     let n = n_steps(&mine, &theirs, most_s, step);
-    let alike = |offset: f64, least_s: f64| Some(first.beside(second, offset, least_s)?.directions()?.alike);
-    let tried =
-        (-n..=n).map(|k| k as f64 * step).filter_map(|offset| Some((alike(offset, least_s)?, offset)));
-    let best = tried.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|best| best.0 >= STRANGERS);
-    let (_, start) = best.ok_or(CameraError::Strangers)?;
-    let seconds = peak(start - step, start + step, |offset| alike(offset, 0.0).unwrap_or(0.0));
+    let alike = |offset: f64| Some(first.beside(second, offset, 0.0)?.directions()?.alike);
+    let tried = (-n..=n).map(|k| k as f64 * step).filter_map(|seconds| {
+        let both = first.beside(second, seconds, least_s)?;
+        Some(Tried { seconds, alike: both.directions()?.alike, n: both.mine.len() })
+    });
+    let (best, rival_s) = best_of(&tried.collect::<Vec<_>>(), STRANGERS).ok_or(CameraError::Strangers)?;
+    let start = best.seconds;
+    let seconds = peak(start - step, start + step, |offset| alike(offset).unwrap_or(0.0));
     let both = first.beside(second, seconds, 0.0).ok_or(CameraError::Strangers)?;
     let directions = both.directions().ok_or(CameraError::Strangers)?;
     let error_s = both.error_s(&directions, mine.step_s()).ok_or(CameraError::Strangers)?;
-    let found = Offset { seconds, error_s, alike: directions.alike };
+    let found = Offset { seconds, error_s, alike: directions.alike, rival_s };
     if is_beyond(start, seconds, n, step) { Err(CameraError::AtTheEnd { offset: found }) } else { Ok(found) }
 }
 
@@ -282,13 +284,36 @@ mod tests {
         let (first, second) = (at(0.0, ellipse), at(0.1, ellipse));
         let undecided = by_movements(&movement(&first), &movement(&second), 0.3);
         assert!(
-            undecided.as_ref().map_or(true, |found| found.error_s > (found.seconds - 0.1).abs()),
+            undecided.as_ref().map_or(true, |found| {
+                found.error_s > (found.seconds - 0.1).abs() || found.rival_s.is_some()
+            }),
             "{undecided:?}"
         );
         let line = |t: f64| [9.0 * (7.0 * t + (t * 1.3).sin()).cos(), 0.0];
         let (first, second) = (at(0.0, line), at(0.1, line));
         let found = by_movements(&movement(&first), &movement(&second), 0.3).unwrap();
         assert!((found.seconds - 0.1).abs() < 1e-3, "{found:?}");
+    }
+
+    #[test]
+    fn an_even_sway_has_rivals_and_few_samples_that_are_alike_say_less_than_many() {
+        let sway = |times: &[f64], clock_s: f64, noise: &mut Noise| {
+            let at = |t: f64| 9.0 * (0.01 * (t - clock_s) * (t - clock_s) + 4.0 * (t - clock_s)).sin();
+            times.iter().map(|&t| at(t) + noise.draw()).collect::<Vec<f64>>()
+        };
+        let times: Vec<f64> = (0..240).map(|k| f64::from(k) / 25.0).collect();
+        for seed in 0..20 {
+            let view = |clock_s: f64, seed: u64| {
+                let mut noise = Noise::new(seed, 0.3);
+                [times.clone(), sway(&times, clock_s, &mut noise), (0..240).map(|_| noise.draw()).collect()]
+            };
+            let (first, second) = (view(0.0, seed), view(-0.36, 100 + seed));
+            let found = by_movements(&movement(&first), &movement(&second), 5.0).unwrap();
+            assert!((found.seconds + 0.36).abs() < 0.05, "{seed}: {found:?}");
+            let rival = found.rival_s.unwrap();
+            // Directions are free, so half a swing is one.
+            assert!((rival - found.seconds).abs() > 0.6, "{seed}: {found:?}");
+        }
     }
 
     #[test]

@@ -29,6 +29,8 @@ pub(super) struct Met {
     pub(super) found: Option<Offset>,
     pub(super) axes: Similarity,
     pub(super) scale: f64,
+    /// Whether the sensors' places fit far better seen in a mirror.
+    pub(super) is_mirrored: bool,
     pub(super) pairs: Vec<Pair>,
 }
 
@@ -60,7 +62,21 @@ pub(super) fn meet(tracks: &[Record], sensors: &[Record], wish: &Wish) -> Result
     }
     let (from, to) = joined(&pairs);
     let scale = aligned(&from, &to, true).map_err(SensorsError::Axes)?.scale;
-    Ok(Met { offset_s, found, axes, scale, pairs })
+    let is_mirrored = is_mirrored(&from, &to)?;
+    Ok(Met { offset_s, found, axes, scale, is_mirrored, pairs })
+}
+
+/// Whether places fit others far better in a mirror than turned, whatever their scale: one of both has left-handed axes.
+fn is_mirrored(from: &[Place], to: &[Place]) -> Result<bool, SensorsError> {
+    /// A fit that leaves so much of what the other leaves is far better.
+    const FAR_BETTER: f64 = 0.5;
+    let left_over = |to: &[Place]| -> Result<f64, SensorsError> {
+        let axes = aligned(from, to, true).map_err(SensorsError::Axes)?;
+        let squares = from.iter().zip(to).map(|(from, to)| (axes.of(from) - to).norm_squared());
+        Ok(squares.sum::<f64>().sqrt() / axes.scale.abs())
+    };
+    let mirror: Vec<Place> = to.iter().map(|place| Place::new(-place.x, place.y, place.z)).collect();
+    Ok(left_over(&mirror)? < FAR_BETTER * left_over(to)?)
 }
 
 /// Tracks and sensors of the same name; a track may be `track 3` where the sensor is `3`.
@@ -133,7 +149,11 @@ fn principal(track: &Record, sensor: &Record, about_s: f64, most_s: f64) -> Resu
         Err(CameraError::AtTheEnd { offset }) if is_near => offset,
         found => found?,
     };
-    Ok(Offset { seconds: found.seconds + about_s, ..found })
+    Ok(Offset {
+        seconds: found.seconds + about_s,
+        rival_s: found.rival_s.map(|rival| rival + about_s),
+        ..found
+    })
 }
 
 /// Displacements along the axis in which something moves most.
@@ -238,5 +258,5 @@ fn mean(offsets: &[Offset]) -> Option<Offset> {
     let misfit: f64 = offsets.iter().map(|o| weight(o) * (o.seconds - seconds).powi(2)).sum();
     let excess = (misfit / (offsets.len().max(2) - 1) as f64).max(1.0);
     let alike = average(|offset| offset.alike.abs());
-    (!offsets.is_empty()).then(|| Offset { seconds, error_s: (excess / total).sqrt(), alike })
+    (!offsets.is_empty()).then(|| Offset { seconds, error_s: (excess / total).sqrt(), alike, rival_s: None })
 }

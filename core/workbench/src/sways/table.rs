@@ -178,7 +178,8 @@ fn parsed(text: &str) -> Result<Columns, String> {
 
 /// Cells of a line: between semicolons, else commas, else white space.
 pub(crate) fn cells(line: &str) -> impl Iterator<Item = &str> {
-    let line = line.trim();
+    // Spreadsheets put a mark before what they call UTF-8.
+    let line = line.trim_start_matches('\u{feff}').trim();
     let (separator, is_blank) = match line {
         _ if line.contains(';') => (';', false),
         _ if line.contains(',') => (',', false),

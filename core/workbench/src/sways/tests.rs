@@ -34,6 +34,7 @@ fn a_record_is_read_however_its_columns_are_parted_and_named() {
         (rows("# strain\n", |t| format!("{}\t{}", swung(t), swung(t))), Some(10.0), "column 1"),
         (rows("t_s,top\n", |t| format!("{t},{}", swung(t))), None, "top"),
         (rows("\"top\";\"Time\"\n", |t| format!("{};{}", comma(swung(t)), comma(t + 7.0))), None, "top"),
+        (rows("\u{feff}time_s,top\r\n", |t| format!("{t},{}\r", swung(t))), None, "top"),
         (rows("time_s top\n\n", |t| format!("{t} {}", swung(t))), Some(10.0), "top"),
     ] {
         let found = read(&text, fps, Within::default()).unwrap();

@@ -67,6 +67,31 @@ fn head(found: &Compared) -> String {
     }
 }
 
+/// What speaks against the comparison as a whole.
+fn doubts(found: &Compared) -> Vec<String> {
+    /// Cameras know a scale better than to a fifth.
+    const SCALES: std::ops::Range<f64> = 0.8..1.25;
+    let mut doubts = Vec::new();
+    let is_about = |times: f64| SCALES.contains(&(found.scale / times));
+    if is_about(1000.0) {
+        doubts.push("are the sensors' places in millimetres? Tables of places are in metres".to_owned());
+    } else if is_about(100.0) {
+        doubts.push("are the sensors' places in centimetres? Tables of places are in metres".to_owned());
+    } else if !is_about(1.0) {
+        doubts.push(
+            "the sensors and the tracks are not of one size: is the target's, or the unit, another?"
+                .to_owned(),
+        );
+    }
+    if found.is_mirrored {
+        doubts.push(
+            "the sensors fit far better in a mirror: are their axes left-handed, or two of them exchanged?"
+                .to_owned(),
+        );
+    }
+    doubts
+}
+
 fn text(found: &Compared) -> String {
     let mut text = head(found);
     text += &format!(
@@ -74,6 +99,7 @@ fn text(found: &Compared) -> String {
         found.axes.rotation.angle().to_degrees(),
         found.scale
     );
+    doubts(found).iter().for_each(|doubt| text += &format!("\ndoubtful: {doubt}"));
     let heads = ["RMS (mean ± std) m", "track", "x", "y", "z"].map(str::to_owned).to_vec();
     let row = |name: &str, track: &str, cells: &[Deviation; 3]| {
         let cells = cells.iter().map(|c| format!("{:.4} ({:.4} ± {:.4})", c.rms, c.mean, c.std));
@@ -148,6 +174,7 @@ fn answer(found: &Compared, files: &[PathBuf]) -> Value {
         "rotation": turn,
         "translation_m": [found.axes.translation.x, found.axes.translation.y, found.axes.translation.z],
         "scale": found.scale,
+        "doubts": doubts(found),
         "height_m": found.height_m,
         "all": cells(&found.all),
         "markers": found.markers.iter().map(marker).collect::<Vec<_>>(),
