@@ -134,6 +134,29 @@ fn found(bench: &Bench) -> Vec<[String; 2]> {
     first.map(|row| ["x", "y"].map(|column| row[column].clone())).collect()
 }
 
+/// The leaf moves by a pixel a frame, and its mask with it.
+fn is_carried(bench: &Bench) {
+    let said = bench.json("matte p.honami --every 2");
+    assert_eq!(
+        (&said["from"], &said["frames"], &said["ended"]),
+        (&0.into(), &serde_json::json!([2]), &serde_json::Value::Null)
+    );
+    let middle = |frame: u32| {
+        bench.json(&format!("export p.honami mask at.png --frame {frame}"));
+        let mask = Still::read(&bench.path("at.png")).unwrap().gray();
+        let white: Vec<usize> =
+            (0..mask.len()).filter(|&pixel| mask[pixel] == 255).map(|pixel| pixel % SIZE[0]).collect();
+        white.iter().sum::<usize>() as f64 / white.len() as f64
+    };
+    let moved = middle(2) - middle(0);
+    assert!((moved - 2.0).abs() < 0.5, "{moved}");
+    assert!((middle(1) - middle(0)).abs() < 1e-9, "the frame before counts");
+    let mattes = bench.json("matte p.honami");
+    assert_eq!(mattes["mattes"][1]["provenance"]["params"]["marks"], "carried from frame 0");
+    assert_eq!(mattes["mattes"][1]["provenance"]["params"]["band"], 4, "as the first was found");
+    bench.json("matte p.honami --remove --frame 2");
+}
+
 #[test]
 fn a_matte_is_kept_heeded_told_written_and_removed() {
     let bench = Bench::new();
@@ -182,26 +205,7 @@ fn a_matte_is_kept_heeded_told_written_and_removed() {
     assert_eq!(runs, [1, 0, 0]);
     assert_eq!(log.iter().filter(|line| line["what"] == "matte" && line["frame"] == 0).count(), 1);
 
-    // The leaf moves by a pixel a frame, and its mask with it.
-    let said = bench.json("matte p.honami --every 2");
-    assert_eq!(
-        (&said["from"], &said["frames"], &said["ended"]),
-        (&0.into(), &serde_json::json!([2]), &serde_json::Value::Null)
-    );
-    let middle = |frame: u32| {
-        bench.json(&format!("export p.honami mask at.png --frame {frame}"));
-        let mask = Still::read(&bench.path("at.png")).unwrap().gray();
-        let white: Vec<usize> =
-            (0..mask.len()).filter(|&pixel| mask[pixel] == 255).map(|pixel| pixel % SIZE[0]).collect();
-        white.iter().sum::<usize>() as f64 / white.len() as f64
-    };
-    let moved = middle(2) - middle(0);
-    assert!((moved - 2.0).abs() < 0.5, "{moved}");
-    assert!((middle(1) - middle(0)).abs() < 1e-9, "the frame before counts");
-    let mattes = bench.json("matte p.honami");
-    assert_eq!(mattes["mattes"][1]["provenance"]["params"]["marks"], "carried from frame 0");
-    assert_eq!(mattes["mattes"][1]["provenance"]["params"]["band"], 4, "as the first was found");
-    bench.json("matte p.honami --remove --frame 2");
+    is_carried(&bench);
 
     // Removing is an edit as keeping was.
     let ran = bench.line("matte p.honami --remove --frame 2");

@@ -32,13 +32,13 @@ impl FromStr for Length {
         let number = text.trim_end_matches(char::is_alphabetic);
         let unit = &text[number.len()..];
         let parse = || {
-            let value: f64 = number.trim().parse().ok()?;
+            let value: f64 = number.trim().replace(',', ".").parse().ok()?;
             let unit = if unit.is_empty() { None } else { Some(unit.parse().ok()?) };
             Some(Self { value, unit })
         };
         parse()
             .filter(|length| length.value.is_finite() && length.value > 0.0)
-            .ok_or_else(|| format!("wanted a length above 0 such as 25mm (mm, cm, m) or 25, got {text}"))
+            .ok_or_else(|| format!("wanted a length above 0 such as 25mm or 0.5m, got {text}"))
     }
 }
 
@@ -65,12 +65,13 @@ mod tests {
             ("0.5 m", Ok(0.5)),
             ("35cm", Ok(0.35)),
             ("25mm", Ok(0.025)),
+            ("0,5m", Ok(0.5)),
             ("1e2mm", Ok(0.1)),
             ("25", Err("wanted a unit (mm, cm, m) after 25")),
-            ("0m", Err("wanted a length above 0 such as 25mm (mm, cm, m) or 25, got 0m")),
-            ("-2cm", Err("wanted a length above 0 such as 25mm (mm, cm, m) or 25, got -2cm")),
-            ("2in", Err("wanted a length above 0 such as 25mm (mm, cm, m) or 25, got 2in")),
-            ("", Err("wanted a length above 0 such as 25mm (mm, cm, m) or 25, got ")),
+            ("0m", Err("wanted a length above 0 such as 25mm or 0.5m, got 0m")),
+            ("-2cm", Err("wanted a length above 0 such as 25mm or 0.5m, got -2cm")),
+            ("2in", Err("wanted a length above 0 such as 25mm or 0.5m, got 2in")),
+            ("", Err("wanted a length above 0 such as 25mm or 0.5m, got ")),
         ] {
             let metres = text.parse().and_then(Length::metres);
             assert_eq!(metres, expect.map_err(str::to_owned), "{text}");

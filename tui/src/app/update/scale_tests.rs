@@ -145,7 +145,7 @@ fn the_error_is_that_of_what_was_pointed_at() {
 fn what_measures_nothing_is_refused() {
     let set = "e b Enter 8 0 l Enter";
     let unit = "wanted a unit (mm, cm, m) after 25";
-    let wanted = |text: &str| format!("wanted a length above 0 such as 25mm (mm, cm, m) or 25, got {text}");
+    let wanted = |text: &str| format!("wanted a length above 0 such as 25mm or 0.5m, got {text}");
     for (text, expect) in [
         ("25", unit.to_owned()),
         ("", wanted("")),
