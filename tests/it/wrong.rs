@@ -107,6 +107,11 @@ const CASES: &[Case] = &[
     ("recipe save bare.honami", USAGE, &["nothing was tracked", "bare.honami"]),
     ("recipe save p.honami r.txt", USAGE, &["a recipe is a .toml file: r.txt"]),
     ("rerun bare.honami", USAGE, &["nothing was tracked"]),
+    (
+        "calibrate clip.y4m --right clip.y4m --square 25mm",
+        USAGE,
+        &["clip.y4m is given as left and as right", "two views"],
+    ),
     ("sync p.honami clip.y4m", USAGE, &["clip.y4m is no project", "--flash"]),
     ("sync p.honami p.honami --flash-right all", USAGE, &["--flash"]),
     ("sync p.honami clip.y4m --flash 1,2,3", USAGE, &["x,y,w,h", "or all", "1,2,3"]),

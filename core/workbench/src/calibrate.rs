@@ -269,6 +269,10 @@ impl Fits<'_> {
         let calibration = calibrate(self.target, &views, side.size, &self.options);
         let calibration = calibration.map_err(|error| match error {
             // Which of those that show the target it is says its name.
+            CameraError::SameView { first, second } => {
+                let [first, second] = [first, second].map(|view| shown[view].clone());
+                CamerasError::Same { first, second }
+            }
             CameraError::View { view, source } => {
                 CamerasError::View { name: shown[view].clone(), source: *source }
             }

@@ -9,11 +9,15 @@ use honami_workbench::session::{Session, SessionOptions};
 
 use super::args::Common;
 use super::args::cameras::Calibrate;
+use super::sync::two_views;
 use super::{Answer, Usage, report, there, told_options, want};
 use crate::app::opening::where_is_the_clip;
 
 /// Finds the target in all views, and the cameras that took them.
 pub(super) fn calibrate(args: &Calibrate, common: &Common) -> anyhow::Result<Answer> {
+    if let ([left, ..], [right, ..]) = (&args.images[..], &args.right[..]) {
+        two_views([left, right])?;
+    }
     let cameras = match &args.rig {
         Some(path) => {
             want(args.images.len() == 1 && args.right.len() <= 1, || {

@@ -131,6 +131,15 @@ fn a_point_taken_for_another_hardly_counts_under_a_robust_loss() {
 }
 
 #[test]
+fn a_view_that_is_given_twice_is_named() {
+    let camera = Camera::pinhole(536.0, Pixel::new(330.0, 232.0));
+    let mut views = board_views(&camera, 6, &mut Noise::new(3, 0.1));
+    views.push(views[2].clone());
+    let error = calibrate(&board(), &views, SIZE, &Options::BOARD).map(|c| c.camera);
+    assert_eq!(error, Err(CameraError::SameView { first: 2, second: 6 }));
+}
+
+#[test]
 fn views_that_do_not_tell_are_named() {
     let stand = |turn: [f64; 3], aside: [f64; 3]| Pose::new(Vector3::from(turn), Vector3::from(aside));
     let asides =

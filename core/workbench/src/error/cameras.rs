@@ -8,6 +8,14 @@ use honami_cameras::CameraError;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CamerasError {
+    /// A picture that was given twice.
+    #[error("{first} and {second} are one picture: every point is at the same place in both; give it once")]
+    Same {
+        /// The first of both.
+        first: String,
+        /// The second.
+        second: String,
+    },
     /// What was seen does not tell them.
     #[error(transparent)]
     Camera(#[from] CameraError),
