@@ -224,7 +224,7 @@ fn run(command: Command, common: &Common) -> anyhow::Result<Outcome> {
         Command::Run(args) => recipe::many::run(&args, common)?,
         Command::Rerun(args) => recipe::rerun(&args.project, common)?,
         Command::Recipe(args::recipe::Recipe::Save { project, out }) => {
-            recipe::save(&project, out.as_deref())?
+            recipe::save(&project, out.as_deref(), common)?
         }
         Command::Review(args) => review::review(&args, common)?,
         Command::Log(args) => log::log(&args)?,

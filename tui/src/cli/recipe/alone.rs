@@ -8,7 +8,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::Context as _;
-use honami_workbench::store::{self, Access, Claim, KeptFile, Project, Step};
+use honami_workbench::store::{self, Access, Claim, KeptFile, Project, Step, StoreError};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -22,6 +22,11 @@ use super::{Line, Recipe};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum Told {
+    /// So many steps stand as they are.
+    Fresh {
+        /// From the first.
+        n: usize,
+    },
     /// A step is at work.
     At {
         /// Its number, from 1; 0 is the clip itself.
@@ -90,9 +95,16 @@ fn all(
     let path = clip.path.canonicalize().unwrap_or_else(|_| clip.path.clone());
     let clip = &Clip { name: clip.name.clone(), path, folder };
     // No other process works on this clip meanwhile, on whatever machine.
-    let _claim = Claim::of(&clip.folder.join("steps"))?;
+    let _claim = Claim::of(&clip.folder.join("steps")).map_err(|error| match error {
+        StoreError::Locked { holder: Some(holder), .. } => {
+            anyhow::anyhow!("another honami is at work on it: {holder}")
+        }
+        error => error.into(),
+    })?;
     let registry = options(common).registry();
     let plan = plan(recipe, clip, &registry)?;
+    // Who has planned it may have done so before another honami was through.
+    tell(&Told::Fresh { n: plan.n_fresh });
     let Some(why) = &plan.why else { return Ok(()) };
     take_away(clip, plan.n_fresh + 1)?;
     if plan.makes_project {
@@ -136,6 +148,8 @@ fn make(
 ) -> anyhow::Result<()> {
     let file = clip.project();
     if file.exists() {
+        // Nobody else may have it open.
+        drop(Project::open(&file, Access::Write)?);
         anyhow::ensure!(
             plan.n_edits == 0 || over_edits,
             "{} was edited {} by hand, and its tracks are to be found anew ({why}): --over-edits does so, and keeps the project \

@@ -184,13 +184,14 @@ impl Crew<'_> {
         let said = child.stderr.take();
         let (lines, errors) = thread::scope(|scope| {
             let errors =
-                thread::Builder::new().name("errors".to_owned()).spawn_scoped(scope, || last_lines(said));
+                thread::Builder::new().name("errors".to_owned()).spawn_scoped(scope, || last_line(said));
             let out = child.stdout.take().map(BufReader::new);
             for line in out.into_iter().flat_map(BufReader::lines).map_while(Result::ok) {
                 match serde_json::from_str(&line) {
                     Ok(Told::At { step, done, total, what }) => {
                         self.shown.at(worker, clip, self.recipe, (step, done, total, &what));
                     }
+                    Ok(Told::Fresh { n }) => fate.n_fresh = n,
                     Ok(Told::Done { step, seconds, answer }) => fate.done.push((step, seconds, answer)),
                     Ok(Told::Failed { step, why }) => fate.failed = Some((step, why)),
                     Err(_) => {}
@@ -217,7 +218,8 @@ impl Crew<'_> {
         command.args(self.args.over_edits.then_some("--over-edits"));
         for (option, paths) in [("--plugin", &self.common.plugins), ("--dev", &self.common.dev)] {
             for path in paths {
-                command.arg(option).arg(path);
+                // It works in the folder of the clip.
+                command.arg(option).arg(std::path::absolute(path)?);
             }
         }
         let mut named = std::ffi::OsString::from(format!("{}=", clip.name));
@@ -238,11 +240,11 @@ impl Crew<'_> {
     }
 }
 
-/// The last lines of what a process says on standard error, for the line about its end.
-fn last_lines(said: Option<std::process::ChildStderr>) -> String {
-    let lines = said.map(BufReader::new).into_iter().flat_map(BufReader::lines).map_while(Result::ok);
-    let last = lines.filter(|line| !line.trim().is_empty()).last();
-    last.map_or_else(String::new, |line| format!(": {}", line.trim()))
+/// The last line of what a process says on standard error, for the line about its end; whatever its bytes are.
+fn last_line(said: Option<std::process::ChildStderr>) -> String {
+    let lines = said.map(BufReader::new).into_iter().flat_map(|said| said.split(b'\n')).map_while(Result::ok);
+    let last = lines.filter(|line| !line.trim_ascii().is_empty()).last();
+    last.map_or_else(String::new, |line| format!(": {}", String::from_utf8_lossy(&line).trim()))
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {

@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 
 use super::super::args::Common;
 use super::super::args::recipe::Run;
-use super::super::{Answer, look};
+use super::super::{Answer, look, options};
 use super::plan::look as seen;
 use super::save::{Made, made, written};
 use super::{Recipe, many};
@@ -20,7 +20,8 @@ use super::{Recipe, many};
 /// Makes a project again in a folder for the time being, and compares what came of it.
 pub(in crate::cli) fn rerun(path: &Path, common: &Common) -> anyhow::Result<Answer> {
     let project = look(path)?;
-    let before = made(&project)?;
+    let registry = options(common).registry();
+    let before = made(&project, &registry)?;
     let clip = project.media_path();
     anyhow::ensure!(
         clip.exists(),
@@ -45,7 +46,7 @@ pub(in crate::cli) fn rerun(path: &Path, common: &Common) -> anyhow::Result<Answ
     let ran = many::run(&args, common)?;
     anyhow::ensure!(ran.done, "{} could not be made again:\n{}", path.display(), ran.text);
     let again = look(&into.join(&name).join(format!("{name}.honami")))?;
-    compare((&project, &before), (&again, &made(&again)?), &into.join(&name))
+    compare((&project, &before), (&again, &made(&again, &registry)?), &into.join(&name))
 }
 
 /// Brings the files that lay beside the recipe.

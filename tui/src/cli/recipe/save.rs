@@ -6,12 +6,13 @@ use std::path::Path;
 use honami_model::brief::counted;
 use honami_model::document::RunId;
 use honami_model::provenance::Provenance;
-use honami_workbench::plugins::{Kind, Registry, SearchPath, Values};
+use honami_workbench::plugins::{Kind, Registry, Values};
 use honami_workbench::store::Project;
 use honami_workbench::track::{Area, detection_of};
 use serde_json::json;
 
-use super::super::{Answer, look, want};
+use super::super::args::Common;
+use super::super::{Answer, look, options, want};
 
 /// What a project was made by.
 pub(super) struct Made {
@@ -24,8 +25,8 @@ pub(super) struct Made {
 }
 
 /// Writes the recipe of a project.
-pub(in crate::cli) fn save(project: &Path, out: Option<&Path>) -> anyhow::Result<Answer> {
-    let made = made(&look(project)?)?;
+pub(in crate::cli) fn save(project: &Path, out: Option<&Path>, common: &Common) -> anyhow::Result<Answer> {
+    let made = made(&look(project)?, &options(common).registry())?;
     let text = written(&made);
     let json = json!({ "fps": made.fps, "steps": made.lines, "notes": made.notes, "file": out });
     let Some(out) = out else { return Ok(Answer { json, text: text.trim_end().to_owned(), done: true }) };
@@ -38,8 +39,8 @@ pub(in crate::cli) fn save(project: &Path, out: Option<&Path>) -> anyhow::Result
 }
 
 /// Steps of the recipe that it was made by, else of the tracks and groups that are shown.
-pub(super) fn made(project: &Project) -> anyhow::Result<Made> {
-    let mut made = shown(project)?;
+pub(super) fn made(project: &Project, registry: &Registry) -> anyhow::Result<Made> {
+    let mut made = shown(project, registry)?;
     let steps = project.steps()?;
     if steps.len() > 1 {
         made.lines = steps.into_iter().skip(1).map(|step| step.line).collect();
@@ -51,8 +52,7 @@ pub(super) fn made(project: &Project) -> anyhow::Result<Made> {
     Ok(made)
 }
 
-fn shown(project: &Project) -> anyhow::Result<Made> {
-    let registry = Registry::scan_path(&SearchPath::of_process(&[]));
+fn shown(project: &Project, registry: &Registry) -> anyhow::Result<Made> {
     let (mut lines, mut notes, mut runs) = (Vec::new(), Vec::new(), Vec::new());
     let document = project.document();
     let shown: BTreeSet<_> = document.runs().iter().map(|shown| shown.run).collect();
@@ -66,7 +66,7 @@ fn shown(project: &Project) -> anyhow::Result<Made> {
             ));
             continue;
         };
-        let mut line = with(made, Kind::Tracker, &registry);
+        let mut line = with(made, Kind::Tracker, registry);
         if head.frames != (0..project.clip().clip.n_frames()) {
             line += &format!(" --frames {}..{}", head.frames.start, head.frames.end);
         }
@@ -91,7 +91,7 @@ fn shown(project: &Project) -> anyhow::Result<Made> {
         let clustering = project.clustering(shown.id)?;
         lines.push(format!(
             "{} --groups {}",
-            with(&clustering.provenance, Kind::Clusterer, &registry),
+            with(&clustering.provenance, Kind::Clusterer, registry),
             shown.k
         ));
     }
