@@ -1,4 +1,4 @@
-//! Developer commands of honami: `cargo xtask demo|test|lint|opencv|peers|bench|wan`.
+//! Developer commands of honami: `cargo xtask demo|test|lint|opencv|peers|bench|soak|wan`.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a command-line tool speaks to a person")]
 
 mod accuracy;
@@ -8,6 +8,7 @@ mod opencv;
 mod peers;
 mod recipes;
 mod shell;
+mod soak;
 mod system;
 mod wan;
 
@@ -25,6 +26,8 @@ cargo xtask <command>
   opencv              install what OpenCV's trackers need where it may, then build them (release)
   peers               install the programs that tests compare with where it may; say how tests find them
   bench [name]        measure; without a name, list the benchmarks
+  soak [--kills N | --minutes N] [--seed S]
+                      kill -9, full disks, refused folders, a long day: 1,000 kills of each kind of work
   wan [--json] [case…]  measure over slow links (as root); `wan list` lists the cases";
 
 /// How they are built to be used.
@@ -47,6 +50,7 @@ fn main() -> ExitCode {
         Some((&"opencv", [])) => opencv::build(),
         Some((&"peers", [])) => peers::tell(),
         Some((&"bench", rest)) => bench::run(rest),
+        Some((&"soak", rest)) => soak::run(rest),
         Some((&"wan", rest)) => wan::run(rest),
         Some((&("help" | "--help" | "-h"), _)) => {
             println!("{HELP}");

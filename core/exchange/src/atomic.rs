@@ -3,6 +3,7 @@
 #[cfg(test)]
 mod tests;
 
+use std::ffi::OsStr;
 use std::io::{BufWriter, Read as _, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
@@ -11,6 +12,9 @@ use honami_model::unfinished::Unfinished;
 
 /// So many bytes tell what a file is.
 const HEAD: u64 = 4096;
+
+/// How the name begins and ends that a file has while it is written; what is between differs.
+const PART: (&str, &str) = (".honami-", ".part");
 
 /// A file being written; it takes its name in [`finish`](Self::finish) and leaves nothing behind before that.
 #[derive(Debug)]
@@ -43,7 +47,7 @@ impl AtomicFile {
             let source = if folder.exists() { e.kind().into() } else { missing() };
             TableError::File { path: path.into(), source }
         };
-        builder.prefix(".honami-").suffix(".part");
+        builder.prefix(PART.0).suffix(PART.1);
         let begun = Unfinished::begin(|| {
             builder.tempfile_in(folder).map(|file| {
                 let name = file.path().to_owned();
@@ -68,6 +72,12 @@ impl AtomicFile {
             return Err(TableError::Unlike { path: path.into() });
         }
         Ok(())
+    }
+
+    /// Whether a file of this name is one that is being written, or whose writer was killed.
+    #[must_use]
+    pub fn is_part(name: &OsStr) -> bool {
+        name.to_str().is_some_and(|name| name.starts_with(PART.0) && name.ends_with(PART.1))
     }
 
     /// The name it will have.

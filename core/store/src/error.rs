@@ -7,6 +7,7 @@ use honami_model::edit::EditError;
 use honami_model::history::EntryId;
 use honami_model::space::SpaceId;
 use honami_model::track::TrackId;
+use rusqlite::ffi;
 
 use crate::lock::Holder;
 
@@ -133,6 +134,16 @@ pub enum StoreError {
     /// The disk is full.
     #[error("the disk is full; nothing was changed, free some space and repeat")]
     DiskFull,
+    /// The disk did not take what was written, though it has room: a quota, or a limit of how large files may be.
+    #[error(
+        "the disk refuses to take more of the project ({0}), by a quota or a limit; nothing was changed, make room and repeat"
+    )]
+    Refused(rusqlite::Error),
+    /// The file has another name now, or none, and what this session would write would be lost.
+    #[error(
+        "the project was moved, removed or replaced while it was open; nothing was changed, open it where it is now"
+    )]
+    Moved,
     /// Another session kept the file busy.
     #[error("the project was busy for {} s; repeat", crate::schema::BUSY_TIMEOUT.as_secs())]
     Busy,
@@ -165,6 +176,11 @@ impl From<rusqlite::Error> for StoreError {
         use rusqlite::ErrorCode as Code;
         if matches!(error, rusqlite::Error::QueryReturnedNoRows) {
             return Self::corrupt("a row that every project has is missing");
+        }
+        match error.sqlite_error().map(|error| error.extended_code) {
+            Some(ffi::SQLITE_IOERR_WRITE) => return Self::Refused(error),
+            Some(ffi::SQLITE_READONLY_DBMOVED) => return Self::Moved,
+            _ => {}
         }
         match error.sqlite_error_code() {
             Some(Code::DiskFull) => Self::DiskFull,

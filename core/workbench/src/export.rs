@@ -193,6 +193,20 @@ fn space_c3d(shown: &InSpace, out: &Path) -> Result<Vec<String>, WorkbenchError>
     Ok(uneven.into_iter().collect())
 }
 
+/// Removes the half-written files that killed processes have left in a folder; the caller has it for itself.
+///
+/// # Errors
+/// What the disk met.
+pub fn remove_parts(folder: &Path) -> std::io::Result<()> {
+    for entry in std::fs::read_dir(folder)? {
+        let entry = entry?;
+        if AtomicFile::is_part(&entry.file_name()) {
+            std::fs::remove_file(entry.path())?;
+        }
+    }
+    Ok(())
+}
+
 /// Writes the group of every track of the shown clustering; returns their number.
 ///
 /// # Errors

@@ -9,7 +9,7 @@ use std::thread::Builder;
 
 use honami_model::unfinished::names;
 use honami_workbench::plugins::ended_well;
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
 use signal_hook::iterator::{Handle, Signals};
 use signal_hook::low_level::{emulate_default_handler, exit};
 
@@ -26,6 +26,8 @@ static JOB: Mutex<Weak<AtomicBool>> = Mutex::new(Weak::new());
 /// # Errors
 /// When the system refuses a handler, or a thread.
 pub(super) fn heed() -> io::Result<()> {
+    // A file that may not grow further is an error like any other, not the end.
+    signal_hook::flag::register(SIGXFSZ, Arc::default())?;
     let caught =
         [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|signal| *signal == SIGINT || !is_ignored(*signal));
     let mut signals = Signals::new(caught)?;

@@ -8,6 +8,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::Context as _;
+use honami_workbench::export;
 use honami_workbench::store::{self, Access, Claim, KeptFile, Project, Step, StoreError};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -101,6 +102,8 @@ fn all(
         }
         error => error.into(),
     })?;
+    // So what killed ones had begun to write is nobody's.
+    export::remove_parts(&clip.folder).with_context(|| format!("cannot tidy {}", clip.folder.display()))?;
     let registry = options(common).registry();
     let plan = plan(recipe, clip, &registry)?;
     // Who has planned it may have done so before another honami was through.
