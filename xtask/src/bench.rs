@@ -37,7 +37,11 @@ const BENCHES: [Bench; 20] = [
     ),
     ("skeleton", "from 2,000 tracks over 500 frames to a skeleton and its siblings, step by step", skeleton),
     ("media", "decoding, seeking, stepping back: `bench media CLIP`", media),
-    ("store", "opening, editing and appending to a project of 10,000 tracks", store),
+    (
+        "store",
+        "opening and editing 2,000 tracks of 10,000 frames, beside goals; the same and appending, 10,000 tracks",
+        store,
+    ),
     (
         "suspicion",
         "how well suspicion tells bad samples, by tracker and wind: `bench suspicion [--seed N] [--fit]`",

@@ -203,3 +203,6 @@ fn migrate(conn: &mut Connection, from: u32) -> Result<(), StoreError> {
     tx.pragma_update(None, "user_version", SCHEMA)?;
     Ok(tx.commit()?)
 }
+
+#[cfg(test)]
+mod tests;
