@@ -142,6 +142,28 @@ fn what_ctrl_c_has_ended_goes_on_to_the_same_bytes() {
 }
 
 #[test]
+fn a_kill_just_after_the_project_was_made_holds_nobody_up() {
+    let bench = bench();
+    bench.json("run r.toml c1.y4m --into whole");
+    fs::create_dir_all(bench.path("cut/c1")).unwrap();
+    bench.json("new cut/c1/c1.honami c1.y4m");
+    // What was begun to be written when it was killed.
+    fs::write(bench.path("cut/c1/.honami-Xy12.part"), "half").unwrap();
+    assert_eq!(told(&bench.json("run r.toml c1.y4m --into cut")), [(0, vec![0, 1, 2, 3, 4, 5])]);
+    for file in FILES.map(|file| file.replace("NAME", "c1")) {
+        let read = |into: &str| fs::read(bench.path(into).join("c1").join(&file)).unwrap();
+        assert!(read("whole") == read("cut"), "{file} differs");
+    }
+    assert!(!bench.path("cut/c1/.honami-Xy12.part").exists());
+    // One in which somebody has worked stays.
+    fs::create_dir_all(bench.path("mine/c1")).unwrap();
+    bench.json("new mine/c1/c1.honami c1.y4m");
+    assert_eq!(bench.edit("mine/c1/c1.honami", "add 0 5 5").code, Some(0));
+    let ran = bench.line("run r.toml c1.y4m --into mine");
+    assert!(ran.code == Some(1) && ran.stderr.contains("that no recipe has made"), "{ran:?}");
+}
+
+#[test]
 fn the_recipe_of_a_project_makes_it_again() {
     let bench = bench();
     bench.json("new p.honami c1.y4m");

@@ -72,6 +72,10 @@ pub(in crate::cli) fn plan(recipe: &Recipe, clip: &Clip, registry: &Registry) ->
     let plan = Plan { n_fresh: 0, why: None, makes_project: true, n_edits: 0, made_of, inputs };
     let Some(project) = project else { return Ok(Plan { why: Some(Why::New), ..plan }) };
     let Some(first) = done.first() else {
+        // A run that was killed just after it had made the project: nothing is in it but that it was made.
+        if project.log()?.len() == 1 {
+            return Ok(Plan { why: Some(Why::New), ..plan });
+        }
         anyhow::bail!(
             "{} is a project that no recipe has made: let --into name another folder, or take it away first",
             file.display()
