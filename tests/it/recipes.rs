@@ -164,6 +164,26 @@ fn a_kill_just_after_the_project_was_made_holds_nobody_up() {
 }
 
 #[test]
+fn a_kill_just_after_a_step_has_shown_what_it_found_is_no_work_by_hand() {
+    let bench = bench();
+    bench.json("run r.toml c1.y4m --into out");
+    // As a kill leaves it: begun and shown, and not said to be done.
+    let begun = || {
+        let database = rusqlite::Connection::open(bench.path("out/c1/c1.honami")).unwrap();
+        database.execute("DELETE FROM step WHERE id > 1", []).unwrap();
+        database.execute("UPDATE step SET made_of = '', after = before WHERE id = 1", []).unwrap();
+    };
+    begun();
+    assert_eq!(told(&bench.json("run r.toml c1.y4m --into out")), [(0, vec![0, 1, 2, 3, 4, 5])]);
+    assert!(!bench.path("out/c1/c1.before.honami").exists());
+    // What somebody has done since is.
+    begun();
+    assert_eq!(bench.edit("out/c1/c1.honami", "key 0 3 20 30\n").code, Some(0));
+    let ran = bench.line("run r.toml c1.y4m --into out");
+    assert!(ran.code == Some(1) && ran.stderr.contains("was edited 1 time by hand"), "{ran:?}");
+}
+
+#[test]
 fn the_recipe_of_a_project_makes_it_again() {
     let bench = bench();
     bench.json("new p.honami c1.y4m");

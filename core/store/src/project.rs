@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use honami_model::document::{Document, RunId};
 use honami_model::edit::{Edit, Transaction, apply};
-use honami_model::history::{Entry, EntryId, History};
+use honami_model::history::{Entry, EntryId, History, Step};
 use honami_model::track::TrackSet;
 use rusqlite::Connection;
 
@@ -221,6 +221,23 @@ impl Project {
         self.history.walk(&path);
         touched.iter().for_each(|tracks| self.shown.forget(tracks));
         Ok(())
+    }
+
+    /// Whether an entry does nothing but show results of programs: it holds no work by hand.
+    ///
+    /// # Errors
+    /// [`StoreError::NoSuchEntry`], or what SQLite met.
+    pub fn shows_results(&self, id: EntryId) -> Result<bool, StoreError> {
+        let is_result = |edit: &Edit| {
+            matches!(
+                edit,
+                Edit::ShowRun { .. }
+                    | Edit::ShowClustering { clustering: Some(_) }
+                    | Edit::ShowSpace { space: Some(_) }
+                    | Edit::KeepMatte { matte: Some(_), .. }
+            )
+        };
+        Ok(journal::transaction(&self.conn, Step::Forward(id))?.edits.iter().all(is_result))
     }
 
     /// Sets `n` track numbers aside that were never used, at once and for good.

@@ -199,9 +199,22 @@ fn do_step(line: &Line, number: usize, clip: &Clip, plan: &Plan, common: &Common
     let file = clip.project();
     let cli = line.command(&file, &clip.name).map_err(|error| super::Usage(super::first_line(&error)))?;
     let Some(command) = cli.command else { anyhow::bail!("a step is a command") };
-    let before = Project::open(&file, Access::Read)?;
-    let (revision, others) = (before.revision(), before.steps()?);
-    drop(before);
+    let mut project = Project::open(&file, Access::Write)?;
+    let (revision, others) = (project.revision(), project.steps()?);
+    // Not finished, until it says so: what it shows before a kill is known to be its own.
+    let mut step = Step {
+        line: line.text.clone(),
+        made_of: String::new(),
+        before: revision,
+        after: revision,
+        inputs: plan.inputs[number].clone(),
+        outputs: Vec::new(),
+        answer: serde_json::json!({ "error": "killed" }),
+        seconds: 0.0,
+        time: store::now(),
+    };
+    project.keep_step(number, &step)?;
+    drop(project);
     let was = files(&clip.folder, &file)?;
     let since = Instant::now();
     let ran = match run(command, common) {
@@ -218,21 +231,11 @@ fn do_step(line: &Line, number: usize, clip: &Clip, plan: &Plan, common: &Common
         anyhow::bail!("two steps write {}: let one name another file", both.path);
     }
     let mut project = Project::open(&file, Access::Write)?;
-    let (made_of, json) = match &ran {
+    (step.made_of, step.answer) = match &ran {
         Ok(answer) => (plan.made_of[number].clone(), answer.json.clone()),
         Err(error) => (String::new(), serde_json::json!({ "error": report::chain(error) })),
     };
-    let step = Step {
-        line: line.text.clone(),
-        made_of,
-        before: revision,
-        after: project.revision(),
-        inputs: plan.inputs[number].clone(),
-        outputs,
-        answer: json,
-        seconds,
-        time: store::now(),
-    };
+    step = Step { after: project.revision(), outputs, seconds, time: store::now(), ..step };
     project.keep_step(number, &step)?;
     let answer = ran?.json;
     tell(&Told::Done { step: number, seconds, answer });

@@ -174,7 +174,13 @@ fn stale(project: &Project, since: &[Step], step: &Step, clip: &Clip) -> anyhow:
 /// Edits on the way from a revision to now that none of these steps has made.
 fn foreign(project: &Project, steps: &[Step], since: EntryId) -> usize {
     let way = project.history().path(since, project.revision()).unwrap_or_default();
-    let by_step = |id: EntryId| steps.iter().any(|step| step.before < id && id <= step.after);
+    // What a step had found when it was killed is its own, though it could not say so any more.
+    let is_found = |id| project.shows_results(id).unwrap_or(false);
+    let by_step = |id: EntryId| {
+        let is_of =
+            |step: &Step| step.before < id && (id <= step.after || step.made_of.is_empty() && is_found(id));
+        steps.iter().any(is_of)
+    };
     way.iter().filter(|way| !matches!(way, Way::Forward(id) if by_step(*id))).count()
 }
 
