@@ -1,16 +1,19 @@
 //! Recipes: what is done to every clip, in lines of the command line.
 
 pub(super) mod alone;
+pub(super) mod crew;
 pub(super) mod many;
+mod memory;
 pub(super) mod plan;
 mod rerun;
 mod save;
-mod told;
+pub(super) mod told;
 
 use std::path::{Component, Path, PathBuf};
 
 use anyhow::Context as _;
 use clap::Parser as _;
+use honami_workbench::plugins::Registry;
 use serde::Deserialize;
 
 use super::args::{Cli, Command};
@@ -88,6 +91,20 @@ impl Recipe {
             steps.push(line.map_err(|why| wrong(&format!("step {number}, {text:?}: {why}")))?);
         }
         Ok(Self { fps: written.fps, steps })
+    }
+
+    /// Looks for the plugins of all steps.
+    ///
+    /// # Errors
+    /// When one is not there.
+    pub(super) fn find_plugins(&self, registry: &Registry) -> anyhow::Result<()> {
+        for line in &self.steps {
+            let cli = line.command(Path::new("clip.honami"), "clip")?;
+            for (kind, name) in cli.command.iter().flat_map(plugins) {
+                registry.find(kind, &name)?;
+            }
+        }
+        Ok(())
     }
 }
 

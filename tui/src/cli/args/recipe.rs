@@ -28,6 +28,12 @@ pub(crate) struct Run {
     /// Follow the recipe with one clip in this process, and tell how it goes in JSON: how honami starts its own processes.
     #[arg(long, hide = true)]
     pub(crate) alone: bool,
+    /// Wait so many seconds for another honami that is at work on a clip.
+    #[arg(long, hide = true, default_value_t = 0)]
+    pub(crate) patience: u64,
+    /// Threads of each clip; `None`: its share of the cores.
+    #[arg(skip)]
+    pub(crate) threads: Option<usize>,
 }
 
 #[derive(Debug, Subcommand)]

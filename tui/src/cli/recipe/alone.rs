@@ -5,7 +5,7 @@ use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use anyhow::Context as _;
 use honami_workbench::export;
@@ -17,12 +17,12 @@ use super::super::args::Common;
 use super::super::args::recipe::Run;
 use super::super::{Outcome, options, project, report, run, want};
 use super::plan::{Clip, Plan, Why, look, plan};
-use super::{Line, Recipe};
+use super::{Line, Recipe, memory};
 
 /// What is told of a clip, a line of JSON each.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub(super) enum Told {
+pub(in crate::cli) enum Told {
     /// So many steps stand as they are.
     Fresh {
         /// From the first.
@@ -46,6 +46,8 @@ pub(super) enum Told {
         /// What it said.
         answer: Value,
     },
+    /// The most memory that the process had, at its end.
+    Peak { bytes: u64 },
     /// It could not be done, or was stopped.
     Failed {
         /// The step, or 0.
@@ -73,7 +75,8 @@ pub(in crate::cli) fn follow(args: &Run, common: &Common) -> anyhow::Result<Exit
         tell(&Told::At { step, done, total, what: what.to_owned() })
     }));
     let mut step = 0;
-    let result = all(&recipe, clip, args.over_edits, common, &mut step);
+    let result = all(&recipe, clip, args, common, &mut step);
+    tell(&Told::Peak { bytes: memory::peak_of_self() });
     match result {
         Ok(()) => Ok(ExitCode::SUCCESS),
         Err(error) => {
@@ -83,25 +86,14 @@ pub(in crate::cli) fn follow(args: &Run, common: &Common) -> anyhow::Result<Exit
     }
 }
 
-fn all(
-    recipe: &Recipe,
-    clip: &Clip,
-    over_edits: bool,
-    common: &Common,
-    at: &mut usize,
-) -> anyhow::Result<()> {
+fn all(recipe: &Recipe, clip: &Clip, args: &Run, common: &Common, at: &mut usize) -> anyhow::Result<()> {
     fs::create_dir_all(&clip.folder).with_context(|| format!("cannot make {}", clip.folder.display()))?;
     let folder =
         clip.folder.canonicalize().with_context(|| format!("cannot find {}", clip.folder.display()))?;
     let path = clip.path.canonicalize().unwrap_or_else(|_| clip.path.clone());
     let clip = &Clip { name: clip.name.clone(), path, folder };
     // No other process works on this clip meanwhile, on whatever machine.
-    let _claim = Claim::of(&clip.folder.join("steps")).map_err(|error| match error {
-        StoreError::Locked { holder: Some(holder), .. } => {
-            anyhow::anyhow!("another honami is at work on it: {holder}")
-        }
-        error => error.into(),
-    })?;
+    let _claim = claim(clip, Duration::from_secs(args.patience))?;
     // So what killed ones had begun to write is nobody's.
     export::remove_parts(&clip.folder).with_context(|| format!("cannot tidy {}", clip.folder.display()))?;
     let registry = options(common).registry();
@@ -111,7 +103,7 @@ fn all(
     let Some(why) = &plan.why else { return Ok(()) };
     take_away(clip, plan.n_fresh + 1)?;
     if plan.makes_project {
-        make(recipe, clip, (&plan, why), over_edits, common)?;
+        make(recipe, clip, (&plan, why), args.over_edits, common)?;
     }
     std::env::set_current_dir(&clip.folder)?;
     for number in plan.n_fresh + 1..plan.made_of.len() {
@@ -120,6 +112,24 @@ fn all(
         do_step(&recipe.steps[number - 1], number, clip, &plan, common)?;
     }
     Ok(())
+}
+
+/// Waits so long for whoever has the clip: on other machines the lock of one that has died is held for a while.
+fn claim(clip: &Clip, patience: Duration) -> anyhow::Result<Claim> {
+    let since = Instant::now();
+    loop {
+        match Claim::of(&clip.folder.join("steps")) {
+            Err(StoreError::Locked { holder, .. }) => {
+                let who = holder.map_or_else(|| "nobody says who".to_owned(), |holder| holder.to_string());
+                anyhow::ensure!(since.elapsed() < patience, "another honami is at work on it: {who}");
+                let (waited, of) = (since.elapsed().as_secs(), patience.as_secs());
+                let what = format!("waiting for {who}");
+                anyhow::ensure!(tell(&Told::At { step: 0, done: waited, total: of, what }), "nobody waits");
+                std::thread::park_timeout(Duration::from_secs(1));
+            }
+            other => return Ok(other?),
+        }
+    }
 }
 
 /// Removes what steps from this one on have written, so that nothing stale lies about.

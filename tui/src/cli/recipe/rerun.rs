@@ -42,6 +42,8 @@ pub(in crate::cli) fn rerun(path: &Path, common: &Common) -> anyhow::Result<Answ
         dry_run: false,
         over_edits: false,
         alone: false,
+        patience: 0,
+        threads: None,
     };
     let ran = many::run(&args, common)?;
     anyhow::ensure!(ran.done, "{} could not be made again:\n{}", path.display(), ran.text);

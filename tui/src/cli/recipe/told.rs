@@ -7,19 +7,23 @@ use serde_json::{Value, json};
 
 use super::super::{Answer, report};
 use super::Recipe;
+use super::alone::Told;
+use super::crew::Listener;
 use super::plan::{Clip, plan};
 
 /// What became of a clip.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Fate {
+pub(in crate::cli) struct Fate {
     /// Steps that stood as they were.
-    pub(super) n_fresh: usize,
+    pub(in crate::cli) n_fresh: usize,
     /// Steps that were done: number, seconds, what they said.
-    pub(super) done: Vec<(usize, f64, Value)>,
+    pub(in crate::cli) done: Vec<(usize, f64, Value)>,
     /// The step that failed, and why.
-    pub(super) failed: Option<(usize, String)>,
+    pub(in crate::cli) failed: Option<(usize, String)>,
     /// Whether it was not begun, or ended before it was through.
-    pub(super) stopped: bool,
+    pub(in crate::cli) stopped: bool,
+    /// The most memory that its processes had at once, of what was seen, bytes; 0: nothing was done.
+    pub(in crate::cli) peak_bytes: u64,
 }
 
 impl Fate {
@@ -27,7 +31,7 @@ impl Fate {
         Self { failed: Some((step, why)), ..Self::default() }
     }
 
-    fn seconds(&self) -> f64 {
+    pub(in crate::cli) fn seconds(&self) -> f64 {
         self.done.iter().fold(0.0, |sum, (_, seconds, _)| sum + seconds)
     }
 }
@@ -78,10 +82,12 @@ pub(super) fn planned(recipe: &Recipe, clips: &[Clip], registry: &Registry) -> A
 pub(super) struct Shown {
     all: ProgressBar,
     each: Vec<ProgressBar>,
+    /// The steps.
+    lines: Vec<String>,
 }
 
 impl Shown {
-    pub(super) fn new(n_clips: usize, n_jobs: usize) -> Self {
+    pub(super) fn new(recipe: &Recipe, n_clips: usize, n_jobs: usize) -> Self {
         let bars = MultiProgress::with_draw_target(ProgressDrawTarget::stderr_with_hz(5));
         let all = bars.add(ProgressBar::new(n_clips as u64));
         if let Ok(style) = ProgressStyle::with_template("clips {pos}/{len} ▕{bar:20}▏ {eta} left {msg}") {
@@ -95,22 +101,20 @@ impl Shown {
             }
             bar
         };
-        Self { each: (0..n_jobs).map(|_| each()).collect(), all }
+        let lines = recipe.steps.iter().map(|line| line.text.clone()).collect();
+        Self { each: (0..n_jobs).map(|_| each()).collect(), all, lines }
     }
+}
 
-    pub(super) fn at(
-        &self,
-        worker: usize,
-        clip: &Clip,
-        recipe: &Recipe,
-        (step, done, total, what): (usize, u64, u64, &str),
-    ) {
-        let line = step.checked_sub(1).and_then(|k| recipe.steps.get(k)).map_or("new", |line| &line.text);
-        let n = recipe.steps.len();
+impl Listener for Shown {
+    fn told(&self, worker: usize, clip: &Clip, told: &Told) {
+        let Told::At { step, done, total, what } = told else { return };
+        let line = step.checked_sub(1).and_then(|k| self.lines.get(k)).map_or("new", String::as_str);
+        let n = self.lines.len();
         self.each[worker].set_message(format!("{}  {step}/{n} {line}  {what} {done}/{total}", clip.name));
     }
 
-    pub(super) fn through(&self, worker: usize, clip: &Clip, fate: &Fate) {
+    fn through(&self, worker: usize, clip: &Clip, fate: &Fate) {
         self.each[worker].set_message(String::new());
         if self.all.is_hidden() {
             report::say(&format!("{}: {}", clip.name, words(fate)));
@@ -132,7 +136,7 @@ fn step_words(step: usize) -> String {
     if step == 0 { "the clip".to_owned() } else { format!("step {step}") }
 }
 
-fn words(fate: &Fate) -> String {
+pub(in crate::cli) fn words(fate: &Fate) -> String {
     let n_done = fate.done.iter().filter(|(step, ..)| *step > 0).count();
     match &fate.failed {
         Some((step, why)) => format!("{} failed: {why}", step_words(*step)),
@@ -144,7 +148,7 @@ fn words(fate: &Fate) -> String {
 
 /// A row a clip, and the sums.
 pub(super) fn summary(recipe: &Recipe, clips: &[Clip], fates: &[Fate], seconds: f64) -> Answer {
-    let mut rows = vec![["clip", "steps done", "fresh", "seconds", ""].map(str::to_owned).to_vec()];
+    let mut rows = vec![["clip", "steps done", "fresh", "seconds", "MB", ""].map(str::to_owned).to_vec()];
     let mut told = Vec::new();
     for (clip, fate) in clips.iter().zip(fates) {
         let n_done = fate.done.iter().filter(|(step, ..)| *step > 0).count();
@@ -158,6 +162,7 @@ pub(super) fn summary(recipe: &Recipe, clips: &[Clip], fates: &[Fate], seconds: 
             n_done.to_string(),
             fate.n_fresh.to_string(),
             format!("{:.1}", fate.seconds()),
+            format!("{:.0}", fate.peak_bytes as f64 / 1e6),
             end,
         ]);
         let line = |step: usize| {
@@ -173,6 +178,7 @@ pub(super) fn summary(recipe: &Recipe, clips: &[Clip], fates: &[Fate], seconds: 
             "done": done.collect::<Vec<_>>(),
             "failed": fate.failed.as_ref().map(|(step, why)| json!({ "step": step, "line": line(*step), "why": why })),
             "stopped": fate.stopped,
+            "peak_bytes": fate.peak_bytes,
         }));
     }
     let count = |is: fn(&Fate) -> bool| fates.iter().filter(|fate| is(fate)).count();
