@@ -26,6 +26,7 @@ mod review;
 mod scale;
 mod shape;
 mod simulate;
+mod slurm;
 mod spectrum;
 mod sync;
 mod synth;
@@ -226,6 +227,10 @@ fn run(command: Command, common: &Common) -> anyhow::Result<Outcome> {
         Command::Recipe(args::recipe::Recipe::Save { project, out }) => {
             recipe::save(&project, out.as_deref(), common)?
         }
+        Command::Submit(args) => slurm::submit(&args, common)?,
+        Command::Status(args) => slurm::status(&args)?,
+        Command::Cancel(args) => slurm::cancel(&args)?,
+        Command::Task(args) => slurm::task(&args)?,
         Command::Review(args) => review::review(&args, common)?,
         Command::Log(args) => log::log(&args)?,
         Command::Replay(args) => replay::replay(&args, common)?,

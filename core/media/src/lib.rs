@@ -24,7 +24,9 @@ pub mod write;
 pub use error::{MediaError, Size};
 pub use hash::{sha256_of_bytes, sha256_of_file};
 pub use media::{FrameRef, Media};
-pub use open::{Decoder, OpenOptions, Step, cache_folder, open, open_images, open_with, sha256_of_clip};
+pub use open::{
+    Decoder, Extent, OpenOptions, Step, cache_folder, open, open_images, open_with, sha256_of_clip, size_of,
+};
 pub use programs::ffmpeg_version;
 pub use scale::Rect;
 pub use still::Still;

@@ -90,6 +90,28 @@ pub fn sha256_of_clip(path: &Path) -> Result<String, MediaError> {
     }
 }
 
+/// How large a clip is, without reading more of it than that takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Extent {
+    /// Width of every frame, pixels.
+    pub width: u32,
+    /// Height of every frame, pixels.
+    pub height: u32,
+    /// Frames.
+    pub n_frames: usize,
+}
+
+/// How large a clip is: neither hashed nor decoded.
+///
+/// # Errors
+/// [`MediaError`] when it is no clip.
+pub fn size_of(path: &Path) -> Result<Extent, MediaError> {
+    let kind = kind_of(path)?;
+    let images = if kind == Kind::Images { Some(sequence::list(path)?) } else { None };
+    let Probed { shape, times_s, .. } = probe(path, (kind, images), Decoder::Auto, false)?;
+    Ok(Extent { width: shape.width, height: shape.height, n_frames: times_s.len() })
+}
+
 /// Opens image files, in this order, as one clip.
 ///
 /// # Errors
@@ -120,11 +142,7 @@ fn open_kind(
     let miscounted = folder.as_ref().map(|folder| folder.mark_of(&sha256));
     on_step(Step::Indexing);
     let count_frames = miscounted.as_ref().is_some_and(|mark| mark.exists());
-    let probed = contained(path, || match (kind, images) {
-        (Kind::Y4m, _) => y4m::probe(path),
-        (_, Some((files, notes))) => sequence::probe(path, files, notes),
-        (kind, None) => probe_video(path, kind, options.decoder, count_frames),
-    })??;
+    let probed = probe(path, (kind, images), options.decoder, count_frames)?;
     let Probed { shape, times_s, mut notes, source } = probed;
     let times = frame_times(path, times_s, options.fps, &mut notes)?;
     let clip = Clip { width: shape.width, height: shape.height, times };
@@ -183,6 +201,19 @@ fn kind_of(path: &Path) -> Result<Kind, MediaError> {
         _ if sequence::is_image(path) => Kind::Images,
         _ => Kind::Other,
     })
+}
+
+fn probe(
+    path: &Path,
+    (kind, images): (Kind, Images),
+    decoder: Decoder,
+    count_frames: bool,
+) -> Result<Probed, MediaError> {
+    contained(path, || match (kind, images) {
+        (Kind::Y4m, _) => y4m::probe(path),
+        (_, Some((files, notes))) => sequence::probe(path, files, notes),
+        (kind, None) => probe_video(path, kind, decoder, count_frames),
+    })?
 }
 
 fn probe_video(path: &Path, kind: Kind, decoder: Decoder, count_frames: bool) -> Result<Probed, MediaError> {

@@ -7,6 +7,7 @@ pub(super) mod plant;
 pub(super) mod recipe;
 pub(super) mod scale;
 pub(super) mod sensors;
+pub(super) mod slurm;
 pub(super) mod space;
 pub(super) mod spectrum;
 pub(super) mod view;
@@ -137,6 +138,15 @@ pub(super) enum Command {
     /// Recipes, from projects.
     #[command(subcommand)]
     Recipe(recipe::Recipe),
+    /// Follow a recipe with many clips on a cluster: one array job of Slurm, which does the rest. docs/recipes.md has more.
+    Submit(slurm::Submit),
+    /// How submitted clips are: done, at work, waiting or failed; seconds and memory. Exit status 1: a clip has failed.
+    Status(slurm::Submitted),
+    /// End what was submitted; the same `honami submit` goes on.
+    Cancel(slurm::Submitted),
+    /// One task of what was submitted: how Slurm starts honami.
+    #[command(hide = true)]
+    Task(slurm::Task),
     /// The segments worth a look, the most doubtful first; how far the review is and what it has taken.
     Review(Project),
     /// Everything that was done to a project: runs, clusterings, edits.

@@ -132,7 +132,7 @@ impl Drop for Shown {
 }
 
 /// What a step is called; before the first it is the clip that is wrong.
-fn step_words(step: usize) -> String {
+pub(in crate::cli) fn step_words(step: usize) -> String {
     if step == 0 { "the clip".to_owned() } else { format!("step {step}") }
 }
 
