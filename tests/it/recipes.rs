@@ -114,6 +114,9 @@ fn work_by_hand_is_never_tracked_over_unasked() {
     fs::write(bench.path("r.toml"), RECIPE.replace("max_features=30", "max_features=20")).unwrap();
     let ran = bench.line("run r.toml c1.y4m --into out");
     assert!(ran.code == Some(1) && ran.stderr.contains("was edited 1 time by hand"), "{ran:?}");
+    for file in FILES.map(|file| file.replace("NAME", "c1")) {
+        assert!(bench.path("out/c1").join(&file).exists(), "{file} is gone, though nothing was done");
+    }
     let answer = bench.json("run r.toml c1.y4m --into out --over-edits");
     assert_eq!(told(&answer), [(0, vec![0, 1, 2, 3, 4, 5])]);
     let keys = |project: &str| bench.samples(project).iter().filter(|row| row["source"] == "key").count();

@@ -110,6 +110,9 @@ impl Recipe {
 
 impl Line {
     fn read(text: &str, folder: &Path) -> Result<Self, String> {
+        if text.contains(char::is_control) {
+            return Err("a line of printed letters is wanted, without control characters".to_owned());
+        }
         let words = shlex::split(text).ok_or("a quotation mark without its other")?;
         let command = words.first().ok_or("a step is a command and its options")?;
         if !COMMANDS.contains(&command.as_str()) {
@@ -136,11 +139,13 @@ impl Line {
                 INPUTS.join(", ")
             ));
         }
-        // Of `--set model={recipe}/net.onnx` the path.
-        let value = value.rsplit_once('=').map_or(value, |(_, path)| path);
-        let path = Path::new(value.strip_prefix("{recipe}/").unwrap_or(value));
+        // Of `--set model={recipe}/net.onnx` and `--wind w.csv+vortex:strength=3` every part may be a path, and so may the whole.
         let leaves = |part: Component<'_>| !matches!(part, Component::Normal(_) | Component::CurDir);
-        if path.components().any(leaves) {
+        let is_outside = |value: &str| {
+            let path = Path::new(value.strip_prefix("{recipe}/").unwrap_or(value));
+            path.components().any(leaves)
+        };
+        if is_outside(value) || value.split(['=', '+']).any(is_outside) {
             return Err(format!(
                 "{word}: paths of a recipe do not leave the folder of the clip; {{recipe}}/FILE is one beside the recipe"
             ));

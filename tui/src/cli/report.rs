@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
 use honami_model::brief;
+use honami_workbench::plugins::plain;
 use honami_workbench::progress::{Flow, Level, Patience, Progress, Silence};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
@@ -154,11 +155,14 @@ pub(super) fn complain(error: &anyhow::Error) {
 
 /// The error and its causes; a cause that the line tells already is not told twice.
 pub(super) fn chain(error: &anyhow::Error) -> String {
-    brief::told(error.as_ref())
+    plain(&brief::told(error.as_ref()))
 }
 
 /// Columns aligned to their widest cell, two spaces apart; the first row is the head.
 pub(super) fn table(rows: &[Vec<String>]) -> String {
+    // Names and messages come from elsewhere.
+    let rows: Vec<Vec<String>> =
+        rows.iter().map(|row| row.iter().map(|cell| plain(cell)).collect()).collect();
     let n_columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let width = |column: usize| {
         rows.iter().filter_map(|r| r.get(column)).map(|c| c.chars().count()).max().unwrap_or(0)

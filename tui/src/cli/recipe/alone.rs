@@ -16,7 +16,7 @@ use serde_json::Value;
 use super::super::args::Common;
 use super::super::args::recipe::Run;
 use super::super::{Outcome, options, project, report, run, want};
-use super::plan::{Clip, Plan, Why, look, plan};
+use super::plan::{Clip, Plan, Why, edits, look, plan};
 use super::{Line, Recipe, memory};
 
 /// What is told of a clip, a line of JSON each.
@@ -101,9 +101,14 @@ fn all(recipe: &Recipe, clip: &Clip, args: &Run, common: &Common, at: &mut usize
     // Who has planned it may have done so before another honami was through.
     tell(&Told::Fresh { n: plan.n_fresh });
     let Some(why) = &plan.why else { return Ok(()) };
+    // All that may refuse comes before anything is taken away.
+    let old = if plan.makes_project { replaced(clip, why, args.over_edits)? } else { None };
     take_away(clip, plan.n_fresh + 1)?;
     if plan.makes_project {
-        make(recipe, clip, (&plan, why), args.over_edits, common)?;
+        if let Some(old) = old {
+            old.leave(clip)?;
+        }
+        make(recipe, clip, &plan, common)?;
     }
     std::env::set_current_dir(&clip.folder)?;
     for number in plan.n_fresh + 1..plan.made_of.len() {
@@ -137,8 +142,8 @@ fn take_away(clip: &Clip, from: usize) -> anyhow::Result<()> {
     let file = clip.project();
     let done = if file.exists() { Project::open(&file, Access::Read)?.steps()? } else { Vec::new() };
     let outputs = done.iter().skip(from).flat_map(|step| &step.outputs);
-    let there = outputs.map(|file| (clip.folder.join(&file.path), file)).filter(|(path, _)| path.exists());
-    let there: Vec<_> = there.collect();
+    let there = outputs.map(|file| Ok((clip.output(file)?, file))).collect::<anyhow::Result<Vec<_>>>()?;
+    let there: Vec<_> = there.into_iter().filter(|(path, _)| path.exists()).collect();
     for (path, file) in &there {
         anyhow::ensure!(
             look(path, std::slice::from_ref(*file))?.sha256 == file.sha256,
@@ -151,37 +156,57 @@ fn take_away(clip: &Clip, from: usize) -> anyhow::Result<()> {
     })
 }
 
-/// Makes the project; one that is there is kept beside it.
-fn make(
-    recipe: &Recipe,
-    clip: &Clip,
-    (plan, why): (&Plan, &Why),
-    over_edits: bool,
-    common: &Common,
-) -> anyhow::Result<()> {
+/// A project in whose place another is to be made. It is held, so that nobody can edit it meanwhile.
+struct Replaced {
+    _held: Project,
+    /// Where it is kept, where it was edited by hand.
+    before: Option<PathBuf>,
+}
+
+/// The project that is there, held; refused where it was edited by hand and nobody has said that this does not matter.
+fn replaced(clip: &Clip, why: &Why, over_edits: bool) -> anyhow::Result<Option<Replaced>> {
     let file = clip.project();
-    if file.exists() {
-        // Nobody else may have it open.
-        drop(Project::open(&file, Access::Write)?);
-        anyhow::ensure!(
-            plan.n_edits == 0 || over_edits,
-            "{} was edited {} by hand, and its tracks are to be found anew ({why}): --over-edits does so, and keeps the project \
-             as it is now beside it",
-            file.display(),
-            honami_model::brief::counted(plan.n_edits, "time"),
-        );
-        let before = file.with_file_name(format!("{}.before.honami", clip.name));
-        if plan.n_edits > 0 {
-            anyhow::ensure!(
-                !before.exists(),
-                "{} is there already: take it away, or keep it elsewhere",
-                before.display()
-            );
-            fs::rename(&file, &before).with_context(|| format!("cannot rename {}", file.display()))?;
-        } else {
-            fs::remove_file(&file).with_context(|| format!("cannot remove {}", file.display()))?;
+    if !file.exists() {
+        return Ok(None);
+    }
+    let held = Project::open(&file, Access::Write)?;
+    // Counted now: since it was planned somebody may have gone on.
+    let n_edits = edits(&held)?;
+    if n_edits == 0 {
+        return Ok(Some(Replaced { _held: held, before: None }));
+    }
+    anyhow::ensure!(
+        over_edits,
+        "{} was edited {} by hand, and its tracks are to be found anew ({why}): --over-edits does so, and keeps the project \
+         as it is now beside it",
+        file.display(),
+        honami_model::brief::counted(n_edits, "time"),
+    );
+    let before = file.with_file_name(format!("{}.before.honami", clip.name));
+    anyhow::ensure!(
+        !before.exists(),
+        "{} is there already: take it away, or keep it elsewhere",
+        before.display()
+    );
+    Ok(Some(Replaced { _held: held, before: Some(before) }))
+}
+
+impl Replaced {
+    /// Makes room for the new one.
+    fn leave(self, clip: &Clip) -> anyhow::Result<()> {
+        let file = clip.project();
+        match &self.before {
+            Some(before) => {
+                fs::rename(&file, before).with_context(|| format!("cannot rename {}", file.display()))
+            }
+            None => fs::remove_file(&file).with_context(|| format!("cannot remove {}", file.display())),
         }
     }
+}
+
+/// Makes the project.
+fn make(recipe: &Recipe, clip: &Clip, plan: &Plan, common: &Common) -> anyhow::Result<()> {
+    let file = clip.project();
     let since = Instant::now();
     let mut session = project::make(&file, &clip.path, recipe.fps, common)?;
     let revision = session.project.revision();

@@ -21,8 +21,12 @@ pub(in crate::cli) fn clips(named: &[String], into: &Path) -> anyhow::Result<Vec
             Some((name, path)) if !Path::new(word).exists() => (name.to_owned(), PathBuf::from(path)),
             _ => (name_of(Path::new(word)), PathBuf::from(word)),
         };
-        let is_name = !name.is_empty() && !name.starts_with('.') && !name.contains(['/', '\0']);
-        want(is_name, || format!("{word}: wanted NAME=CLIP, with a name that a folder can have"))?;
+        let is_name = !name.is_empty()
+            && !name.starts_with('.')
+            && !name.contains(|c: char| "/{}".contains(c) || c.is_control());
+        want(is_name, || {
+            format!("{word:?}: wanted NAME=CLIP, with a name that a folder can have, without {{ and }}")
+        })?;
         if let Some(other) = seen.insert(name.clone(), path.clone()) {
             let (one, two) = (other.display(), path.display());
             want(false, || {

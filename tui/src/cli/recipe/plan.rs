@@ -1,6 +1,6 @@
 //! What of a recipe is done, what is stale and why: by hashes of the clip, the lines, plugins, files, and what was before.
 
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::time::UNIX_EPOCH;
 
 use anyhow::Context as _;
@@ -43,6 +43,19 @@ pub(in crate::cli) struct Clip {
 impl Clip {
     pub(in crate::cli) fn project(&self) -> PathBuf {
         self.folder.join(format!("{}.honami", self.name))
+    }
+
+    /// Where a file is that a step has written; projects come from elsewhere, and are not believed that it is in here.
+    pub(in crate::cli) fn output(&self, file: &KeptFile) -> anyhow::Result<PathBuf> {
+        let path = Path::new(&file.path);
+        let is_inside = path.components().all(|part| matches!(part, Component::Normal(_)));
+        anyhow::ensure!(
+            is_inside,
+            "{} says that a step has written {}, which is not in its folder",
+            self.project().display(),
+            file.path
+        );
+        Ok(self.folder.join(path))
     }
 }
 
@@ -97,7 +110,8 @@ pub(in crate::cli) fn plan(recipe: &Recipe, clip: &Clip, registry: &Registry) ->
         };
         if why.is_some() {
             // Tracks are found in a project without any, so that a second time is like the first.
-            let makes_project = line.words[0] == "track" && !project.runs()?.is_empty();
+            let tracks = recipe.steps[number - 1..].iter().any(|line| line.words[0] == "track");
+            let makes_project = tracks && !project.runs()?.is_empty();
             return Ok(Plan {
                 n_fresh: if makes_project { 0 } else { number - 1 },
                 why,
@@ -157,7 +171,7 @@ fn stale(project: &Project, since: &[Step], step: &Step, clip: &Clip) -> anyhow:
         return Ok(Some("the project was edited since".to_owned()));
     }
     for file in &step.outputs {
-        let path = clip.folder.join(&file.path);
+        let path = clip.output(file)?;
         if !path.exists() {
             return Ok(Some(format!("{} is gone", file.path)));
         }
@@ -169,6 +183,12 @@ fn stale(project: &Project, since: &[Step], step: &Step, clip: &Clip) -> anyhow:
         }
     }
     Ok(None)
+}
+
+/// Edits by hand since a recipe has made a project.
+pub(in crate::cli) fn edits(project: &Project) -> anyhow::Result<usize> {
+    let done = project.steps()?;
+    Ok(done.first().map_or(0, |first| foreign(project, &done, first.after)))
 }
 
 /// Edits on the way from a revision to now that none of these steps has made.

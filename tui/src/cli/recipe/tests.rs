@@ -39,6 +39,10 @@ fn steps_are_lines_of_the_command_line() {
         ("export tracks {recipe}/x.csv", "{recipe} is where files are read from"),
         ("track --mask {recipe}/../m.png", "do not leave the folder of the clip"),
         ("track --mask=/lab/m.png", "do not leave the folder of the clip"),
+        ("export tracks /lab/a=b.csv", "do not leave the folder of the clip"),
+        ("export tracks ../x=y.csv", "do not leave the folder of the clip"),
+        ("simulate --wind /lab/w.csv+vortex:strength=3", "do not leave the folder of the clip"),
+        ("export tracks a\u{1b}[2J.csv", "without control characters"),
         ("track --set model=/lab/net.onnx", "do not leave the folder of the clip"),
     ] {
         let told = line(bad).unwrap_err();
@@ -79,6 +83,8 @@ fn clips_have_names_of_their_own() {
     for (bad, why) in [
         (&["a/x.mp4", "b/x.mov"][..], "would both be called x: say NAME=CLIP"),
         (&["../..=x.mp4"], "a name that a folder can have"),
+        (&["{recipe}.mp4"], "a name that a folder can have"),
+        (&["a\u{1b}]52;c;x\u{7}.mp4"], "a name that a folder can have"),
         (&["=x.mp4"], "a name that a folder can have"),
     ] {
         let told = names(bad).unwrap_err().to_string();

@@ -1,7 +1,7 @@
 //! What is told of many clips: before, on the way, in the end.
 
 use honami_model::brief::counted;
-use honami_workbench::plugins::Registry;
+use honami_workbench::plugins::{Registry, plain};
 use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::{Value, json};
 
@@ -111,7 +111,11 @@ impl Listener for Shown {
         let Told::At { step, done, total, what } = told else { return };
         let line = step.checked_sub(1).and_then(|k| self.lines.get(k)).map_or("new", String::as_str);
         let n = self.lines.len();
-        self.each[worker].set_message(format!("{}  {step}/{n} {line}  {what} {done}/{total}", clip.name));
+        self.each[worker].set_message(format!(
+            "{}  {step}/{n} {line}  {} {done}/{total}",
+            clip.name,
+            plain(what)
+        ));
     }
 
     fn through(&self, worker: usize, clip: &Clip, fate: &Fate) {
